@@ -1,0 +1,7 @@
+//! Corpuscle: the corpuscular particle method for gas in tanks and airbags, on GPUs.
+//!
+//! `ARCHITECTURE.md` maps the folders; each module's head says what it is for.
+
+pub mod gas;
+pub mod geometry;
+pub mod scene;

@@ -1,0 +1,238 @@
+//! A validated scene: what the user asked for, in SI units, with every name resolved to an index.
+//!
+//! Invariants (held by `scene::load`): names are unique within their list, every index is in range,
+//! vectors called `direction`, `axis` or `normal` have unit length, mixtures sum to one, curves are
+//! ordered in time, lengths, pressures, temperatures and masses are positive and finite.
+
+use std::path::PathBuf;
+
+/// The universal gas constant, J/(mol K) (CODATA 2018, exact).
+pub const GAS_CONSTANT: f64 = 8.314462618;
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    pub title: String,
+    /// The unit system of the file; everything in this struct is SI whatever it says.
+    pub units: UnitSystem,
+    /// Simulated time at the end, s.
+    pub end_time: f64,
+    /// At most 56 bits are used.
+    pub seed: u64,
+    pub gases: Vec<Gas>,
+    pub walls: Vec<Wall>,
+    pub chambers: Vec<Chamber>,
+    pub openings: Vec<Opening>,
+    pub orifices: Vec<Orifice>,
+    pub probes: Vec<Probe>,
+    pub surfaces: Vec<Surface>,
+    pub model: ModelRequest,
+    pub output: OutputRequest,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum UnitSystem {
+    #[default]
+    Si,
+    /// kg, mm, ms, K: pressure in GPa, energy in J.
+    KgMmMs,
+    /// t, mm, s, K: pressure in MPa, energy in mJ.
+    TMmS,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gas {
+    pub name: String,
+    /// kg/mol.
+    pub molar_mass: f64,
+    /// Molar heat capacity at constant volume, J/(mol K), at least 3/2 R.
+    pub molar_cv: f64,
+}
+
+impl Gas {
+    /// Internal degrees of freedom zeta = 2 cv/R - 3.
+    pub fn spin_dof(&self) -> f64 {
+        (2.0 * self.molar_cv / GAS_CONSTANT - 3.0).max(0.0)
+    }
+
+    /// Molar heat capacity at constant pressure, J/(mol K).
+    pub fn molar_cp(&self) -> f64 {
+        self.molar_cv + GAS_CONSTANT
+    }
+}
+
+/// Mole fractions by gas index; positive, summing to one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mixture(pub Vec<(usize, f64)>);
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    pub name: String,
+    pub shape: Shape,
+    /// On which side of the surface the gas is. A shape with a thickness is a solid with gas on both sides.
+    pub gas: GasSide,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GasSide {
+    Inside,
+    Outside,
+    /// Of a shape with a thickness (a hollow box, a plate).
+    Both,
+}
+
+/// Lengths in m.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Axis-aligned. Without `thickness` one closed surface from `min` to `max`. With it, `min` to `max`
+    /// is the cavity, and the solid shell of that thickness lies around it; `holes` pierce the shell.
+    Box { min: [f64; 3], max: [f64; 3], thickness: Option<f64>, holes: Vec<Hole> },
+    /// Closed cylinder from `base` along `axis`; its curved side is a prism of `segments` facets.
+    Cylinder { base: [f64; 3], axis: [f64; 3], radius: f64, height: f64, segments: u32 },
+    /// `subdivisions` of an icosahedron (each quarters the triangles).
+    Sphere { center: [f64; 3], radius: f64, subdivisions: u32 },
+    /// A flat rectangular plate: `size` along `u` and `normal x u`, `thickness` along `normal`, centred on `center`.
+    Plane { center: [f64; 3], normal: [f64; 3], u: [f64; 3], size: [f64; 2], thickness: f64, holes: Vec<Hole> },
+    /// STL or OBJ (by extension), absolute or relative to the working directory; metres = file units x `scale`.
+    Mesh { path: PathBuf, scale: f64 },
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hole {
+    pub name: String,
+    /// Face of a box ("-x" .. "+z"); for a plane always `PlaneFace`.
+    pub face: Face,
+    /// In the face's two axes. For a box the remaining two axes in x, y, z order, absolute coordinates;
+    /// for a plane (u, normal x u) from its centre.
+    pub center: [f64; 2],
+    pub outline: Outline,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Face {
+    /// `axis` 0..3, and whether it is the face at the larger coordinate.
+    Box { axis: usize, positive: bool },
+    Plane,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outline {
+    Rectangle { size: [f64; 2] },
+    /// A polygon of `segments` corners with the circle's area.
+    Circle { diameter: f64, segments: u32 },
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum Region {
+    Box { min: [f64; 3], max: [f64; 3] },
+    Sphere { center: [f64; 3], radius: f64 },
+    Cylinder { base: [f64; 3], axis: [f64; 3], radius: f64, height: f64 },
+}
+
+/// A part of the gas space with its own initial state; the history has its averages beside the
+/// control-volume reference. Where regions overlap the earlier chamber has the gas.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chamber {
+    pub name: String,
+    /// `None`: all gas space that no earlier chamber has; only the last chamber may be so.
+    pub region: Option<Region>,
+    /// Pa.
+    pub pressure: f64,
+    /// K.
+    pub temperature: f64,
+    pub mixture: Mixture,
+}
+
+/// A hole between two chambers, for the control-volume reference. Holes of boxes and planes are found
+/// by `plan`; those of mesh files are declared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opening {
+    pub name: String,
+    /// Chamber indices.
+    pub between: [usize; 2],
+    /// m2.
+    pub area: f64,
+    /// The length of its Knudsen number, m (default 4 area / perimeter, for a declared one sqrt(area)).
+    pub length: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orifice {
+    pub name: String,
+    /// Centre of a flat disc, m.
+    pub position: [f64; 3],
+    /// Into the gas.
+    pub direction: [f64; 3],
+    /// m2.
+    pub area: f64,
+    /// kg/s against s; zero outside its range.
+    pub mass_flow: Curve,
+    /// Stagnation temperature, K against s; constant beyond its ends.
+    pub temperature: Curve,
+    pub mixture: Mixture,
+    pub jet: Option<Jet>,
+}
+
+/// A drifting inflow; without it the orifice emits a Maxwell speed distribution (specification, section 4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jet {
+    pub mach: f64,
+    /// Half angle of the cone over which the drift direction is spread, rad.
+    pub cone_angle: f64,
+}
+
+/// Piecewise linear; at least one point, strictly increasing abscissae.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A region in which pressure, temperature, density, velocity and particle counts are averaged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    pub name: String,
+    pub region: Region,
+}
+
+/// Walls on which pressure and impulse are measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    pub name: String,
+    /// Wall index.
+    pub wall: usize,
+    /// One face of a box, or all of the wall.
+    pub face: Option<Face>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Pairs collide at their closest approach; ideal-gas pressure at any occupancy.
+    ClosestApproach,
+    /// Free flight without collisions.
+    None,
+}
+
+/// What the plan decides unless the scene says it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelRequest {
+    pub method: Option<Method>,
+    /// Particles at the end of the run, initial and injected together.
+    pub particles: Option<u64>,
+    /// Collision diameter, m. At most one of `diameter` and `occupancy` is set.
+    pub diameter: Option<f64>,
+    /// Occupancy n pi sigma^3 / 6 at the mean number density at the end of the run.
+    pub occupancy: Option<f64>,
+    /// Largest time step, s.
+    pub time_step: Option<f64>,
+    pub rounds: Option<u32>,
+    /// Rotational collision number Z (default 5).
+    pub collision_number: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutputRequest {
+    /// Rows of history.csv (at most; a row holds whole step intervals). Default 200.
+    pub rows: u32,
+    /// Snapshots after the initial one. Default 10; 0 writes none.
+    pub snapshots: u32,
+}
