@@ -1,0 +1,46 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
+// Flies the particles that meet no wall to the end of the step.
+//
+// Reads `sorted`, `flights` (without collisions `particles`, `newborns`) and the classes of the cells;
+// writes `particles` (in canonical order), and appends those that meet a wall, or without collisions may
+// meet one, to `bouncing`. One thread per particle, which writes its own slot.
+
+override COLLISIONS: bool = true;
+override ORIFICES: bool = true;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
+@group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
+
+@compute @workgroup_size(WORKGROUP)
+fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let s = linear(id, groups);
+    if (s >= step.count + step.newborns) {
+        return;
+    }
+    var particle: Particle;
+    var meets_wall: bool;
+    if (COLLISIONS) {
+        particle = sorted[s];
+        meets_wall = flights[s].wall < step.dt;
+    } else {
+        particle = particles[s];
+        var start = 0.0;
+        if (ORIFICES) {
+            start = birth_time(id_of(particle.tag));
+        }
+        meets_wall = may_hit(particle.position, particle.velocity, start, step.dt);
+    }
+    if (meets_wall) {
+        bouncing[append(LIST_BOUNCE)] = s;
+        return;
+    }
+    particle.position = shifted(particle.position, particle.velocity * step.dt);
+    let cell = particle.position >> vec3<u32>(CELL_BITS);
+    if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
+        atomicAdd(&counters[OUTSIDE], 1u);
+    }
+    particles[s] = particle;
+}

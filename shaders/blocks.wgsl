@@ -1,0 +1,52 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl
+// The local state that sets the step size: number and kinetic energy in coarse blocks of cells, and how
+// many particles would cross more than a cell at each step of the ladder.
+//
+// Reads `particles`; writes the integer tally `sums`: per block number (two words) and energy (two
+// words), then the LEVELS counts of fast particles. One thread per particle. Sums of integers do not
+// depend on order.
+
+// Cells per block and axis, log2; blocks per axis.
+override BLOCK_BITS: u32;
+override BLOCKS_X: u32;
+override BLOCKS_Y: u32;
+override BLOCKS: u32;
+// The ladder's largest step, s, and its number of levels.
+override TIME_STEP: f32;
+override LEVELS: u32;
+// Kinetic energy over reference mass to tally units.
+override BLOCK_ENERGY_SCALE: f32;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
+@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
+@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+
+@compute @workgroup_size(WORKGROUP)
+fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear(id, groups);
+    if (i >= step.count + step.newborns) {
+        return;
+    }
+    let particle = particles[i];
+    let cell = nearest_cell(particle.position);
+    let b = cell >> vec3<u32>(BLOCK_BITS);
+    let slot = ((b.z * BLOCKS_Y + b.y) * BLOCKS_X + b.x) * 4u;
+    let speed2 = dot(particle.velocity, particle.velocity);
+    let energy = 0.5 * gases[gas_of(particle.tag)].mass * speed2 * BLOCK_ENERGY_SCALE;
+    if (energy >= 4.29e9) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    add64(slot, 1u, 0u);
+    add64(slot + 2u, u32(round(energy)), 0u);
+    // Too fast at level l if |v| TIME_STEP / 2^l is more than a cell.
+    var reach = sqrt(speed2) * TIME_STEP * QUANTA / f32(1u << CELL_BITS);
+    var level = 0u;
+    while (reach > 1.0 && level < LEVELS) {
+        atomicAdd(&sums[4u * BLOCKS + level], 1u);
+        reach *= 0.5;
+        level++;
+    }
+}

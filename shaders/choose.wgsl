@@ -1,0 +1,75 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl lists.wgsl
+// Each particle picks its earliest possible collision (closest approach, specification, section 2).
+//
+// Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
+// One thread per particle in the first round, per entry of `rechoose` in later ones: only a particle that
+// collided, or whose neighbour did, can choose otherwise than before. The choice is the minimum over (time, partner id), so it does not depend on
+// the order of the candidates; both particles of a pair evaluate it with the lower id first, in the one
+// place below, so that they agree to the last bit.
+
+// Collision diameter, m.
+override DIAMETER: f32;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
+@group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(13) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
+@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
+@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
+
+@compute @workgroup_size(WORKGROUP)
+fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    var s = linear(id, groups);
+    if (step.round == 0u) {
+        if (s >= step.count + step.newborns) {
+            return;
+        }
+    } else {
+        if (s >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
+            return;
+        }
+        s = rechoose[s];
+    }
+    var best = vec2<u32>(NOBODY, 0u);
+    var best_time = NEVER;
+    var best_id = NOBODY;
+    let listed = neighbour_count[s];
+    let own = sorted[s];
+    let own_flight = flights[s];
+    let own_id = id_of(own.tag);
+    let stride = arrayLength(&neighbour_count);
+    for (var k = 0u; k < listed; k++) {
+        let j = neighbours[k * stride + s];
+        let other = sorted[j];
+        let other_flight = flights[j];
+        let other_id = id_of(other.tag);
+        let first = own_id < other_id;
+        let r = select(-1.0, 1.0, first) * between(own.position, other.position);
+        let g = select(-1.0, 1.0, first) * (other.velocity - own.velocity);
+        let g2 = dot(g, g);
+        if (g2 == 0.0) {
+            continue;
+        }
+        let time = -dot(r, g) / g2;
+        let earliest = max(own_flight.start, other_flight.start);
+        let latest = min(step.dt, min(own_flight.wall, other_flight.wall));
+        if (!(time >= earliest && time < latest)) {
+            continue;
+        }
+        let miss = r + g * time;
+        if (dot(miss, miss) >= DIAMETER * DIAMETER) {
+            continue;
+        }
+        if (own_flight.partner == other.tag && other_flight.partner == own.tag) {
+            continue;
+        }
+        if (time > best_time || (time == best_time && other_id >= best_id)) {
+            continue;
+        }
+        best = vec2<u32>(j, bitcast<u32>(time));
+        best_time = time;
+        best_id = other_id;
+    }
+    choices[s] = best;
+}

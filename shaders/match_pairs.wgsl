@@ -1,0 +1,46 @@
+//! uses: step.wgsl particle.wgsl lists.wgsl
+// Settle, part 1: the pairs whose choices are mutual.
+//
+// Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.
+// One thread per particle that has just chosen. The pairs are disjoint, so their order in the list does not matter. In the
+// extra round that counts lost events the pairs are only counted.
+
+// Rounds of the plan: the round of this number is the extra one.
+override ROUNDS: u32;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
+@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
+@group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
+@group(0) @binding(28) var<storage, read> touched: array<u32>;
+@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
+
+@compute @workgroup_size(WORKGROUP)
+fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    var s = linear(id, groups);
+    if (step.round == 0u) {
+        if (s >= step.count + step.newborns) {
+            return;
+        }
+    } else {
+        if (s >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
+            return;
+        }
+        s = rechoose[s];
+    }
+    let other = choices[s].x;
+    if (other == NOBODY || choices[other].x != s) {
+        return;
+    }
+    // Where both have just chosen, the lower id speaks for the pair.
+    let both = touched[other] == step.round;
+    let first = id_of(sorted[s].tag) < id_of(sorted[other].tag);
+    if (both && !first) {
+        return;
+    }
+    if (step.round < ROUNDS) {
+        pairs[append(step.round)] = vec2<u32>(select(other, s, first), select(s, other, first));
+    } else {
+        atomicAdd(&counters[step.round], 1u);
+    }
+}

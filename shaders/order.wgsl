@@ -1,0 +1,52 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl
+// Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
+// the step.
+//
+// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns` and the classes of the cells; writes
+// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), clears what the
+// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
+// the number of lower ids in the cell: a function of the set, not of any order.
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(9) var<storage, read> slots: array<vec2<u32>>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
+@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(12) var<storage, read_write> middles: array<u32>;
+@group(0) @binding(27) var<storage, read_write> cells: array<u32>;
+@group(0) @binding(28) var<storage, read_write> touched: array<u32>;
+@group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
+
+override ORIFICES: bool = true;
+
+@compute @workgroup_size(WORKGROUP)
+fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let s = linear(id, groups);
+    if (s >= step.count + step.newborns) {
+        return;
+    }
+    let slot = slots[s];
+    let cell = bins[slot.x].x;
+    let begin = cell_start[cell];
+    let end = cell_start[cell + 1u];
+    var place = begin;
+    for (var k = begin; k < end; k++) {
+        place += select(0u, 1u, slots[k].y < slot.y);
+    }
+    let particle = particles[slot.x];
+    var start = 0.0;
+    if (ORIFICES) {
+        start = birth_time(slot.y);
+    }
+    sorted[place] = particle;
+    let flag = select(NEAR_WALL, 0u, class_of(cell) == CLASS_CLEAR);
+    middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
+    cells[place] = cell;
+    touched[place] = 0u;
+    flights[place] = Flight(start, NEVER, NOBODY, 0u);
+    if (may_hit(particle.position, particle.velocity, start, step.dt)) {
+        near_walls[append(LIST_NEAR_WALLS)] = place;
+    }
+}

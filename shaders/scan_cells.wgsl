@@ -1,0 +1,31 @@
+//! uses: step.wgsl
+// Scan, part 3: where each cell's particles start. Clears the counts for the next step.
+//
+// Reads `cell_count` and `chunk_sums`; writes `cell_start` (one more than there are cells) and
+// `cell_count`. One thread per chunk.
+
+override CHUNK: u32;
+
+@group(0) @binding(6) var<storage, read_write> cell_count: array<u32>;
+@group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
+@group(0) @binding(8) var<storage, read_write> cell_start: array<u32>;
+
+@compute @workgroup_size(WORKGROUP)
+fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let chunk = linear(id, groups);
+    if (chunk >= arrayLength(&chunk_sums)) {
+        return;
+    }
+    let begin = chunk * CHUNK;
+    let end = min(begin + CHUNK, arrayLength(&cell_count));
+    var before = chunk_sums[chunk];
+    for (var cell = begin; cell < end; cell++) {
+        let own = cell_count[cell];
+        cell_start[cell] = before;
+        cell_count[cell] = 0u;
+        before += own;
+    }
+    if (begin < end && end == arrayLength(&cell_count)) {
+        cell_start[end] = before;
+    }
+}

@@ -1,0 +1,170 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl philox.wgsl walls.wgsl
+// Settle, part 2: the collisions of this round.
+//
+// Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
+// cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Spin
+// exchange is Larsen-Borgnakke (section 3), i before j, i the lower id. What rounding does to the
+// pair's energy goes into spin.
+//
+// Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
+// and appends the particles that this may make choose otherwise to `rechoose`. One thread per pair. Pairs are
+// disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
+
+override DIAMETER: f32;
+override SPIN: bool = true;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
+@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
+@group(0) @binding(13) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
+@group(0) @binding(16) var<storage, read> pairs: array<vec2<u32>>;
+@group(0) @binding(28) var<storage, read_write> touched: array<atomic<u32>>;
+@group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
+
+// A unit vector perpendicular to the unit vector u.
+fn perpendicular(u: vec3<f32>) -> vec3<f32> {
+    let axis = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(u.x) < 0.6);
+    return normalize(cross(axis, u));
+}
+
+struct Outcome {
+    relative: vec3<f32>,
+    spin_i: f32,
+    spin_j: f32,
+}
+
+// New relative velocity and spins of a pair with miss vector `miss` (r at the closest approach) and
+// relative velocity `g`; `random` holds the words of two draws.
+fn collide(miss: vec3<f32>, g: vec3<f32>, i: Particle, j: Particle, mu: f32, draw: vec4<u32>, draw2: vec4<u32>) -> Outcome {
+    let speed = length(g);
+    let along = g / speed;
+    let across = miss - along * dot(miss, along);
+    let b2 = clamp(dot(across, across) / (DIAMETER * DIAMETER), 0.0, 1.0);
+    var turn = perpendicular(along);
+    if (b2 > 1e-12) {
+        turn = normalize(cross(across, along));
+    }
+    if ((draw2.z & 0x80000000u) != 0u) {
+        turn = -turn;
+    }
+    let cosine = 2.0 * b2 - 1.0;
+    let sine = 2.0 * sqrt(b2 * (1.0 - b2));
+    var outcome: Outcome;
+    outcome.spin_i = i.spin;
+    outcome.spin_j = j.spin;
+    var new_speed = speed;
+    if (SPIN) {
+        let before = 0.5 * mu * speed * speed;
+        var energy = before;
+        let gas_i = gases[gas_of(i.tag)];
+        if (unit_interval(draw.x) < gas_i.exchange) {
+            let sum = energy + i.spin;
+            let share = pow(unit_interval(draw.y), gas_i.inverse_beta) * pow(unit_interval(draw.z), gas_i.inverse_beta1);
+            outcome.spin_i = min(sum * share, sum);
+            energy = sum - outcome.spin_i;
+        }
+        let gas_j = gases[gas_of(j.tag)];
+        if (unit_interval(draw.w) < gas_j.exchange) {
+            let sum = energy + j.spin;
+            let share = pow(unit_interval(draw2.x), gas_j.inverse_beta) * pow(unit_interval(draw2.y), gas_j.inverse_beta1);
+            outcome.spin_j = min(sum * share, sum);
+            energy = sum - outcome.spin_j;
+        }
+        if (energy != before) {
+            new_speed = sqrt(2.0 * energy / mu);
+        }
+    }
+    outcome.relative = new_speed * (cosine * along + sine * turn);
+    return outcome;
+}
+
+// Lets particle s choose again in the next round.
+fn touch(s: u32) {
+    if (atomicMax(&touched[s], step.round + 1u) <= step.round) {
+        rechoose[append(LIST_RECHOOSE + step.round + 1u)] = s;
+    }
+}
+
+fn touch_neighbours(s: u32) {
+    let stride = arrayLength(&neighbour_count);
+    let listed = neighbour_count[s];
+    for (var k = 0u; k < listed; k++) {
+        touch(neighbours[k * stride + s]);
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear(id, groups);
+    let count = atomicLoad(&counters[PAIRS + step.round]);
+    if (k >= count) {
+        return;
+    }
+    if (k == 0u) {
+        let old = atomicAdd(&counters[COLLISIONS_LOW], count);
+        if (old + count < old) {
+            atomicAdd(&counters[COLLISIONS_HIGH], 1u);
+        }
+    }
+    let pair = pairs[k];
+    let time = bitcast<f32>(choices[pair.x].y);
+    var i = sorted[pair.x];
+    var j = sorted[pair.y];
+    let mass_i = gases[gas_of(i.tag)].mass;
+    let mass_j = gases[gas_of(j.tag)].mass;
+    let mu = mass_i * mass_j / (mass_i + mass_j);
+    let g = j.velocity - i.velocity;
+    let miss = between(i.position, j.position) + g * time;
+    // Neighbours are screened where the step starts; here, where the pair would meet. A pair that a wall
+    // parts passes on as if it had collided, so that its particles choose others in the next round.
+    let place_i = shifted(i.position, i.velocity * time);
+    if (class_of(cell_index(nearest_cell(place_i))) != CLASS_CLEAR
+        && blocked(place_i, shifted(j.position, j.velocity * time))) {
+        flights[pair.x].partner = j.tag;
+        flights[pair.y].partner = i.tag;
+        atomicAdd(&counters[BLOCKED], 1u);
+        touch(pair.x);
+        touch(pair.y);
+        return;
+    }
+    let key = vec2<u32>(SEED_LOW, SEED_HIGH);
+    let ids = vec2<u32>(id_of(i.tag), id_of(j.tag));
+    let draw2 = philox(vec4<u32>(step.index, step.round * 2u + 1u, ids), key);
+    var draw = vec4<u32>(0u);
+    if (SPIN) {
+        draw = philox(vec4<u32>(step.index, step.round * 2u, ids), key);
+    }
+    let outcome = collide(miss, g, i, j, mu, draw, draw2);
+    let change = outcome.relative - g;
+    let old_i = i.velocity;
+    let old_j = j.velocity;
+    i.velocity = old_i - (mu / mass_i) * change;
+    j.velocity = old_j + (mu / mass_j) * change;
+    if (SPIN) {
+        // The kinetic energy that the rounded velocities really gained, against what the spins gave.
+        let gained = 0.5 * mass_i * dot(i.velocity - old_i, i.velocity + old_i)
+            + 0.5 * mass_j * dot(j.velocity - old_j, j.velocity + old_j);
+        let residual = (i.spin - outcome.spin_i) + (j.spin - outcome.spin_j) - gained;
+        i.spin = outcome.spin_i;
+        j.spin = outcome.spin_j;
+        if (gases[gas_of(i.tag)].exchange > 0.0 && i.spin + residual >= 0.0) {
+            i.spin += residual;
+        } else if (gases[gas_of(j.tag)].exchange > 0.0 && j.spin + residual >= 0.0) {
+            j.spin += residual;
+        }
+    }
+    // The two are in each other's lists.
+    touch_neighbours(pair.x);
+    touch_neighbours(pair.y);
+    i.position = shifted(i.position, (old_i - i.velocity) * time);
+    j.position = shifted(j.position, (old_j - j.velocity) * time);
+    sorted[pair.x] = i;
+    sorted[pair.y] = j;
+    let flown_i = flights[pair.x].collisions;
+    let flown_j = flights[pair.y].collisions;
+    flights[pair.x] = Flight(time, wall_time(i.position, i.velocity, time, step.dt), j.tag, flown_i + 1u);
+    flights[pair.y] = Flight(time, wall_time(j.position, j.velocity, time, step.dt), i.tag, flown_j + 1u);
+}

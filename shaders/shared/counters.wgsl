@@ -1,0 +1,16 @@
+// Slots of the counters that the host reads some steps late (src/subdomain/counters.rs).
+
+const PAIRS: u32 = 0;               // 0 .. 32: lengths of the lists of this step, see lists.wgsl
+const COLLISIONS_LOW: u32 = 32;     // since the last read, two words
+const COLLISIONS_HIGH: u32 = 33;
+const LOST: u32 = 34;               // lost pairs in the sampled steps
+const SAMPLED: u32 = 35;            // collisions in the sampled steps
+const MOST_NEIGHBOURS: u32 = 36;    // the longest neighbour list that did not fit
+const OUTSIDE: u32 = 37;            // particles found outside the vessel
+const OVERSHOOT: u32 = 38;          // largest distance behind a wall, quanta
+const TRUNCATED: u32 = 39;          // flights cut short after the last bounce
+const TALLY_OVERFLOW: u32 = 40;     // values beyond the range of a tally
+const CAPACITY_FAILED: u32 = 41;    // newborns that found no room
+const BOUNCES: u32 = 42;            // wall hits since the last read
+const BLOCKED: u32 = 43;            // pairs parted by a wall where they would have met
+const PARTICLES: u32 = 44;          // on the device; not cleared by a read

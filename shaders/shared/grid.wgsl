@@ -1,0 +1,62 @@
+// The one global cell grid and its fixed-point positions (src/geometry/grid.rs).
+
+override CELLS_X: u32;
+override CELLS_Y: u32;
+override CELLS_Z: u32;
+override CELL_BITS: u32;
+// Metres per quantum, and its inverse.
+override QUANTUM: f32;
+override QUANTA: f32;
+
+const CLASS_CLEAR: u32 = 0;
+const CLASS_GAS: u32 = 1;
+const CLASS_CUT: u32 = 2;
+const CLASS_SOLID: u32 = 3;
+
+fn cell_index(c: vec3<u32>) -> u32 {
+    return (c.z * CELLS_Y + c.y) * CELLS_X + c.x;
+}
+
+fn in_grid(c: vec3<u32>) -> bool {
+    return c.x < CELLS_X && c.y < CELLS_Y && c.z < CELLS_Z;
+}
+
+// A position moved by d metres, rounded to the nearest quantum. Below the origin it wraps to a huge
+// number, which no cell of the grid has.
+fn shifted(p: vec3<u32>, d: vec3<f32>) -> vec3<u32> {
+    return p + bitcast<vec3<u32>>(vec3<i32>(round(d * QUANTA)));
+}
+
+// b - a in metres; the difference of integers is exact.
+fn between(a: vec3<u32>, b: vec3<u32>) -> vec3<f32> {
+    return vec3<f32>(bitcast<vec3<i32>>(b - a)) * QUANTUM;
+}
+
+// A position packed into one word for the search of neighbours: 10 bits per axis, in 1/128 of a cell,
+// modulo 8 cells; the top bit marks a cell that is not clear of walls.
+const NEAR_WALL: u32 = 0x80000000;
+
+fn packed(p: vec3<u32>) -> u32 {
+    let q = (p >> vec3<u32>(CELL_BITS - 7u)) & vec3<u32>(1023u);
+    return q.x | (q.y << 10u) | (q.z << 20u);
+}
+
+// The square of the distance of two packed positions, in 1/128 cells.
+fn packed_distance2(a: u32, b: u32) -> i32 {
+    let x = extractBits(i32(b & 1023u) - i32(a & 1023u), 0u, 10u);
+    let y = extractBits(i32((b >> 10u) & 1023u) - i32((a >> 10u) & 1023u), 0u, 10u);
+    let z = extractBits(i32((b >> 20u) & 1023u) - i32((a >> 20u) & 1023u), 0u, 10u);
+    return x * x + y * y + z * z;
+}
+
+// Pairs nearer than a cell's edge have a packed distance below this: rounding takes less than one unit
+// per axis, and (128 + sqrt(3))^2 < 16831.
+const PACKED_REACH2: i32 = 16831;
+
+// The cell of a point that may lie outside the grid (the mid-step point of a fast particle beyond a
+// wall): the nearest cell that has all its neighbours. Only the cell is moved, never the particle.
+fn nearest_cell(p: vec3<u32>) -> vec3<u32> {
+    let c = bitcast<vec3<i32>>(p) >> vec3<u32>(CELL_BITS);
+    let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 2;
+    return vec3<u32>(clamp(c, vec3<i32>(1), last));
+}

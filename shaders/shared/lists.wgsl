@@ -1,0 +1,31 @@
+// Lists of rare work: a kernel that meets it appends, and one that does it is dispatched over exactly
+// the list. (On a device that executes untaken branches under a mask, rare heavy branches would cost
+// every thread.) The order of a list depends on the order of the threads; entries are independent.
+
+// Lists 0 .. 8 are the pairs of the rounds; list ROUNDS counts the pairs that the rounds lost. Lists
+// LIST_RECHOOSE + r are the particles that choose again in round r >= 1.
+const LIST_NEAR_WALLS: u32 = 9;
+const LIST_SCREEN: u32 = 10;
+const LIST_BOUNCE: u32 = 11;
+const LIST_RECHOOSE: u32 = 16;
+const LISTS: u32 = 32;
+
+// Workgroups per dimension of an indirect dispatch.
+const GROUP_LIMIT: u32 = 65535;
+
+@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
+@group(0) @binding(19) var<storage, read_write> dispatches: array<atomic<u32>>;
+
+// (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs,
+// is given the buffer `rechoose_dispatches` by this name.)
+//
+// The place of a new entry; makes sure that the list's dispatch covers it.
+fn append(list: u32) -> u32 {
+    let k = atomicAdd(&counters[list], 1u);
+    if (k % WORKGROUP == 0u) {
+        let group = k / WORKGROUP;
+        atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
+        atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
+    }
+    return k;
+}

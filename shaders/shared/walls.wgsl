@@ -1,0 +1,147 @@
+// Swept tests of a straight flight against the triangles of the walls.
+//
+// A triangle stops a particle that moves against its normal and comes from the gas side. Rounding may
+// leave a particle less than TOLERANCE behind a wall; moving away it is let go, turning back it is
+// stopped at once. Triangles reach TOLERANCE beyond their edges, so that neighbours overlap and no
+// flight passes between them; of several hits the earliest counts, ties by triangle index.
+// The edge function is evaluated from the lower vertex id to the higher.
+
+struct Triangle {
+    // Corners in quanta, ordered by vertex id.
+    a: vec3<u32>,
+    // +1 if a, b, c is counter-clockwise seen from the gas, else -1.
+    sense: f32,
+    b: vec3<u32>,
+    // Surface tally of this triangle, or NOBODY.
+    surface: u32,
+    c: vec3<u32>,
+    pad: u32,
+    // Unit normal into the gas.
+    normal: vec3<f32>,
+    pad2: u32,
+}
+
+struct Hit {
+    time: f32,
+    triangle: u32,
+    // How far behind a wall the flight was found to start, m.
+    overshoot: f32,
+}
+
+override TOLERANCE: f32;
+
+@group(0) @binding(20) var<storage, read> wall_start: array<u32>;
+@group(0) @binding(21) var<storage, read> wall_list: array<u32>;
+@group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(23) var<storage, read> cell_class: array<u32>;
+
+fn class_of(cell: u32) -> u32 {
+    return (cell_class[cell >> 4u] >> ((cell & 15u) * 2u)) & 3u;
+}
+
+fn within(triangle: Triangle, point: vec3<f32>, ab: vec3<f32>, ac: vec3<f32>) -> bool {
+    let bc = ac - ab;
+    let n = triangle.normal * triangle.sense;
+    return dot(cross(ab, point), n) >= -TOLERANCE * length(ab)
+        && dot(cross(bc, point - ab), n) >= -TOLERANCE * length(bc)
+        && -dot(cross(ac, point), n) >= -TOLERANCE * length(ac);
+}
+
+// The cells that the box around the segment from p to q touches.
+struct Cells {
+    low: vec3<u32>,
+    high: vec3<u32>,
+}
+
+fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
+    let a = bitcast<vec3<i32>>(p);
+    let b = bitcast<vec3<i32>>(q);
+    let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 1;
+    let low = clamp(min(a, b) >> vec3<u32>(CELL_BITS), vec3<i32>(0), last);
+    let high = clamp(max(a, b) >> vec3<u32>(CELL_BITS), vec3<i32>(0), last);
+    return Cells(vec3<u32>(low), vec3<u32>(high));
+}
+
+// The first wall that the flight x0 + v t meets in start <= t < end.
+fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
+    var hit = Hit(NEVER, NOBODY, 0.0);
+    let from_point = shifted(x0, v * start);
+    let to_point = shifted(x0, v * end);
+    let cells = cells_of(from_point, to_point);
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            // The cells of an x-row are neighbours in memory, and so are their lists.
+            let row = cell_index(vec3<u32>(cells.low.x, y, z));
+            let last = wall_start[row + cells.high.x - cells.low.x + 1u];
+            for (var k = wall_start[row]; k < last; k++) {
+                let index = wall_list[k];
+                let triangle = triangles[index];
+                let approach = -dot(v, triangle.normal);
+                if (approach <= 0.0) {
+                    continue;
+                }
+                let a = between(triangle.a, from_point);
+                let distance = dot(a, triangle.normal);
+                let delay = distance / approach;
+                if (distance < -TOLERANCE || delay > end - start) {
+                    continue;
+                }
+                let ab = between(triangle.a, triangle.b);
+                let ac = between(triangle.a, triangle.c);
+                if (!within(triangle, a + v * delay, ab, ac)) {
+                    continue;
+                }
+                hit.overshoot = max(hit.overshoot, -distance);
+                let time = start + max(delay, 0.0);
+                if (time < hit.time || (time == hit.time && index < hit.triangle)) {
+                    hit.time = time;
+                    hit.triangle = index;
+                }
+            }
+        }
+    }
+    return hit;
+}
+
+// Whether a flight may meet a wall. One from a clear cell that does not leave that cell's neighbours
+// meets none.
+fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
+    let cell = cell_index(nearest_cell(shifted(x0, v * start)));
+    let reach = max(max(abs(v.x), abs(v.y)), abs(v.z)) * (dt - start) * QUANTA;
+    return class_of(cell) != CLASS_CLEAR || reach >= f32(1u << CELL_BITS);
+}
+
+// The time of a flight's next wall hit in this step, or NEVER.
+fn wall_time(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> f32 {
+    if (!may_hit(x0, v, start, dt)) {
+        return NEVER;
+    }
+    return first_hit(x0, v, start, dt).time;
+}
+
+// Whether a wall, from either side, lies between two points.
+fn blocked(p: vec3<u32>, q: vec3<u32>) -> bool {
+    let cells = cells_of(p, q);
+    let along = between(p, q);
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            let row = cell_index(vec3<u32>(cells.low.x, y, z));
+            let last = wall_start[row + cells.high.x - cells.low.x + 1u];
+            for (var k = wall_start[row]; k < last; k++) {
+                let triangle = triangles[wall_list[k]];
+                let a = between(triangle.a, p);
+                let before = dot(a, triangle.normal);
+                let after = dot(between(triangle.a, q), triangle.normal);
+                if ((before > 0.0) == (after > 0.0)) {
+                    continue;
+                }
+                let ab = between(triangle.a, triangle.b);
+                let ac = between(triangle.a, triangle.c);
+                if (within(triangle, a + along * (before / (before - after)), ab, ac)) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}

@@ -1,0 +1,143 @@
+//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl
+// Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
+// probes).
+//
+// Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles,
+// one zone (y) and one gas (z); each thread adds its own, then the workgroup, then the zone's sums. Fixed-point
+// integers with a carry: the sums do not depend on order. A value out of range is counted, and the host
+// stops the run.
+
+struct Zone {
+    // Box: corners. Sphere: low is the centre. Cylinder: low is the base.
+    low: vec3<u32>,
+    kind: u32,
+    high: vec3<u32>,
+    // Radius of a sphere or a cylinder, m.
+    radius: f32,
+    // Cylinder: unit axis and height, m.
+    axis: vec3<f32>,
+    height: f32,
+}
+
+const EVERYWHERE: u32 = 0;
+const BOX: u32 = 1;
+const SPHERE: u32 = 2;
+const CYLINDER: u32 = 3;
+
+override GASES: u32;
+// Zones 1 .. CHAMBERS are chambers: of several that hold a particle the first has it.
+override CHAMBERS: u32;
+// Velocity and specific energy to tally units.
+override VELOCITY_SCALE: f32;
+override ENERGY_SCALE: f32;
+override CHUNK_LOOPS: u32 = 32;
+
+const WORDS: u32 = 12;
+const ENERGY_RANGE: f32 = 4.29e9;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
+@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+@group(0) @binding(18) var<storage, read> zones: array<Zone>;
+
+var<workgroup> shared_sums: array<atomic<u32>, WORDS>;
+
+fn contains(zone: Zone, p: vec3<u32>) -> bool {
+    if (zone.kind == BOX) {
+        return all(p >= zone.low) && all(p < zone.high);
+    }
+    if (zone.kind == EVERYWHERE) {
+        return true;
+    }
+    let d = between(zone.low, p);
+    if (zone.kind == SPHERE) {
+        return dot(d, d) < zone.radius * zone.radius;
+    }
+    let along = dot(d, zone.axis);
+    let away = d - along * zone.axis;
+    return along >= 0.0 && along < zone.height && dot(away, away) < zone.radius * zone.radius;
+}
+
+fn holds(zone: u32, p: vec3<u32>) -> bool {
+    if (zone == 0u || zone > CHAMBERS) {
+        return contains(zones[zone], p);
+    }
+    for (var earlier = 1u; earlier < zone; earlier++) {
+        if (contains(zones[earlier], p)) {
+            return false;
+        }
+    }
+    return contains(zones[zone], p);
+}
+
+fn share64(slot: u32, value: vec2<u32>) {
+    let old = atomicAdd(&shared_sums[slot], value.x);
+    atomicAdd(&shared_sums[slot + 1u], value.y + select(0u, 1u, old + value.x < old));
+}
+
+fn plus(sum: vec2<u32>, low: u32, high: u32) -> vec2<u32> {
+    let total = sum.x + low;
+    return vec2<u32>(total, sum.y + high + select(0u, 1u, total < low));
+}
+
+fn plus_signed(sum: vec2<u32>, value: i32) -> vec2<u32> {
+    return plus(sum, bitcast<u32>(value), select(0u, 0xffffffffu, value < 0));
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn tally(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    if (thread < WORDS) {
+        atomicStore(&shared_sums[thread], 0u);
+    }
+    workgroupBarrier();
+    let zone = group.y;
+    let gas = group.z;
+    let count = step.count + step.newborns;
+    var number = 0u;
+    var x = vec2<u32>(0u);
+    var y = vec2<u32>(0u);
+    var z = vec2<u32>(0u);
+    var kinetic_sum = vec2<u32>(0u);
+    var spin_sum = vec2<u32>(0u);
+    for (var k = 0u; k < CHUNK_LOOPS; k++) {
+        let i = (group.x * CHUNK_LOOPS + k) * WORKGROUP + thread;
+        if (i >= count) {
+            break;
+        }
+        let particle = particles[i];
+        if (gas_of(particle.tag) != gas || !holds(zone, particle.position)) {
+            continue;
+        }
+        let velocity = particle.velocity * VELOCITY_SCALE;
+        let kinetic = 0.5 * dot(particle.velocity, particle.velocity) * ENERGY_SCALE;
+        let spin = particle.spin * ENERGY_SCALE;
+        if (any(abs(velocity) >= vec3<f32>(1073741824.0)) || kinetic >= ENERGY_RANGE || spin >= ENERGY_RANGE) {
+            atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+            continue;
+        }
+        number++;
+        let whole = vec3<i32>(round(velocity));
+        x = plus_signed(x, whole.x);
+        y = plus_signed(y, whole.y);
+        z = plus_signed(z, whole.z);
+        kinetic_sum = plus(kinetic_sum, u32(round(kinetic)), 0u);
+        spin_sum = plus(spin_sum, u32(round(spin)), 0u);
+    }
+    if (number > 0u) {
+        share64(0u, vec2<u32>(number, 0u));
+        share64(2u, x);
+        share64(4u, y);
+        share64(6u, z);
+        share64(8u, kinetic_sum);
+        share64(10u, spin_sum);
+    }
+    workgroupBarrier();
+    if (thread < WORDS / 2u) {
+        let slot = (zone * GASES + gas) * WORDS + 2u * thread;
+        add64(slot, atomicLoad(&shared_sums[2u * thread]), atomicLoad(&shared_sums[2u * thread + 1u]));
+    }
+}

@@ -1,0 +1,93 @@
+//! Device time of named phases. A timed pass is split at every phase, which costs a little; so only a
+//! few steps are timed, and the others run in one pass.
+
+use super::{Device, GpuError};
+
+/// Room for the phases of one timed step.
+const SLOTS: u32 = 64;
+
+/// The timestamps of one timed stretch of commands.
+pub struct PhaseTimer {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    period: f64,
+}
+
+/// Seconds by phase name, in the order they ran.
+pub type PhaseSeconds = Vec<(&'static str, f64)>;
+
+impl PhaseTimer {
+    /// `None` on a device without timestamps.
+    ///
+    /// # Errors
+    /// If the device has no memory for it.
+    pub fn new(device: &Device) -> Result<Option<PhaseTimer>, GpuError> {
+        if !device.has_timestamps() {
+            return Ok(None);
+        }
+        Ok(Some(PhaseTimer {
+            queries: device.query_set(2 * SLOTS),
+            resolved: device.resolve(u64::from(SLOTS) * 16)?,
+            period: device.timestamp_period(),
+        }))
+    }
+
+    pub fn bytes() -> u64 {
+        u64::from(SLOTS) * 16
+    }
+
+    /// Copies the timestamps to `staging` at `offset`.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, phases: usize, staging: &wgpu::Buffer, offset: u64) {
+        let count = 2 * phases as u32;
+        encoder.resolve_query_set(&self.queries, 0..count, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, u64::from(count) * 8);
+    }
+
+    /// Seconds of each phase from the bytes that [`PhaseTimer::resolve`] copied.
+    pub fn seconds(&self, names: &[&'static str], bytes: &[u8]) -> PhaseSeconds {
+        let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes[..names.len() * 16]);
+        names
+            .iter()
+            .zip(stamps.chunks_exact(2))
+            .map(|(name, stamp)| (*name, stamp[1].saturating_sub(stamp[0]) as f64 * self.period * 1e-9))
+            .collect()
+    }
+}
+
+/// A compute pass, cut into phases where it is timed.
+pub struct TimedPass<'a> {
+    encoder: &'a mut wgpu::CommandEncoder,
+    timer: Option<&'a PhaseTimer>,
+    pass: Option<wgpu::ComputePass<'static>>,
+    names: Vec<&'static str>,
+}
+
+impl<'a> TimedPass<'a> {
+    pub fn new(encoder: &'a mut wgpu::CommandEncoder, timer: Option<&'a PhaseTimer>) -> TimedPass<'a> {
+        TimedPass { encoder, timer, pass: None, names: Vec::new() }
+    }
+
+    /// The pass in which the dispatches of `name` go.
+    pub fn phase(&mut self, name: &'static str) -> &mut wgpu::ComputePass<'static> {
+        let slot = self.names.len() as u32;
+        if let Some(timer) = self.timer.filter(|_| slot < SLOTS) {
+            self.pass = None;
+            self.names.push(name);
+            let writes = wgpu::ComputePassTimestampWrites {
+                query_set: &timer.queries,
+                beginning_of_pass_write_index: Some(2 * slot),
+                end_of_pass_write_index: Some(2 * slot + 1),
+            };
+            let descriptor = wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes: Some(writes) };
+            self.pass = Some(self.encoder.begin_compute_pass(&descriptor).forget_lifetime());
+        }
+        let encoder = &mut *self.encoder;
+        self.pass
+            .get_or_insert_with(|| encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()).forget_lifetime())
+    }
+
+    /// Ends the pass; the names of the timed phases in order.
+    pub fn end(self) -> Vec<&'static str> {
+        self.names
+    }
+}

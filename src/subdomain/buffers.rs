@@ -1,0 +1,225 @@
+//! The buffers of a subdomain, named as the shaders name them.
+
+use crate::gpu::{Device, GpuError};
+use crate::plan::Plan;
+
+use super::counters;
+use super::layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuTriangle, GpuZone};
+use super::walls::Walls;
+
+/// Cells per thread of the scan.
+pub const CHUNK: u64 = 64;
+/// Words per zone and gas (`shaders/tally.wgsl`).
+pub const ZONE_WORDS: usize = 12;
+/// Words per surface (`shaders/advect.wgsl`).
+pub const SURFACE_WORDS: usize = 8;
+/// Words per block (`shaders/blocks.wgsl`).
+pub const BLOCK_WORDS: usize = 4;
+
+/// What does not grow with the number of particles.
+pub struct FixedBuffers {
+    pub step: wgpu::Buffer,
+    pub gases: wgpu::Buffer,
+    pub counters: wgpu::Buffer,
+    pub cell_count: wgpu::Buffer,
+    pub chunk_sums: wgpu::Buffer,
+    pub cell_start: wgpu::Buffer,
+    pub wall_start: wgpu::Buffer,
+    pub wall_list: wgpu::Buffer,
+    pub triangles: wgpu::Buffer,
+    pub cell_class: wgpu::Buffer,
+    pub zones: wgpu::Buffer,
+    pub zone_sums: wgpu::Buffer,
+    pub surface_sums: wgpu::Buffer,
+    pub block_sums: wgpu::Buffer,
+    /// Sizes of the indirect dispatches over lists, and those over the particles that choose again: a
+    /// dispatch may not write the buffer that it takes its size from.
+    pub dispatches: wgpu::Buffer,
+    pub rechoose_dispatches: wgpu::Buffer,
+}
+
+/// Lists of a step (`shaders/shared/lists.wgsl`).
+const LISTS: u64 = 32;
+
+/// Words of the tallies of one interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TallyWords {
+    pub zones: usize,
+    pub surfaces: usize,
+    pub blocks: usize,
+}
+
+impl FixedBuffers {
+    pub fn new(
+        device: &Device,
+        plan: &Plan,
+        walls: &Walls,
+        zones: &[GpuZone],
+        gases: &[GpuGas],
+        words: TallyWords,
+        step_slots: u64,
+    ) -> Result<FixedBuffers, GpuError> {
+        // Without collisions nothing is binned.
+        let cells = if plan.method == crate::scene::Method::None { 4 } else { plan.grid.cell_count() as u64 };
+        let cells = cells.next_multiple_of(4);
+        let mut table = [GpuGas::default(); 16];
+        table[..gases.len()].copy_from_slice(gases);
+        let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
+        device.write(&gas_buffer, 0, &table);
+        Ok(FixedBuffers {
+            step: device.uniform("step", step_slots * step_stride(device))?,
+            gases: gas_buffer,
+            counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
+            cell_count: device.storage::<u32>("cell_count", cells)?,
+            chunk_sums: device.storage::<u32>("chunk_sums", cells.div_ceil(CHUNK))?,
+            cell_start: device.storage::<u32>("cell_start", cells + 1)?,
+            wall_start: device.storage_of("wall_start", &walls.start)?,
+            wall_list: device.storage_of("wall_list", &walls.list)?,
+            triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
+            cell_class: device.storage_of("cell_class", &walls.class)?,
+            zones: device.storage_of("zones", zones)?,
+            zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
+            surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
+            dispatches: device.indirect("dispatches", LISTS)?,
+            rechoose_dispatches: device.indirect("rechoose_dispatches", LISTS)?,
+            block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
+        })
+    }
+}
+
+/// Distance of two `step` uniforms, bytes.
+pub fn step_stride(device: &Device) -> u64 {
+    let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
+    crate::gpu::STEP_BYTES.next_multiple_of(alignment.max(1))
+}
+
+/// What grows with the number of particles.
+pub struct ParticleBuffers {
+    pub capacity: u64,
+    /// Entries of a neighbour list.
+    pub list: u64,
+    pub particles: wgpu::Buffer,
+    pub newborns: wgpu::Buffer,
+    pub bins: wgpu::Buffer,
+    pub slots: wgpu::Buffer,
+    pub sorted: wgpu::Buffer,
+    pub flights: wgpu::Buffer,
+    pub middles: wgpu::Buffer,
+    pub neighbours: wgpu::Buffer,
+    pub neighbour_count: wgpu::Buffer,
+    pub choices: wgpu::Buffer,
+    pub pairs: wgpu::Buffer,
+    pub near_walls: wgpu::Buffer,
+    pub screened: wgpu::Buffer,
+    pub bouncing: wgpu::Buffer,
+    pub cells: wgpu::Buffer,
+    pub touched: wgpu::Buffer,
+    pub rechoose: wgpu::Buffer,
+}
+
+impl ParticleBuffers {
+    /// Room for `capacity` particles (rounded up) with `list` neighbours each.
+    pub fn new(
+        device: &Device,
+        capacity: u64,
+        newborns: u64,
+        list: u64,
+        collisions: bool,
+    ) -> Result<ParticleBuffers, GpuError> {
+        let capacity = capacity.max(64).next_multiple_of(64);
+        // Without collisions the particles are flown in place.
+        let scratch = if collisions { capacity } else { 4 };
+        Ok(ParticleBuffers {
+            capacity,
+            list,
+            particles: device.storage::<GpuParticle>("particles", capacity)?,
+            newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
+            bins: device.storage::<[u32; 2]>("bins", scratch)?,
+            slots: device.storage::<[u32; 2]>("slots", scratch)?,
+            sorted: device.storage::<GpuParticle>("sorted", scratch)?,
+            flights: device.storage::<GpuFlight>("flights", scratch)?,
+            middles: device.storage::<u32>("middles", scratch)?,
+            cells: device.storage::<u32>("cells", scratch)?,
+            touched: device.storage::<u32>("touched", scratch)?,
+            rechoose: device.storage::<u32>("rechoose", scratch)?,
+            neighbours: device.storage::<u32>("neighbours", scratch * list)?,
+            neighbour_count: device.storage::<u32>("neighbour_count", scratch)?,
+            choices: device.storage::<[u32; 2]>("choices", scratch)?,
+            pairs: device.storage::<[u32; 2]>("pairs", scratch / 2)?,
+            near_walls: device.storage::<u32>("near_walls", scratch)?,
+            screened: device.storage::<u32>("screened", scratch)?,
+            bouncing: device.storage::<u32>("bouncing", capacity)?,
+        })
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.buffers().iter().map(|buffer| buffer.size()).sum()
+    }
+
+    fn buffers(&self) -> [&wgpu::Buffer; 17] {
+        [
+            &self.particles,
+            &self.newborns,
+            &self.bins,
+            &self.slots,
+            &self.sorted,
+            &self.flights,
+            &self.middles,
+            &self.neighbours,
+            &self.neighbour_count,
+            &self.choices,
+            &self.pairs,
+            &self.near_walls,
+            &self.screened,
+            &self.bouncing,
+            &self.cells,
+            &self.touched,
+            &self.rechoose,
+        ]
+    }
+}
+
+/// The buffer that a shader calls `name`. Three kernels call their own tally `sums`.
+pub fn by_name<'a>(
+    fixed: &'a FixedBuffers,
+    particle: &'a ParticleBuffers,
+    kernel: &str,
+    name: &str,
+) -> Option<&'a wgpu::Buffer> {
+    Some(match (kernel, name) {
+        ("tally", "sums") => &fixed.zone_sums,
+        ("bounce", "sums") => &fixed.surface_sums,
+        ("blocks", "sums") => &fixed.block_sums,
+        (_, "step") => &fixed.step,
+        (_, "gases") => &fixed.gases,
+        (_, "counters") => &fixed.counters,
+        (_, "cell_count") => &fixed.cell_count,
+        (_, "chunk_sums") => &fixed.chunk_sums,
+        (_, "cell_start") => &fixed.cell_start,
+        (_, "wall_start") => &fixed.wall_start,
+        (_, "wall_list") => &fixed.wall_list,
+        (_, "triangles") => &fixed.triangles,
+        (_, "cell_class") => &fixed.cell_class,
+        ("settle", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
+        (_, "dispatches") => &fixed.dispatches,
+        (_, "zones") => &fixed.zones,
+        (_, "particles") => &particle.particles,
+        (_, "newborns") => &particle.newborns,
+        (_, "bins") => &particle.bins,
+        (_, "slots") => &particle.slots,
+        (_, "sorted") => &particle.sorted,
+        (_, "flights") => &particle.flights,
+        (_, "middles") => &particle.middles,
+        (_, "neighbours") => &particle.neighbours,
+        (_, "neighbour_count") => &particle.neighbour_count,
+        (_, "choices") => &particle.choices,
+        (_, "pairs") => &particle.pairs,
+        (_, "near_walls") => &particle.near_walls,
+        (_, "screened") => &particle.screened,
+        (_, "cells") => &particle.cells,
+        (_, "touched") => &particle.touched,
+        (_, "rechoose") => &particle.rechoose,
+        (_, "bouncing") => &particle.bouncing,
+        _ => return None,
+    })
+}

@@ -1,0 +1,83 @@
+//! Values of the shaders' override constants: what specialises the kernels to a scene. Each is written
+//! once, here, from the plan.
+
+use crate::plan::Plan;
+use crate::scene::Method;
+
+use super::buffers::CHUNK;
+use super::scales::Scales;
+use super::walls::Walls;
+
+/// Threads of a workgroup. Part of the plan's bits: a driver may contract differently for another size.
+pub const WORKGROUP: u32 = 64;
+/// Random numbers of collisions (the table of purposes is `gas::Purpose`).
+const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
+
+/// What the scene has, and so what is compiled in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Features {
+    pub collisions: bool,
+    pub spin: bool,
+    pub orifices: bool,
+    pub surfaces: bool,
+}
+
+impl Features {
+    pub fn of(plan: &Plan, surfaces: usize) -> Features {
+        Features {
+            collisions: plan.method != Method::None,
+            spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
+            orifices: plan.injected_particles > 0,
+            surfaces: surfaces > 0,
+        }
+    }
+}
+
+pub fn constants(
+    plan: &Plan,
+    features: Features,
+    walls: &Walls,
+    scales: &Scales,
+    list: u64,
+) -> Vec<(&'static str, f64)> {
+    let grid = &plan.grid;
+    let flag = |on: bool| f64::from(u8::from(on));
+    let blocks = block_counts(plan);
+    vec![
+        ("WORKGROUP", f64::from(WORKGROUP)),
+        ("CELLS_X", f64::from(grid.cells[0])),
+        ("CELLS_Y", f64::from(grid.cells[1])),
+        ("CELLS_Z", f64::from(grid.cells[2])),
+        ("CELL_BITS", f64::from(grid.cell_bits)),
+        ("QUANTUM", grid.quantum()),
+        ("QUANTA", 1.0 / grid.quantum()),
+        ("TOLERANCE", walls.tolerance),
+        ("CHUNK", CHUNK as f64),
+        ("LIST", list as f64),
+        ("ROUNDS", f64::from(plan.rounds)),
+        ("DIAMETER", plan.diameter),
+        ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
+        ("SEED_HIGH", ((((plan.seed >> 32) << 8) | PURPOSE_COLLISION) & 0xffff_ffff) as f64),
+        ("COLLISIONS", flag(features.collisions)),
+        ("SPIN", flag(features.spin)),
+        ("ORIFICES", flag(features.orifices)),
+        ("SURFACES", flag(features.surfaces)),
+        ("IMPULSE_SCALE", scales.velocity),
+        ("GASES", plan.gases.len() as f64),
+        ("CHAMBERS", plan.chambers.len() as f64),
+        ("VELOCITY_SCALE", scales.velocity),
+        ("ENERGY_SCALE", scales.energy),
+        ("BLOCK_BITS", f64::from(plan.block_cells_log2)),
+        ("BLOCKS_X", f64::from(blocks[0])),
+        ("BLOCKS_Y", f64::from(blocks[1])),
+        ("BLOCKS", f64::from(blocks.iter().product::<u32>())),
+        ("TIME_STEP", plan.time_step),
+        ("LEVELS", f64::from(plan.ladder_levels)),
+        ("BLOCK_ENERGY_SCALE", scales.block_energy),
+    ]
+}
+
+/// Coarse blocks per axis.
+pub fn block_counts(plan: &Plan) -> [u32; 3] {
+    plan.grid.cells.map(|cells| ((cells - 1) >> plan.block_cells_log2) + 1)
+}

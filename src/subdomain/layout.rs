@@ -1,0 +1,104 @@
+//! Rust twins of the structs in the shaders. `tests/layouts.rs` holds them against naga's offsets.
+
+use bytemuck::{Pod, Zeroable};
+
+/// `Step` of `shaders/shared/step.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuStep {
+    pub count: u32,
+    pub newborns: u32,
+    pub newborn_offset: u32,
+    pub newborn_first_id: u32,
+    pub index: u32,
+    pub dt: f32,
+    pub round: u32,
+    pub pad: u32,
+}
+
+/// `Particle` of `shaders/shared/particle.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuParticle {
+    /// Quanta of the grid.
+    pub position: [u32; 3],
+    /// Gas in the top 4 bits, id below.
+    pub tag: u32,
+    /// m/s.
+    pub velocity: [f32; 3],
+    /// Internal energy over the reference mass, (m/s)^2.
+    pub spin: f32,
+}
+
+impl GpuParticle {
+    pub const ID_MASK: u32 = (1 << 28) - 1;
+
+    pub fn tag(gas: u8, id: u32) -> u32 {
+        (u32::from(gas) << 28) | (id & Self::ID_MASK)
+    }
+
+    pub fn id(&self) -> u32 {
+        self.tag & Self::ID_MASK
+    }
+
+    pub fn gas(&self) -> u8 {
+        (self.tag >> 28) as u8
+    }
+}
+
+/// `Newborn` of `shaders/inject.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuNewborn {
+    /// At its virtual position x0 = place - v start.
+    pub particle: GpuParticle,
+    /// s from the start of its step.
+    pub start: f32,
+    pub pad: [u32; 3],
+}
+
+/// `Flight` of `shaders/shared/particle.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuFlight {
+    pub start: f32,
+    pub wall: f32,
+    pub partner: u32,
+    pub collisions: u32,
+}
+
+/// `Triangle` of `shaders/shared/walls.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuTriangle {
+    pub a: [u32; 3],
+    pub sense: f32,
+    pub b: [u32; 3],
+    pub surface: u32,
+    pub c: [u32; 3],
+    pub pad: u32,
+    pub normal: [f32; 3],
+    pub pad2: u32,
+}
+
+/// `Zone` of `shaders/tally.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuZone {
+    pub low: [u32; 3],
+    pub kind: u32,
+    pub high: [u32; 3],
+    pub radius: f32,
+    pub axis: [f32; 3],
+    pub height: f32,
+}
+
+/// `Gas` of `shaders/shared/gas.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuGas {
+    pub mass: f32,
+    pub exchange: f32,
+    pub inverse_beta: f32,
+    pub inverse_beta1: f32,
+}

@@ -1,0 +1,108 @@
+//! Particles, gases and regions between the host's SI and the device's units.
+
+use crate::gas::Particle;
+use crate::geometry::Grid;
+use crate::plan::Plan;
+use crate::scene::Region;
+
+use super::layout::{GpuGas, GpuNewborn, GpuParticle, GpuZone};
+use super::scales::Scales;
+
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum StateError {
+    #[error("particle {id} at ({:.6}, {:.6}, {:.6}) m is outside the grid of cells", position[0], position[1], position[2])]
+    OutsideGrid { id: u32, position: [f64; 3] },
+}
+
+impl GpuParticle {
+    /// # Errors
+    /// If the position is outside the grid.
+    pub fn from_host(particle: &Particle, grid: &Grid, scales: &Scales) -> Result<GpuParticle, StateError> {
+        let outside = StateError::OutsideGrid { id: particle.id, position: particle.position };
+        Ok(GpuParticle {
+            position: grid.to_fixed(particle.position).ok_or(outside)?,
+            tag: GpuParticle::tag(particle.gas, particle.id),
+            velocity: particle.velocity.map(|v| v as f32),
+            spin: (particle.spin_energy / scales.reference_mass) as f32,
+        })
+    }
+
+    pub fn to_host(&self, grid: &Grid, scales: &Scales) -> Particle {
+        Particle {
+            id: self.id(),
+            gas: self.gas(),
+            position: grid.to_metres(self.position),
+            velocity: self.velocity.map(f64::from),
+            spin_energy: f64::from(self.spin) * scales.reference_mass,
+        }
+    }
+}
+
+impl GpuNewborn {
+    /// A particle that enters at its position `start` s after the start of a step.
+    ///
+    /// # Errors
+    /// If the position is outside the grid.
+    pub fn from_host(particle: &Particle, start: f64, grid: &Grid, scales: &Scales) -> Result<GpuNewborn, StateError> {
+        let mut born = GpuParticle::from_host(particle, grid, scales)?;
+        let start = start as f32;
+        for axis in 0..3 {
+            // The virtual position x0 = x - v t, which may lie behind the orifice.
+            let back = (f64::from(born.velocity[axis]) * f64::from(start) / grid.quantum()).round() as i64;
+            born.position[axis] = born.position[axis].wrapping_sub(back as u32);
+        }
+        Ok(GpuNewborn { particle: born, start, pad: [0; 3] })
+    }
+}
+
+/// The rows of the device's gas table, by gas index.
+pub fn gas_table(plan: &Plan) -> Vec<GpuGas> {
+    let heaviest = plan.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
+    plan.gases
+        .iter()
+        .map(|gas| {
+            let beta = 0.5 * gas.spin_dof;
+            let has_spin = beta > 0.0;
+            GpuGas {
+                mass: (gas.molar_mass / heaviest) as f32,
+                exchange: if has_spin { gas.exchange_probability as f32 } else { 0.0 },
+                inverse_beta: if has_spin { (1.0 / beta) as f32 } else { 0.0 },
+                inverse_beta1: (1.0 / (beta + 1.0)) as f32,
+            }
+        })
+        .collect()
+}
+
+/// A region as `shaders/tally.wgsl` tests it; `None` is everywhere.
+pub fn zone_of(region: Option<&Region>, grid: &Grid) -> GpuZone {
+    let quantum = grid.quantum();
+    // A corner outside the grid is moved to its edge: there are no particles beyond.
+    let fixed = |point: [f64; 3]| -> [u32; 3] {
+        std::array::from_fn(|axis| {
+            let limit = f64::from(grid.cells[axis]) * f64::from(1u32 << grid.cell_bits);
+            ((point[axis] - grid.origin[axis]) / quantum).ceil().clamp(0.0, limit) as u32
+        })
+    };
+    let mut zone = GpuZone::default();
+    match region {
+        None => {}
+        Some(Region::Box { min, max }) => {
+            zone.kind = 1;
+            zone.low = fixed(*min);
+            zone.high = fixed(*max);
+        }
+        Some(Region::Sphere { center, radius }) => {
+            zone.kind = 2;
+            zone.low = fixed(*center);
+            zone.radius = *radius as f32;
+        }
+        Some(Region::Cylinder { base, axis, radius, height }) => {
+            zone.kind = 3;
+            zone.low = fixed(*base);
+            zone.axis = axis.map(|a| a as f32);
+            zone.radius = *radius as f32;
+            zone.height = *height as f32;
+        }
+    }
+    zone
+}

@@ -1,0 +1,78 @@
+//! What a device measured in one step interval, decoded from its integer tallies.
+
+use super::buffers::{BLOCK_WORDS, SURFACE_WORDS, TallyWords, ZONE_WORDS};
+use super::counters::{self, Counters};
+
+/// Sums over the particles of one gas in one zone and over the tallies of an interval, in tally units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ZoneSum {
+    pub number: i64,
+    pub velocity: [i64; 3],
+    pub kinetic: i64,
+    pub spin: i64,
+}
+
+/// What a patch of wall received in an interval, in tally units over the reference mass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SurfaceSum {
+    pub impulse: [i64; 3],
+    pub hits: i64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BlockSum {
+    pub number: u64,
+    pub energy: u64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tallies {
+    pub counters: Counters,
+    /// Zone-major, then gas.
+    pub zones: Vec<ZoneSum>,
+    pub surfaces: Vec<SurfaceSum>,
+    pub blocks: Vec<BlockSum>,
+    /// Particles that would cross more than a cell in a step of each level of the ladder.
+    pub fast: Vec<u32>,
+}
+
+fn long(words: &[u32], index: usize) -> u64 {
+    u64::from(words[index]) | (u64::from(words[index + 1]) << 32)
+}
+
+fn signed(words: &[u32], index: usize) -> i64 {
+    long(words, index).cast_signed()
+}
+
+impl Tallies {
+    /// From the counters, zones, surfaces and blocks in this order.
+    pub fn decode(words: &[u32], sizes: TallyWords, blocks: usize) -> Tallies {
+        let mut counter_words = [0; counters::WORDS];
+        counter_words.copy_from_slice(&words[..counters::WORDS]);
+        let rest = &words[counters::WORDS..];
+        let (zones, rest) = rest.split_at(sizes.zones);
+        let (surfaces, rest) = rest.split_at(sizes.surfaces);
+        let block_words = &rest[..sizes.blocks];
+        Tallies {
+            counters: Counters::from_words(&counter_words),
+            zones: zones
+                .chunks_exact(ZONE_WORDS)
+                .map(|w| ZoneSum {
+                    number: signed(w, 0),
+                    velocity: [signed(w, 2), signed(w, 4), signed(w, 6)],
+                    kinetic: signed(w, 8),
+                    spin: signed(w, 10),
+                })
+                .collect(),
+            surfaces: surfaces
+                .chunks_exact(SURFACE_WORDS)
+                .map(|w| SurfaceSum { impulse: [signed(w, 0), signed(w, 2), signed(w, 4)], hits: signed(w, 6) })
+                .collect(),
+            blocks: block_words[..blocks * BLOCK_WORDS]
+                .chunks_exact(BLOCK_WORDS)
+                .map(|w| BlockSum { number: long(w, 0), energy: long(w, 2) })
+                .collect(),
+            fast: block_words[blocks * BLOCK_WORDS..].to_vec(),
+        }
+    }
+}

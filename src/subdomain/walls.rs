@@ -1,0 +1,72 @@
+//! The walls as the device sees them: triangles in quanta, and the lists of the cells they touch.
+
+use crate::geometry::{CellClass, Grid, TriangleGrid};
+
+use super::layout::GpuTriangle;
+
+/// No surface tally.
+const NOBODY: u32 = u32::MAX;
+
+/// How far behind a wall a particle may be by rounding, and how far a triangle reaches beyond its edges,
+/// as a share of the longest side of the vessel. f32 sums of coordinates err by some 1e-7 of it.
+const TOLERANCE: f64 = 1e-6;
+
+pub struct Walls {
+    pub triangles: Vec<GpuTriangle>,
+    /// First entry of each cell in `list`, and the end.
+    pub start: Vec<u32>,
+    pub list: Vec<u32>,
+    /// Two bits per cell.
+    pub class: Vec<u32>,
+    /// m.
+    pub tolerance: f64,
+}
+
+impl Walls {
+    /// The tolerance of walls on this grid, m; also the margin with which triangles are put into cells.
+    pub fn tolerance(grid: &Grid) -> f64 {
+        let cells = f64::from(grid.cells.iter().copied().max().unwrap_or(1));
+        TOLERANCE * cells * grid.cell
+    }
+
+    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied.
+    pub fn new(triangle_grid: &TriangleGrid, grid: &Grid, patch: &[u32]) -> Walls {
+        let triangles = triangle_grid
+            .triangles
+            .iter()
+            .map(|triangle| {
+                let mut order = [0, 1, 2];
+                order.sort_by_key(|&corner| triangle.ids[corner]);
+                let corner = |k: usize| triangle.corners[order[k]].map(|quanta| quanta as u32);
+                let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
+                GpuTriangle {
+                    a: corner(0),
+                    sense: if even { 1.0 } else { -1.0 },
+                    b: corner(1),
+                    surface: patch.get(triangle.source as usize).copied().unwrap_or(NOBODY),
+                    c: corner(2),
+                    pad: 0,
+                    normal: triangle.normal,
+                    pad2: 0,
+                }
+            })
+            .collect();
+        let mut class = vec![0u32; triangle_grid.class.len().div_ceil(16)];
+        for (cell, kind) in triangle_grid.class.iter().enumerate() {
+            let bits = match kind {
+                CellClass::Clear => 0,
+                CellClass::Gas => 1,
+                CellClass::Cut => 2,
+                CellClass::Solid => 3,
+            };
+            class[cell / 16] |= bits << (2 * (cell % 16));
+        }
+        Walls {
+            triangles,
+            start: triangle_grid.start.clone(),
+            list: triangle_grid.list.clone(),
+            class,
+            tolerance: Walls::tolerance(grid),
+        }
+    }
+}
