@@ -30,7 +30,7 @@ pub(super) fn gas(raw: &At<RawGas>, units: UnitSystem) -> Result<Gas, Problem> {
 fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
     const KEYS: &str = "exactly one of `cp`, `cv`, `gamma`";
     let (cv, span, found) = match (&raw.value.cp, &raw.value.cv, &raw.value.gamma) {
-        (None, None, None) => return Err(Problem::missing(&raw.span, "cp", KEYS)),
+        (None, None, None) => return Err(Problem::value(&raw.span, "none of `cp`, `cv`, `gamma`", KEYS)),
         (Some(cp), None, None) => {
             let at = At { value: single_heat_capacity(cp)?, span: cp.span.clone() };
             (positive(&at, Quantity::MolarHeat, units)? - GAS_CONSTANT, &cp.span, at.value)

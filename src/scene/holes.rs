@@ -105,7 +105,11 @@ fn hole(raw: &At<RawHole>, face: Face, extent: Extent, units: UnitSystem) -> Res
             return Err(Problem::value(&diameter.span, "both `size` and `diameter`", "exactly one of them"));
         }
         (None, None) => {
-            return Err(Problem::missing(&raw.span, "size", "`size` of a rectangle or `diameter` of a circle"));
+            return Err(Problem::value(
+                &raw.span,
+                "neither `size` nor `diameter`",
+                "`size` of a rectangle or `diameter` of a circle",
+            ));
         }
     };
     let center = super::numbers::point(&hole.center, units)?;

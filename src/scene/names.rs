@@ -24,6 +24,7 @@ impl<'a> Names<'a> {
         let mut all = Names { kind, names: Vec::new(), index: HashMap::new() };
         let mut places: Vec<&Range<usize>> = Vec::new();
         for name in names {
+            // A name with a fault still is known, so that what refers to it is not at fault too.
             if let Err(problem) = well_formed(name) {
                 problems.push(problem);
             } else if let Some(&first) = all.index.get(name.value.as_str()) {
@@ -33,9 +34,8 @@ impl<'a> Names<'a> {
                     format!("a name that no other {kind} has"),
                 );
                 problems.push(problem.clash(places[first]));
-            } else {
-                all.index.insert(&name.value, all.names.len());
             }
+            all.index.entry(&name.value).or_insert(all.names.len());
             all.names.push(&name.value);
             places.push(&name.span);
         }

@@ -33,13 +33,26 @@ fn reworded(error: &toml::de::Error) -> Problem {
     }
     if message.starts_with("missing field ") {
         let key = names.first().copied().unwrap_or_default();
-        return Problem::missing(&span, key, format!("`{key}` is required here"));
+        return Problem::missing(&span, key, "a value: the key is required");
     }
     for prefix in ["invalid type: ", "invalid value: ", "invalid length "] {
         if let Some((found, expected)) = message.strip_prefix(prefix).and_then(|rest| rest.split_once(", expected ")) {
-            let found = if prefix == "invalid length " { format!("{found} of them") } else { plain(found) };
-            return Problem::value(&span, found, plain(expected));
+            let found = if prefix == "invalid length " { format!("an array of {found}") } else { plain(found) };
+            let problem = Problem::value(&span, &found, plain(expected));
+            let list_wanted = found == "a table" && expected.contains("sequence");
+            return if list_wanted { problem.hint("a list of tables has double brackets: [[...]]") } else { problem };
         }
+    }
+    if message.starts_with("wanted exactly 1 element") {
+        // The one enum with contents in the format is the region.
+        return Problem::value(
+            &span,
+            "a table that has not exactly one key",
+            "exactly one of `box`, `sphere`, `cylinder`",
+        );
+    }
+    if message.contains("overflow") {
+        return Problem::value(&span, "a number too large to be held", "a finite number");
     }
     Problem::value(&span, "a value of another form", message)
 }
@@ -63,8 +76,19 @@ fn plain(words: &str) -> String {
         "a sequence" => "an array",
         other => other,
     };
-    if let Some(rest) = words.strip_prefix("struct ") {
-        return format!("a table ({})", rest.trim_start_matches("Raw").to_lowercase());
+    if words.starts_with("struct ") {
+        return "a table".to_string();
     }
-    words.replace('`', "").replace("floating point ", "the number ").replace("integer ", "the number ")
+    let words = words.replace('`', "").replace(" as i128", "");
+    for (serde, ours) in [
+        ("floating point ", "the number "),
+        ("integer ", "the number "),
+        ("string ", "the text "),
+        ("boolean ", "the truth value "),
+    ] {
+        if let Some(rest) = words.strip_prefix(serde) {
+            return format!("{ours}{rest}");
+        }
+    }
+    words
 }
