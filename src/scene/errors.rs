@@ -43,11 +43,11 @@ pub struct InvalidScene {
     text: NamedSource<String>,
     #[label("{label}")]
     span: SourceSpan,
-    label: String,
+    label: Box<str>,
     #[label("first one")]
     earlier: Option<SourceSpan>,
     #[help]
-    hint: Option<String>,
+    hint: Option<Box<str>>,
     #[related]
     others: Vec<Problem>,
 }
@@ -63,18 +63,17 @@ impl InvalidScene {
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{}{text}", field.as_ref().map(|f| format!("`{f}`: ")).unwrap_or_default())]
 pub struct Problem {
-    /// Dotted path such as `orifice[0].mass_flow`; empty of a text that is not TOML.
-    field: Option<String>,
-    /// A key below the span that the path ends with, for what is missing.
-    key: Option<String>,
-    text: String,
+    /// Dotted path such as `orifice[0].mass_flow`; `None` of a text that is not TOML. Until the report is
+    /// made only what the path ends with below the span: the key that is missing there.
+    field: Option<Box<str>>,
+    text: Box<str>,
     #[label("{label}")]
     span: SourceSpan,
-    label: String,
+    label: Box<str>,
     #[label("first one")]
     earlier: Option<SourceSpan>,
     #[help]
-    hint: Option<String>,
+    hint: Option<Box<str>>,
 }
 
 impl Problem {
@@ -83,10 +82,9 @@ impl Problem {
         let found = found.into();
         Problem {
             field: None,
-            key: None,
-            text: format!("found {found}, allowed: {}", allowed.as_ref()),
+            text: format!("found {found}, allowed: {}", allowed.as_ref()).into(),
             span: span.clone().into(),
-            label: found,
+            label: found.into(),
             earlier: None,
             hint: None,
         }
@@ -95,19 +93,19 @@ impl Problem {
     /// The table at `span` lacks `key`.
     pub(super) fn missing(span: &Range<usize>, key: &str, allowed: impl AsRef<str>) -> Problem {
         let mut problem = Problem::value(span, format!("no `{key}`"), allowed);
-        problem.key = Some(key.to_string());
+        problem.field = Some(key.into());
         problem
     }
 
     /// The text is not TOML.
     pub(super) fn syntax(span: &Range<usize>, message: &str) -> Problem {
         let mut problem = Problem::value(span, "", "");
-        problem.text = format!("not TOML: {message}");
-        problem.label = "cannot be read".to_string();
+        problem.text = format!("not TOML: {message}").into();
+        problem.label = "cannot be read".into();
         problem
     }
 
-    pub(super) fn hint(mut self, hint: impl Into<String>) -> Problem {
+    pub(super) fn hint(mut self, hint: &str) -> Problem {
         self.hint = Some(hint.into());
         self
     }
@@ -115,7 +113,7 @@ impl Problem {
     /// "did you mean" the candidate nearest to `found`, if one is near.
     pub(super) fn meant<'a>(mut self, found: &str, candidates: impl IntoIterator<Item = &'a str>) -> Problem {
         if let Some(best) = nearest(found, candidates) {
-            self.hint = Some(format!("did you mean `{best}`?"));
+            self.hint = Some(format!("did you mean `{best}`?").into());
         }
         self
     }
@@ -145,12 +143,10 @@ impl SceneError {
         let document = DeTable::parse(text).ok();
         for problem in &mut problems {
             let mut path = document.as_ref().map(|d| field_at(d.get_ref(), &problem.span())).unwrap_or_default();
-            if let Some(key) = &problem.key {
+            if let Some(key) = &problem.field {
                 push_key(&mut path, key);
             }
-            if !path.is_empty() {
-                problem.field = Some(path);
-            }
+            problem.field = (!path.is_empty()).then(|| path.into());
             problem.clamp(text);
         }
         let mut problems = problems.into_iter();

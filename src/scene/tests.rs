@@ -327,6 +327,15 @@ fn what_is_left_out_gets_its_default() {
 }
 
 #[test]
+fn the_smallest_scene_of_the_reference_is_a_scene() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenes.md")).unwrap();
+    let example = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    assert_eq!(parsed(example).walls.len(), 1);
+    // It is the smallest: without its wall it is none.
+    assert!(parse(&example.replace("[[wall]]", "[[probe]]"), "page", Path::new("")).is_err());
+}
+
+#[test]
 fn a_mesh_is_found_from_the_folder_of_the_scene_and_scaled_to_metres() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("bag.stl"), "").unwrap();

@@ -99,6 +99,24 @@ fn files_that_cannot_be_read_are_errors() {
     assert!(matches!(error, SceneError::Unreadable { .. }), "{}", rendered(&error));
 }
 
+/// Depth must not cost stack: not that of arrays, tables, dotted keys or headers.
+#[test]
+fn deeply_nested_texts_are_refused() {
+    const DEPTH: usize = 100_000;
+    for text in [
+        format!("x = {}", "[".repeat(DEPTH)),
+        format!("x = {}1{}", "[".repeat(DEPTH), "]".repeat(DEPTH)),
+        format!("x = {}", "{ x = ".repeat(DEPTH)),
+        format!("{}x = 1", "x.".repeat(DEPTH)),
+        format!("[{}x]", "x.".repeat(DEPTH)),
+        format!("[[gas]]\n[gas{}]", ".x".repeat(DEPTH)),
+        format!("[[chamber]]\nregion{} = 1", ".box".repeat(DEPTH)),
+    ] {
+        let error = scene::parse(&text, "deep.toml", Path::new("")).unwrap_err();
+        assert!(!error.to_string().is_empty());
+    }
+}
+
 fn tank() -> String {
     std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tank.toml")).unwrap()
 }
