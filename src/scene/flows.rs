@@ -1,0 +1,94 @@
+//! Orifices: curves against time, and jets.
+
+use super::errors::Problem;
+use super::gases::mixture;
+use super::names::Names;
+use super::numbers::{bounded, direction, not_negative, point, positive, show};
+use super::raw::{RawJet, RawOrifice};
+use super::raw_values::{At, NumberOr, Numbers};
+use super::types::{Curve, Jet, Orifice, UnitSystem};
+use super::units::Quantity;
+
+const FASTEST_JET: f64 = 20.0;
+
+pub(super) fn orifice(raw: &At<RawOrifice>, gases: &Names, units: UnitSystem) -> Result<Orifice, Problem> {
+    let orifice = &raw.value;
+    let temperature = &orifice.temperature;
+    Ok(Orifice {
+        name: orifice.name.value.clone(),
+        position: point(&orifice.position, units)?,
+        direction: direction(&orifice.direction)?,
+        area: positive(&orifice.area, Quantity::Area, units)?,
+        mass_flow: mass_flow(&orifice.mass_flow, units)?,
+        temperature: match &temperature.value {
+            NumberOr::Number(value) => {
+                let at = At { value: *value, span: temperature.span.clone() };
+                Curve { points: vec![[0.0, positive(&at, Quantity::Temperature, units)?]] }
+            }
+            NumberOr::Array(points) if points.is_empty() => {
+                return Err(Problem::value(
+                    &temperature.span,
+                    "an empty curve",
+                    "a temperature (K), or at least one point [time, K]",
+                ));
+            }
+            NumberOr::Array(points) => curve(points, units, |at| positive(at, Quantity::Temperature, units))?,
+        },
+        mixture: mixture(&orifice.gas, gases)?,
+        jet: orifice.jet.as_ref().map(|jet| self::jet(&jet.value)).transpose()?,
+    })
+}
+
+fn mass_flow(raw: &At<Vec<At<Numbers<2>>>>, units: UnitSystem) -> Result<Curve, Problem> {
+    if raw.value.len() < 2 {
+        let found = match raw.value.len() {
+            0 => "an empty curve",
+            _ => "a curve of one point",
+        };
+        return Err(Problem::value(&raw.span, found, "at least two points [time, mass flow]")
+            .hint("the flow is linear between the points and zero before the first and after the last"));
+    }
+    curve(&raw.value, units, |at| not_negative(at, Quantity::MassFlow, units))
+}
+
+/// Points in order of time, the second number of each read by `ordinate`.
+fn curve(
+    raw: &[At<Numbers<2>>],
+    units: UnitSystem,
+    ordinate: impl Fn(&At<f64>) -> Result<f64, Problem>,
+) -> Result<Curve, Problem> {
+    let mut points: Vec<[f64; 2]> = Vec::with_capacity(raw.len());
+    let mut earlier: Option<&At<f64>> = None;
+    for point in raw {
+        let [time_at, value_at] = &point.value.0;
+        let time = not_negative(time_at, Quantity::Time, units)?;
+        if let (Some(last), Some(previous)) = (points.last(), earlier)
+            && time <= last[0]
+        {
+            let allowed = format!(
+                "a time after that of the point before, {} {}",
+                show(previous.value),
+                units.symbol(Quantity::Time)
+            );
+            return Err(Problem::value(&time_at.span, format!("the time {}", show(time_at.value)), allowed));
+        }
+        points.push([time, ordinate(value_at)?]);
+        earlier = Some(time_at);
+    }
+    Ok(Curve { points })
+}
+
+fn jet(raw: &RawJet) -> Result<Jet, Problem> {
+    let mach = bounded(&raw.mach, Quantity::Pure, UnitSystem::Si, "a number above 0 and at most 20", |mach| {
+        mach > 0.0 && mach <= FASTEST_JET
+    })?;
+    let degrees = match &raw.cone_angle {
+        None => 0.0,
+        Some(angle) => {
+            bounded(angle, Quantity::Pure, UnitSystem::Si, "an angle from 0 to below 90 (degrees)", |degrees| {
+                (0.0..90.0).contains(&degrees)
+            })?
+        }
+    };
+    Ok(Jet { mach, cone_angle: degrees.to_radians() })
+}

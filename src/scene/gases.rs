@@ -1,0 +1,122 @@
+//! Gases and their mixtures.
+//!
+//! cv = cp - R = R / (gamma - 1); the least is 3/2 R, of a gas without internal energy.
+
+use super::errors::Problem;
+use super::names::Names;
+use super::numbers::{bounded, described, positive, show};
+use super::raw::RawGas;
+use super::raw_values::{At, NumberOr, RawMixture};
+use super::types::{GAS_CONSTANT, Gas, Mixture, UnitSystem};
+use super::units::Quantity;
+
+/// Gas indices are packed into few bits on the device.
+pub(super) const MOST_GASES: usize = 16;
+
+/// Heat capacities this near to 3/2 R are those of a monatomic gas, rounded: gamma = 1.67 means 5/3.
+const MONATOMIC: f64 = 1.5 * GAS_CONSTANT;
+const MONATOMIC_TOLERANCE: f64 = 5e-3;
+
+/// Mole fractions may miss one by this much.
+const FRACTION_TOLERANCE: f64 = 1e-9;
+
+pub(super) fn gas(raw: &At<RawGas>, units: UnitSystem) -> Result<Gas, Problem> {
+    let raw_gas = &raw.value;
+    let molar_mass = positive(&raw_gas.molar_mass, Quantity::MolarMass, units)?;
+    Ok(Gas { name: raw_gas.name.value.clone(), molar_mass, molar_cv: molar_cv(raw, units)? })
+}
+
+/// J/(mol K), from whichever of the three keys is given.
+fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
+    const KEYS: &str = "exactly one of `cp`, `cv`, `gamma`";
+    let (cv, span, found) = match (&raw.value.cp, &raw.value.cv, &raw.value.gamma) {
+        (None, None, None) => return Err(Problem::value(&raw.span, "none of `cp`, `cv`, `gamma`", KEYS)),
+        (Some(cp), None, None) => {
+            let at = At { value: single_heat_capacity(cp)?, span: cp.span.clone() };
+            (positive(&at, Quantity::MolarHeat, units)? - GAS_CONSTANT, &cp.span, at.value)
+        }
+        (None, Some(cv), None) => (positive(cv, Quantity::MolarHeat, units)?, &cv.span, cv.value),
+        (None, None, Some(gamma)) => {
+            let ratio = bounded(gamma, Quantity::Pure, units, GAMMA_ALLOWED, |gamma| gamma > 1.0)?;
+            (GAS_CONSTANT / (ratio - 1.0), &gamma.span, gamma.value)
+        }
+        (cp, cv, gamma) => {
+            // Point at the last one given.
+            let spans = [cp.as_ref().map(|a| &a.span), cv.as_ref().map(|a| &a.span), gamma.as_ref().map(|a| &a.span)];
+            let span = spans.into_iter().flatten().max_by_key(|span| span.start).unwrap_or(&raw.span);
+            return Err(Problem::value(span, "a second heat capacity", KEYS));
+        }
+    };
+    if (cv / MONATOMIC - 1.0).abs() <= MONATOMIC_TOLERANCE {
+        return Ok(MONATOMIC);
+    }
+    if cv < MONATOMIC {
+        let allowed = match (&raw.value.cp, &raw.value.cv) {
+            (None, None) => GAMMA_ALLOWED.to_string(),
+            (None, Some(_)) => least_heat_capacity("3/2 R", MONATOMIC, units),
+            _ => least_heat_capacity("5/2 R", MONATOMIC + GAS_CONSTANT, units),
+        };
+        return Err(Problem::value(span, show(found), allowed));
+    }
+    // A ratio next to 1 asks for more internal energy than numbers can hold.
+    if cv > 1e6 * GAS_CONSTANT {
+        return Err(Problem::value(span, show(found), "a heat capacity of at most a million R"));
+    }
+    Ok(cv)
+}
+
+const GAMMA_ALLOWED: &str = "a number above 1 and at most 5/3";
+
+fn least_heat_capacity(name: &str, si: f64, units: UnitSystem) -> String {
+    let least = si / units.factor(Quantity::MolarHeat);
+    described(&format!("at least {name} = {least:.4}"), Quantity::MolarHeat, units)
+}
+
+fn single_heat_capacity(cp: &At<NumberOr<f64>>) -> Result<f64, Problem> {
+    match &cp.value {
+        NumberOr::Number(value) => Ok(*value),
+        NumberOr::Array(coefficients) => Err(Problem::value(
+            &cp.span,
+            format!("an array of {} coefficients", coefficients.len()),
+            "one number: heat capacities that depend on temperature are not supported yet",
+        )
+        .hint("give the heat capacity at a typical temperature of the run")),
+    }
+}
+
+/// Least rotational collision number with which the exchange probability of specification section 3
+/// exists: (1 + zeta/4) / (1 - a/2), a = zeta / (zeta + 4).
+pub(super) fn least_collision_number(gas: &Gas) -> f64 {
+    let zeta = gas.spin_dof();
+    (1.0 + zeta / 4.0) / (1.0 - 0.5 * zeta / (zeta + 4.0))
+}
+
+/// Mole fractions by gas index, in the order of the indices.
+pub(super) fn mixture(raw: &At<RawMixture>, gases: &Names) -> Result<Mixture, Problem> {
+    let fractions = match &raw.value {
+        RawMixture::Pure(name) => {
+            return Ok(Mixture(vec![(gases.find_str(name, &raw.span)?, 1.0)]));
+        }
+        RawMixture::Fractions(fractions) => fractions,
+    };
+    if fractions.is_empty() {
+        return Err(Problem::value(&raw.span, "an empty mixture", "a gas by name, or mole fractions that sum to 1"));
+    }
+    let mut parts = Vec::with_capacity(fractions.len());
+    for (name, fraction) in fractions {
+        let index = gases.find(name)?;
+        parts.push((index, positive(fraction, Quantity::Pure, UnitSystem::Si)?));
+    }
+    parts.sort_by_key(|part| part.0);
+    let sum: f64 = parts.iter().map(|part| part.1).sum();
+    if (sum - 1.0).abs() > FRACTION_TOLERANCE {
+        return Err(Problem::value(&raw.span, format!("mole fractions that sum to {sum:.10}"), "a sum of 1"));
+    }
+    // Left alone where only rounding is off, so that a resolved scene reads back as it was.
+    if (sum - 1.0).abs() > 1e-14 {
+        for part in &mut parts {
+            part.1 /= sum;
+        }
+    }
+    Ok(Mixture(parts))
+}

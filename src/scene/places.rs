@@ -1,0 +1,82 @@
+//! What refers to places: chambers, openings between them, probes and surfaces.
+
+use super::errors::Problem;
+use super::gases::mixture;
+use super::holes::face;
+use super::names::Names;
+use super::numbers::{corners, direction, point, positive};
+use super::raw::{RawChamber, RawOpening, RawProbe, RawRegion, RawShape, RawSurface, RawWall};
+use super::raw_values::At;
+use super::types::{Chamber, Opening, Probe, Region, Surface, UnitSystem};
+use super::units::Quantity;
+
+pub(super) fn region(raw: &RawRegion, units: UnitSystem) -> Result<Region, Problem> {
+    Ok(match raw {
+        RawRegion::Box(raw) => {
+            let (min, max) = corners(&raw.min, &raw.max, units)?;
+            Region::Box { min, max }
+        }
+        RawRegion::Sphere(raw) => Region::Sphere {
+            center: point(&raw.center, units)?,
+            radius: positive(&raw.radius, Quantity::Length, units)?,
+        },
+        RawRegion::Cylinder(raw) => Region::Cylinder {
+            base: point(&raw.base, units)?,
+            axis: direction(&raw.axis)?,
+            radius: positive(&raw.radius, Quantity::Length, units)?,
+            height: positive(&raw.height, Quantity::Length, units)?,
+        },
+    })
+}
+
+/// Only the last chamber may do without a region.
+pub(super) fn chamber(raw: &At<RawChamber>, last: bool, gases: &Names, units: UnitSystem) -> Result<Chamber, Problem> {
+    let chamber = &raw.value;
+    if chamber.region.is_none() && !last {
+        return Err(Problem::missing(&raw.span, "region", "a region for every chamber but the last")
+            .hint("a chamber without region has all gas space that no earlier one has: move it to the end"));
+    }
+    Ok(Chamber {
+        name: chamber.name.value.clone(),
+        region: chamber.region.as_ref().map(|r| region(&r.value, units)).transpose()?,
+        pressure: positive(&chamber.pressure, Quantity::Pressure, units)?,
+        temperature: positive(&chamber.temperature, Quantity::Temperature, units)?,
+        mixture: mixture(&chamber.gas, gases)?,
+    })
+}
+
+pub(super) fn opening(raw: &At<RawOpening>, chambers: &Names, units: UnitSystem) -> Result<Opening, Problem> {
+    let opening = &raw.value;
+    let [first, second] = opening.between.value.as_slice() else {
+        let found = format!("{} names", opening.between.value.len());
+        return Err(Problem::value(&opening.between.span, found, "the names of two chambers"));
+    };
+    let between = [chambers.find(first)?, chambers.find(second)?];
+    if between[0] == between[1] {
+        return Err(Problem::value(&opening.between.span, "the same chamber twice", "the names of two chambers"));
+    }
+    let area = positive(&opening.area, Quantity::Area, units)?;
+    let length = match &opening.length {
+        Some(length) => positive(length, Quantity::Length, units)?,
+        None => area.sqrt(),
+    };
+    Ok(Opening { name: opening.name.value.clone(), between, area, length })
+}
+
+pub(super) fn probe(raw: &At<RawProbe>, units: UnitSystem) -> Result<Probe, Problem> {
+    Ok(Probe { name: raw.value.name.value.clone(), region: region(&raw.value.region.value, units)? })
+}
+
+pub(super) fn surface(raw: &At<RawSurface>, walls: &Names, raw_walls: &[At<RawWall>]) -> Result<Surface, Problem> {
+    let surface = &raw.value;
+    let wall = walls.find(&surface.wall)?;
+    if let Some(given) = &surface.face
+        && raw_walls[wall].value.shape.value != RawShape::Box
+    {
+        let found = format!("a face of the wall {:?}, which is no box", surface.wall.value);
+        return Err(
+            Problem::value(&given.span, found, "`face` of a box").hint("leave `face` out to measure on the whole wall")
+        );
+    }
+    Ok(Surface { name: surface.name.value.clone(), wall, face: surface.face.as_ref().map(|at| face(at.value)) })
+}

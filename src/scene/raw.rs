@@ -1,0 +1,343 @@
+//! The scene file as it is written: names, units and defaults not yet resolved.
+//!
+//! Serde reads these types and schemars describes them, so that the file format, its errors and its
+//! JSON schema cannot drift apart. Unknown keys are refused everywhere. Doc comments here are the
+//! schema's descriptions: they are written for the author of a scene. Units are those of the file
+//! (`units`); docs/scenes.md has the table.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::raw_values::{At, NumberOr, Numbers, RawMixture};
+use super::types::Method;
+
+/// A scene of the corpuscle solver.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "corpuscle scene")]
+pub struct RawScene {
+    /// What the scene shows; the name of the file unless given.
+    pub title: Option<String>,
+    /// Unit system of every number in the file; SI unless given.
+    pub units: Option<RawUnits>,
+    /// Simulated time at the end of the run; the start is 0.
+    pub end_time: At<f64>,
+    /// Seed of all random numbers, 0 to 2^56 - 1; 1 unless given.
+    pub seed: Option<At<i64>>,
+    /// The gases that occur in the scene, 1 to 16.
+    #[serde(default)]
+    pub gas: Vec<At<RawGas>>,
+    /// Rigid walls; at least one.
+    #[serde(default)]
+    pub wall: Vec<At<RawWall>>,
+    /// The initial gas, by region; at least one.
+    #[serde(default)]
+    pub chamber: Vec<At<RawChamber>>,
+    /// Openings between chambers that the walls do not tell of themselves (those of mesh files).
+    #[serde(default)]
+    pub opening: Vec<At<RawOpening>>,
+    /// Where gas flows in.
+    #[serde(default)]
+    pub orifice: Vec<At<RawOrifice>>,
+    /// Regions in which the state of the gas is averaged.
+    #[serde(default)]
+    pub probe: Vec<At<RawProbe>>,
+    /// Walls or faces on which pressure and impulse are measured.
+    #[serde(default)]
+    pub surface: Vec<At<RawSurface>>,
+    /// What the plan otherwise decides.
+    #[serde(default)]
+    pub model: RawModel,
+    /// How much is written.
+    #[serde(default)]
+    pub output: RawOutput,
+}
+
+/// Unit system of a scene file.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub enum RawUnits {
+    /// kg, m, s, K, Pa, J.
+    #[serde(rename = "SI")]
+    Si,
+    /// kg, mm, ms, K, GPa, J.
+    #[serde(rename = "kg-mm-ms")]
+    KgMmMs,
+    /// t, mm, s, K, MPa, mJ.
+    #[serde(rename = "t-mm-s")]
+    TMmS,
+}
+
+/// A gas; exactly one of `cp`, `cv`, `gamma`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawGas {
+    /// Unique among the gases.
+    pub name: At<String>,
+    /// Mass per mole (SI: kg/mol).
+    pub molar_mass: At<f64>,
+    /// Molar heat capacity at constant pressure (SI: J/(mol K)), at least 5/2 R.
+    #[schemars(with = "Option<f64>")]
+    pub cp: Option<At<NumberOr<f64>>>,
+    /// Molar heat capacity at constant volume (SI: J/(mol K)), at least 3/2 R.
+    pub cv: Option<At<f64>>,
+    /// Ratio of the heat capacities, above 1 and at most 5/3.
+    pub gamma: Option<At<f64>>,
+}
+
+/// A rigid wall; which keys apply depends on `shape`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawWall {
+    /// Unique among the walls.
+    pub name: At<String>,
+    /// The kind of surface.
+    pub shape: At<RawShape>,
+    /// On which side the gas is; not given for what has gas on both sides (a box with `thickness`, a plane).
+    pub gas: Option<At<RawSide>>,
+    /// box: corner of least coordinates (of the cavity, with `thickness`).
+    pub min: Option<At<Numbers<3>>>,
+    /// box: corner of greatest coordinates.
+    pub max: Option<At<Numbers<3>>>,
+    /// box: thickness of the solid shell around the cavity; plane: of the plate, along `normal`.
+    pub thickness: Option<At<f64>>,
+    /// cylinder: centre of the lower end.
+    pub base: Option<At<Numbers<3>>>,
+    /// cylinder: direction from the lower to the upper end, of any length.
+    pub axis: Option<At<Numbers<3>>>,
+    /// cylinder, sphere: radius.
+    pub radius: Option<At<f64>>,
+    /// cylinder: distance between the ends.
+    pub height: Option<At<f64>>,
+    /// cylinder: facets of the curved side, 3 to 4096; 48 unless given.
+    pub segments: Option<At<i64>>,
+    /// sphere, plane: centre.
+    pub center: Option<At<Numbers<3>>>,
+    /// sphere: subdivisions of an icosahedron, 0 to 7; 3 unless given.
+    pub subdivisions: Option<At<i64>>,
+    /// plane: direction across the plate, of any length.
+    pub normal: Option<At<Numbers<3>>>,
+    /// plane: direction of the first side, perpendicular to `normal`; the second is `normal` x `u`.
+    pub u: Option<At<Numbers<3>>>,
+    /// plane: lengths of the two sides.
+    pub size: Option<At<Numbers<2>>>,
+    /// mesh: path of an STL or OBJ file, relative to the scene file.
+    pub file: Option<At<String>>,
+    /// mesh: length units of the scene per unit of the mesh file; 1 unless given.
+    pub scale: Option<At<f64>>,
+    /// box with `thickness`, plane: holes through the wall.
+    #[serde(default)]
+    pub hole: Vec<At<RawHole>>,
+}
+
+/// The kind of a wall's surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RawShape {
+    Box,
+    Cylinder,
+    Sphere,
+    Plane,
+    Mesh,
+}
+
+/// The side of a surface on which the gas is.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RawSide {
+    Inside,
+    Outside,
+}
+
+/// A face of a box.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub enum RawFace {
+    #[serde(rename = "-x")]
+    XLow,
+    #[serde(rename = "+x")]
+    XHigh,
+    #[serde(rename = "-y")]
+    YLow,
+    #[serde(rename = "+y")]
+    YHigh,
+    #[serde(rename = "-z")]
+    ZLow,
+    #[serde(rename = "+z")]
+    ZHigh,
+}
+
+/// A hole through a wall; exactly one of `size`, `diameter`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawHole {
+    /// Unique among all holes and openings.
+    pub name: At<String>,
+    /// The face of the box that it pierces; not given for a plane.
+    pub face: Option<At<RawFace>>,
+    /// Centre: for a box the coordinates of the face's two axes, in the order x, y, z; for a plane
+    /// along (`u`, `normal` x `u`) from its centre.
+    pub center: At<Numbers<2>>,
+    /// Sides of a rectangle, along the same axes as `center`.
+    pub size: Option<At<Numbers<2>>>,
+    /// Diameter of a circle.
+    pub diameter: Option<At<f64>>,
+    /// Corners of the polygon of equal area that stands for the circle, 3 to 1024; 32 unless given.
+    pub segments: Option<At<i64>>,
+}
+
+/// A part of space.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RawRegion {
+    Box(RawBox),
+    Sphere(RawSphere),
+    Cylinder(RawCylinder),
+}
+
+/// An axis-aligned box.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawBox {
+    /// Corner of least coordinates.
+    pub min: At<Numbers<3>>,
+    /// Corner of greatest coordinates.
+    pub max: At<Numbers<3>>,
+}
+
+/// A ball.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawSphere {
+    /// Centre.
+    pub center: At<Numbers<3>>,
+    /// Radius.
+    pub radius: At<f64>,
+}
+
+/// A cylinder.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawCylinder {
+    /// Centre of the lower end.
+    pub base: At<Numbers<3>>,
+    /// Direction from the lower to the upper end, of any length.
+    pub axis: At<Numbers<3>>,
+    /// Radius.
+    pub radius: At<f64>,
+    /// Distance between the ends.
+    pub height: At<f64>,
+}
+
+/// The initial gas of a region.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawChamber {
+    /// Unique among the chambers.
+    pub name: At<String>,
+    /// Where; the last chamber may leave it out and then has all gas space that is left. Where regions
+    /// overlap the earlier chamber has the gas.
+    pub region: Option<At<RawRegion>>,
+    /// Initial pressure (SI: Pa).
+    pub pressure: At<f64>,
+    /// Initial temperature, K.
+    pub temperature: At<f64>,
+    /// A gas by name, or mole fractions such as { air = 0.8, helium = 0.2 }.
+    pub gas: At<RawMixture>,
+}
+
+/// An opening between two chambers, for the control-volume reference.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawOpening {
+    /// Unique among all holes and openings.
+    pub name: At<String>,
+    /// The names of the two chambers.
+    pub between: At<Vec<At<String>>>,
+    /// Area (SI: m2).
+    pub area: At<f64>,
+    /// Length of its Knudsen number; the square root of the area unless given.
+    pub length: Option<At<f64>>,
+}
+
+/// A flat disc from which gas flows in.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawOrifice {
+    /// Unique among the orifices.
+    pub name: At<String>,
+    /// Centre of the disc.
+    pub position: At<Numbers<3>>,
+    /// Into the gas, of any length.
+    pub direction: At<Numbers<3>>,
+    /// Area of the disc (SI: m2).
+    pub area: At<f64>,
+    /// Points [time, mass per time] (SI: s, kg/s), linear between, zero outside; at least two.
+    pub mass_flow: At<Vec<At<Numbers<2>>>>,
+    /// Stagnation temperature in K: a number, or points [time, temperature], constant beyond the ends.
+    pub temperature: At<NumberOr<Numbers<2>>>,
+    /// A gas by name, or mole fractions such as { air = 0.8, helium = 0.2 }.
+    pub gas: At<RawMixture>,
+    /// A drifting inflow; without it gas enters with a Maxwell speed distribution.
+    pub jet: Option<At<RawJet>>,
+}
+
+/// A drifting inflow.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawJet {
+    /// Mach number, above 0 and at most 20.
+    pub mach: At<f64>,
+    /// Half angle of the cone over which the direction is spread, degrees, 0 to below 90; 0 unless given.
+    pub cone_angle: Option<At<f64>>,
+}
+
+/// A region in which the state of the gas is averaged.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawProbe {
+    /// Unique among the probes.
+    pub name: At<String>,
+    /// Where.
+    pub region: At<RawRegion>,
+}
+
+/// A wall, or one face of a box, on which pressure and impulse are measured.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawSurface {
+    /// Unique among the surfaces.
+    pub name: At<String>,
+    /// The name of a wall.
+    pub wall: At<String>,
+    /// One face, of a wall that is a box; all of the wall unless given.
+    pub face: Option<At<RawFace>>,
+}
+
+/// What the plan otherwise decides.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawModel {
+    /// How particles meet.
+    pub method: Option<Method>,
+    /// Particles at the end of the run, initial and injected together, 1 to 268435455.
+    pub particles: Option<At<i64>>,
+    /// Collision diameter; not together with `occupancy`.
+    pub diameter: Option<At<f64>>,
+    /// Fraction of space that spheres of the collision diameter fill at the end of the run, above 0 and at most 0.5.
+    pub occupancy: Option<At<f64>>,
+    /// Largest time step.
+    pub time_step: Option<At<f64>>,
+    /// Pairing rounds per step, 1 to 8.
+    pub rounds: Option<At<i64>>,
+    /// Rotational collision number Z; 5 unless given.
+    pub collision_number: Option<At<f64>>,
+}
+
+/// How much is written.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawOutput {
+    /// Rows of history.csv at most, 1 to 1000000; 200 unless given.
+    pub rows: Option<At<i64>>,
+    /// Snapshots after the initial one, 0 to 100000; 10 unless given, 0 writes none.
+    pub snapshots: Option<At<i64>>,
+}

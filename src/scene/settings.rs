@@ -1,0 +1,71 @@
+//! What the scene asks of the plan and of the output.
+
+use super::errors::Problem;
+use super::gases::least_collision_number;
+use super::numbers::{bounded, positive, show, small_count};
+use super::raw::{RawGas, RawModel, RawOutput};
+use super::raw_values::At;
+use super::types::{Gas, Method, ModelRequest, OutputRequest, UnitSystem};
+use super::units::Quantity;
+
+/// Particle ids share a word with flags.
+const MOST_PARTICLES: i64 = (1 << 28) - 1;
+/// Z where the scene gives none.
+const COLLISION_NUMBER: f64 = 5.0;
+const ROWS: u32 = 200;
+const SNAPSHOTS: u32 = 10;
+
+pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, Problem> {
+    if let (Some(diameter), Some(occupancy)) = (&raw.diameter, &raw.occupancy) {
+        let later = if diameter.span.start > occupancy.span.start { &diameter.span } else { &occupancy.span };
+        return Err(Problem::value(
+            later,
+            "both `diameter` and `occupancy`",
+            "at most one of them: each follows from the other",
+        ));
+    }
+    let length = |at: &Option<At<f64>>| at.as_ref().map(|at| positive(at, Quantity::Length, units)).transpose();
+    Ok(ModelRequest {
+        method: raw.method,
+        particles: raw.particles.as_ref().map(|n| super::numbers::count(n, 1..=MOST_PARTICLES)).transpose()?,
+        diameter: length(&raw.diameter)?,
+        occupancy: raw
+            .occupancy
+            .as_ref()
+            .map(|f| bounded(f, Quantity::Pure, units, "a number above 0 and at most 0.5", |f| f > 0.0 && f <= 0.5))
+            .transpose()?,
+        time_step: raw.time_step.as_ref().map(|t| positive(t, Quantity::Time, units)).transpose()?,
+        rounds: raw.rounds.as_ref().map(|n| small_count(n, 1..=8)).transpose()?,
+        collision_number: raw.collision_number.as_ref().map(|z| positive(z, Quantity::Pure, units)).transpose()?,
+    })
+}
+
+/// Z must be large enough for every gas that has internal energy (specification, section 3).
+pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<RawGas>]) -> Result<(), Problem> {
+    for (gas, raw_gas) in gases.iter().zip(raw_gases) {
+        let least = least_collision_number(gas);
+        if gas.spin_dof() == 0.0 {
+            continue;
+        }
+        let allowed =
+            format!("at least {least:.4} for the {:.3} internal degrees of freedom of {:?}", gas.spin_dof(), gas.name);
+        match &raw.collision_number {
+            Some(z) if z.value < least => {
+                return Err(Problem::value(&z.span, show(z.value), allowed));
+            }
+            None if COLLISION_NUMBER < least && raw.method != Some(Method::None) => {
+                let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
+                return Err(Problem::value(&raw_gas.span, found, allowed).hint("give `collision_number` in `[model]`"));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn output(raw: &RawOutput) -> Result<OutputRequest, Problem> {
+    Ok(OutputRequest {
+        rows: raw.rows.as_ref().map_or(Ok(ROWS), |n| small_count(n, 1..=1_000_000))?,
+        snapshots: raw.snapshots.as_ref().map_or(Ok(SNAPSHOTS), |n| small_count(n, 0..=100_000))?,
+    })
+}

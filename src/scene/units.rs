@@ -1,0 +1,96 @@
+//! The three unit systems of a scene file, and the border between the file and SI.
+//!
+//! Each system is a mass, a length and a time; everything else follows: pressure is M/(L T^2), energy
+//! M L^2/T^2. Kelvin and mole are the same in all three. In SI every factor is exactly 1, so that a
+//! scene written in SI parses back bit by bit.
+
+use super::types::UnitSystem;
+
+/// What a number of the file measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// A ratio or a direction.
+    Pure,
+    Length,
+    Area,
+    Time,
+    Temperature,
+    Pressure,
+    MassFlow,
+    MolarMass,
+    /// Heat capacity per mole.
+    MolarHeat,
+}
+
+impl UnitSystem {
+    /// SI units per unit of this system.
+    pub(super) fn factor(self, quantity: Quantity) -> f64 {
+        use Quantity::*;
+        use UnitSystem::*;
+        match (self, quantity) {
+            (Si, _) | (_, Pure | Temperature) => 1.0,
+            (KgMmMs | TMmS, Length) => 1e-3,
+            (KgMmMs | TMmS, Area) => 1e-6,
+            (KgMmMs, Time) => 1e-3,
+            (KgMmMs, Pressure) => 1e9,
+            (KgMmMs, MassFlow) => 1e3,
+            (KgMmMs, MolarMass | MolarHeat) => 1.0,
+            (TMmS, Time) => 1.0,
+            (TMmS, Pressure) => 1e6,
+            (TMmS, MassFlow | MolarMass) => 1e3,
+            (TMmS, MolarHeat) => 1e-3,
+        }
+    }
+
+    /// What messages call the unit.
+    pub(super) fn symbol(self, quantity: Quantity) -> &'static str {
+        use Quantity::*;
+        use UnitSystem::*;
+        match (self, quantity) {
+            (_, Pure) => "",
+            (_, Temperature) => "K",
+            (Si, Length) => "m",
+            (Si, Area) => "m2",
+            (Si | TMmS, Time) => "s",
+            (Si, Pressure) => "Pa",
+            (Si, MassFlow) => "kg/s",
+            (Si | KgMmMs, MolarMass) => "kg/mol",
+            (Si | KgMmMs, MolarHeat) => "J/(mol K)",
+            (KgMmMs | TMmS, Length) => "mm",
+            (KgMmMs | TMmS, Area) => "mm2",
+            (KgMmMs, Time) => "ms",
+            (KgMmMs, Pressure) => "GPa",
+            (KgMmMs, MassFlow) => "kg/ms",
+            (TMmS, Pressure) => "MPa",
+            (TMmS, MassFlow) => "t/s",
+            (TMmS, MolarMass) => "t/mol",
+            (TMmS, MolarHeat) => "mJ/(mol K)",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every derived factor is the product of powers of the system's mass, length and time.
+    #[test]
+    fn derived_units_follow_from_mass_length_and_time() {
+        for (system, mass, length, time) in
+            [(UnitSystem::Si, 1.0, 1.0, 1.0), (UnitSystem::KgMmMs, 1.0, 1e-3, 1e-3), (UnitSystem::TMmS, 1e3, 1e-3, 1.0)]
+        {
+            let near = |quantity, expected: f64| {
+                let factor = system.factor(quantity);
+                assert!((factor / expected - 1.0).abs() < 1e-14, "{system:?} {quantity:?}: {factor} != {expected}");
+            };
+            near(Quantity::Length, length);
+            near(Quantity::Area, length * length);
+            near(Quantity::Time, time);
+            near(Quantity::Pressure, mass / (length * time * time));
+            near(Quantity::MassFlow, mass / time);
+            near(Quantity::MolarMass, mass);
+            near(Quantity::MolarHeat, mass * length * length / (time * time));
+        }
+        assert_ne!(UnitSystem::TMmS.factor(Quantity::Pressure), UnitSystem::KgMmMs.factor(Quantity::Pressure));
+    }
+}

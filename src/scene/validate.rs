@@ -1,0 +1,102 @@
+//! From the scene file as written to the scene as meant: every list in turn, all problems gathered.
+
+use std::path::Path;
+
+use super::errors::Problem;
+use super::names::Names;
+use super::numbers::{count, positive};
+use super::raw::{RawScene, RawUnits};
+use super::raw_values::At;
+use super::types::{Scene, UnitSystem};
+use super::units::Quantity;
+use super::{flows, gases, places, settings, walls};
+
+/// At most 56 bits of the seed are used.
+const LARGEST_SEED: i64 = (1 << 56) - 1;
+const SEED: u64 = 1;
+
+/// The scene, or every problem found. `stem` is the title of a scene that gives none.
+pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Scene, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let units = match raw.units {
+        None | Some(RawUnits::Si) => UnitSystem::Si,
+        Some(RawUnits::KgMmMs) => UnitSystem::KgMmMs,
+        Some(RawUnits::TMmS) => UnitSystem::TMmS,
+    };
+    refuse_wrong_numbers_of_entries(raw, &mut problems);
+    // References look names up by place in the file, so that an entry with another fault still is known.
+    let gas_names = Names::collect("gas", raw.gas.iter().map(|g| &g.value.name), &mut problems);
+    let wall_names = Names::collect("wall", raw.wall.iter().map(|w| &w.value.name), &mut problems);
+    let chamber_names = Names::collect("chamber", raw.chamber.iter().map(|c| &c.value.name), &mut problems);
+    let holes = raw.wall.iter().flat_map(|w| &w.value.hole).map(|h| &h.value.name);
+    Names::collect("hole or opening", holes.chain(raw.opening.iter().map(|o| &o.value.name)), &mut problems);
+    Names::collect("orifice", raw.orifice.iter().map(|o| &o.value.name), &mut problems);
+    Names::collect("probe", raw.probe.iter().map(|p| &p.value.name), &mut problems);
+    Names::collect("surface", raw.surface.iter().map(|s| &s.value.name), &mut problems);
+
+    let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
+    let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
+    let gases = each(&raw.gas, &mut problems, |gas, _| gases::gas(gas, units));
+    let walls = each(&raw.wall, &mut problems, |wall, _| walls::wall(wall, units, base_dir));
+    let last = raw.chamber.len().saturating_sub(1);
+    let chambers =
+        each(&raw.chamber, &mut problems, |chamber, i| places::chamber(chamber, i == last, &gas_names, units));
+    let openings = each(&raw.opening, &mut problems, |opening, _| places::opening(opening, &chamber_names, units));
+    let orifices = each(&raw.orifice, &mut problems, |orifice, _| flows::orifice(orifice, &gas_names, units));
+    let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
+    let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &raw.wall));
+    let model = keep(settings::model(&raw.model, units), &mut problems);
+    let output = keep(settings::output(&raw.output), &mut problems);
+    if gases.len() == raw.gas.len() {
+        keep(settings::collision_number(&raw.model, &gases, &raw.gas), &mut problems);
+    }
+
+    match (end_time, seed, model, output) {
+        (Some(end_time), Some(seed), Some(model), Some(output)) if problems.is_empty() => Ok(Scene {
+            title: raw.title.clone().unwrap_or_else(|| stem.to_string()),
+            units,
+            end_time,
+            seed,
+            gases,
+            walls,
+            chambers,
+            openings,
+            orifices,
+            probes,
+            surfaces,
+            model,
+            output,
+        }),
+        _ => Err(problems),
+    }
+}
+
+fn refuse_wrong_numbers_of_entries(raw: &RawScene, problems: &mut Vec<Problem>) {
+    let needed = [
+        ("gas", raw.gas.is_empty(), "at least one [[gas]]"),
+        ("wall", raw.wall.is_empty(), "at least one [[wall]]"),
+        ("chamber", raw.chamber.is_empty(), "at least one [[chamber]]"),
+    ];
+    for (key, empty, allowed) in needed {
+        if empty {
+            problems.push(Problem::missing(&(0..0), key, allowed));
+        }
+    }
+    if let Some(surplus) = raw.gas.get(gases::MOST_GASES) {
+        let found = format!("{} gases", raw.gas.len());
+        problems.push(Problem::value(&surplus.span, found, format!("at most {}", gases::MOST_GASES)));
+    }
+}
+
+fn keep<T>(result: Result<T, Problem>, problems: &mut Vec<Problem>) -> Option<T> {
+    result.map_err(|problem| problems.push(problem)).ok()
+}
+
+/// The entries of a list that are well; the problems of the others.
+fn each<R, T>(
+    list: &[At<R>],
+    problems: &mut Vec<Problem>,
+    read: impl Fn(&At<R>, usize) -> Result<T, Problem>,
+) -> Vec<T> {
+    list.iter().enumerate().filter_map(|(index, raw)| keep(read(raw, index), problems)).collect()
+}

@@ -1,0 +1,244 @@
+//! A scene as resolved: in SI, every default explicit. Reading it back gives an equal scene (but for
+//! `units`, which says SI then).
+
+use std::fmt::Write;
+
+use super::types::*;
+
+/// The scene as a TOML text.
+pub fn to_toml(scene: &Scene) -> String {
+    let mut out = Lines(String::new());
+    out.text("title", &scene.title);
+    out.text("units", "SI");
+    out.number("end_time", scene.end_time);
+    out.count("seed", scene.seed);
+    for gas in &scene.gases {
+        out.header("[[gas]]");
+        out.text("name", &gas.name);
+        out.number("molar_mass", gas.molar_mass);
+        out.number("cv", gas.molar_cv);
+    }
+    for wall in &scene.walls {
+        write_wall(&mut out, wall);
+    }
+    for chamber in &scene.chambers {
+        out.header("[[chamber]]");
+        out.text("name", &chamber.name);
+        if let Some(region) = &chamber.region {
+            out.entry("region", &region_table(region));
+        }
+        out.number("pressure", chamber.pressure);
+        out.number("temperature", chamber.temperature);
+        out.entry("gas", &mixture_table(&chamber.mixture, &scene.gases));
+    }
+    for opening in &scene.openings {
+        out.header("[[opening]]");
+        out.text("name", &opening.name);
+        let names = opening.between.map(|index| quoted(&scene.chambers[index].name));
+        out.entry("between", &format!("[{}, {}]", names[0], names[1]));
+        out.number("area", opening.area);
+        out.number("length", opening.length);
+    }
+    for orifice in &scene.orifices {
+        out.header("[[orifice]]");
+        out.text("name", &orifice.name);
+        out.numbers("position", &orifice.position);
+        out.numbers("direction", &orifice.direction);
+        out.number("area", orifice.area);
+        out.curve("mass_flow", &orifice.mass_flow);
+        out.curve("temperature", &orifice.temperature);
+        out.entry("gas", &mixture_table(&orifice.mixture, &scene.gases));
+        if let Some(jet) = &orifice.jet {
+            let (mach, angle) = (shown(jet.mach), shown(degrees(jet.cone_angle)));
+            out.entry("jet", &format!("{{ mach = {mach}, cone_angle = {angle} }}"));
+        }
+    }
+    for probe in &scene.probes {
+        out.header("[[probe]]");
+        out.text("name", &probe.name);
+        out.entry("region", &region_table(&probe.region));
+    }
+    for surface in &scene.surfaces {
+        out.header("[[surface]]");
+        out.text("name", &surface.name);
+        out.text("wall", &scene.walls[surface.wall].name);
+        if let Some(face) = surface.face {
+            out.face(face);
+        }
+    }
+    write_settings(&mut out, scene);
+    out.0
+}
+
+fn write_wall(out: &mut Lines, wall: &Wall) {
+    out.header("[[wall]]");
+    out.text("name", &wall.name);
+    let holes: &[Hole] = match &wall.shape {
+        Shape::Box { min, max, thickness, holes } => {
+            out.text("shape", "box");
+            out.numbers("min", min);
+            out.numbers("max", max);
+            if let Some(thickness) = thickness {
+                out.number("thickness", *thickness);
+            }
+            holes
+        }
+        Shape::Cylinder { base, axis, radius, height, segments } => {
+            out.text("shape", "cylinder");
+            out.numbers("base", base);
+            out.numbers("axis", axis);
+            out.number("radius", *radius);
+            out.number("height", *height);
+            out.count("segments", u64::from(*segments));
+            &[]
+        }
+        Shape::Sphere { center, radius, subdivisions } => {
+            out.text("shape", "sphere");
+            out.numbers("center", center);
+            out.number("radius", *radius);
+            out.count("subdivisions", u64::from(*subdivisions));
+            &[]
+        }
+        Shape::Plane { center, normal, u, size, thickness, holes } => {
+            out.text("shape", "plane");
+            out.numbers("center", center);
+            out.numbers("normal", normal);
+            out.numbers("u", u);
+            out.numbers("size", size);
+            out.number("thickness", *thickness);
+            holes
+        }
+        Shape::Mesh { path, scale } => {
+            out.text("shape", "mesh");
+            out.text("file", &path.to_string_lossy());
+            out.number("scale", *scale);
+            &[]
+        }
+    };
+    match wall.gas {
+        GasSide::Inside => out.text("gas", "inside"),
+        GasSide::Outside => out.text("gas", "outside"),
+        GasSide::Both => {}
+    }
+    for hole in holes {
+        out.header("[[wall.hole]]");
+        out.text("name", &hole.name);
+        out.face(hole.face);
+        out.numbers("center", &hole.center);
+        match hole.outline {
+            Outline::Rectangle { size } => out.numbers("size", &size),
+            Outline::Circle { diameter, segments } => {
+                out.number("diameter", diameter);
+                out.count("segments", u64::from(segments));
+            }
+        }
+    }
+}
+
+fn write_settings(out: &mut Lines, scene: &Scene) {
+    let model = &scene.model;
+    out.header("[model]");
+    match model.method {
+        Some(Method::ClosestApproach) => out.text("method", "closest-approach"),
+        Some(Method::None) => out.text("method", "none"),
+        None => {}
+    }
+    if let Some(particles) = model.particles {
+        out.count("particles", particles);
+    }
+    for (key, value) in [
+        ("diameter", model.diameter),
+        ("occupancy", model.occupancy),
+        ("time_step", model.time_step),
+        ("collision_number", model.collision_number),
+    ] {
+        if let Some(value) = value {
+            out.number(key, value);
+        }
+    }
+    if let Some(rounds) = model.rounds {
+        out.count("rounds", u64::from(rounds));
+    }
+    out.header("[output]");
+    out.count("rows", u64::from(scene.output.rows));
+    out.count("snapshots", u64::from(scene.output.snapshots));
+}
+
+struct Lines(String);
+
+impl Lines {
+    fn entry(&mut self, key: &str, value: &str) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{key} = {value}");
+    }
+    fn header(&mut self, header: &str) {
+        let _ = writeln!(self.0, "\n{header}");
+    }
+    fn text(&mut self, key: &str, value: &str) {
+        self.entry(key, &quoted(value));
+    }
+    fn number(&mut self, key: &str, value: f64) {
+        self.entry(key, &shown(value));
+    }
+    fn count(&mut self, key: &str, value: u64) {
+        self.entry(key, &value.to_string());
+    }
+    fn numbers(&mut self, key: &str, values: &[f64]) {
+        self.entry(key, &array(values));
+    }
+    fn curve(&mut self, key: &str, curve: &Curve) {
+        let points: Vec<String> = curve.points.iter().map(|point| array(point)).collect();
+        self.entry(key, &format!("[{}]", points.join(", ")));
+    }
+    fn face(&mut self, face: Face) {
+        if let Face::Box { axis, positive } = face {
+            let sign = if positive { '+' } else { '-' };
+            self.text("face", &format!("{sign}{}", ["x", "y", "z"][axis]));
+        }
+    }
+}
+
+fn region_table(region: &Region) -> String {
+    match region {
+        Region::Box { min, max } => format!("{{ box = {{ min = {}, max = {} }} }}", array(min), array(max)),
+        Region::Sphere { center, radius } => {
+            format!("{{ sphere = {{ center = {}, radius = {} }} }}", array(center), shown(*radius))
+        }
+        Region::Cylinder { base, axis, radius, height } => format!(
+            "{{ cylinder = {{ base = {}, axis = {}, radius = {}, height = {} }} }}",
+            array(base),
+            array(axis),
+            shown(*radius),
+            shown(*height)
+        ),
+    }
+}
+
+fn mixture_table(mixture: &Mixture, gases: &[Gas]) -> String {
+    let parts: Vec<String> = mixture
+        .0
+        .iter()
+        .map(|&(gas, fraction)| format!("{} = {}", quoted(&gases[gas].name), shown(fraction)))
+        .collect();
+    format!("{{ {} }}", parts.join(", "))
+}
+
+/// The shortest decimal that reads back as the same number.
+fn shown(number: f64) -> String {
+    format!("{number:?}")
+}
+
+fn array(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|&v| shown(v)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// The degrees that read back as just this angle; rounding can move the plain conversion by a unit.
+fn degrees(radians: f64) -> f64 {
+    let near = radians.to_degrees();
+    [near, near.next_up(), near.next_down()].into_iter().find(|degrees| degrees.to_radians() == radians).unwrap_or(near)
+}
