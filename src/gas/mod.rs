@@ -12,4 +12,3 @@ pub struct Particle {
     /// J, of the whole particle (a particle is `moles_per_particle` moles).
     pub spin_energy: f64,
 }
-pub enum Purpose { Collision = 4 }
