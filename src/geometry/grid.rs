@@ -83,6 +83,11 @@ impl Grid {
         (cell[2] as usize * self.cells[1] as usize + cell[1] as usize) * self.cells[0] as usize + cell[0] as usize
     }
 
+    /// Blocks of 2^`log2_cells` cells per axis; the last of an axis may reach beyond the grid.
+    pub fn blocks(&self, log2_cells: u32) -> [u32; 3] {
+        self.cells.map(|n| n.div_ceil(1 << log2_cells))
+    }
+
     pub fn cell_of(&self, fixed: [u32; 3]) -> [u32; 3] {
         fixed.map(|p| p >> self.cell_bits)
     }

@@ -1,5 +1,32 @@
-//! Triangle meshes of the walls, their volumes and the triangle grid.
+//! Triangle meshes of the walls, where the gas is, its volumes and the triangle grid. All f64 and
+//! deterministic: the same walls give the same bits, whatever the number of threads.
+//!
+//! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `plate`, `polygon`,
+//! `mesh_file`, `closed`) and answers where the gas is (`lines`) and how much of it (`vessel`, `region`,
+//! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`.
 
+mod blocks;
+mod closed;
+mod error;
 mod grid;
+mod lines;
+mod mesh_file;
+mod plate;
+mod polygon;
+mod primitives;
+mod region;
+mod sampling;
+mod triangle_grid;
+mod vessel;
 
+pub use blocks::block_volumes;
+pub use closed::check_closed;
+pub use error::GeometryError;
 pub use grid::{Grid, GridError};
+pub use primitives::FoundHole;
+pub use region::{region_bounds, region_contains, region_volume};
+pub use triangle_grid::{CellClass, FixedTriangle, TriangleGrid};
+pub use vessel::{Triangle, Vessel, WallInfo};
+
+#[cfg(test)]
+mod tests;

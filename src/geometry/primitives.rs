@@ -1,0 +1,313 @@
+//! The wall shapes of a scene as closed triangle meshes, normals outwards (away from the solid the shape
+//! describes, or away from what a shape without thickness encloses).
+//!
+//! Corners of cylinders and spheres lie on the round surface, so their volumes are a little below the round
+//! body's: by sin(a)/a with a = 2 pi / segments for a cylinder.
+
+use super::GeometryError;
+use super::plate::{Frame, HoleOutline, Plate, outlines};
+use crate::scene::{Face, Shape};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// A hole as cut. Lengths in m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundHole {
+    pub name: String,
+    /// Index of the wall.
+    pub wall: u32,
+    /// Middle of the hole, half-way through the wall.
+    pub center: [f64; 3],
+    /// Along the hole: out of a box, along the normal of a plane.
+    pub normal: [f64; 3],
+    pub thickness: f64,
+    /// m2, of the polygon that is cut.
+    pub area: f64,
+    pub perimeter: f64,
+}
+
+/// The surface of one wall.
+#[derive(Debug, Clone, Default)]
+pub(super) struct WallMesh {
+    pub vertices: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// One per triangle.
+    pub faces: Vec<Option<Face>>,
+    pub holes: Vec<FoundHole>,
+}
+
+impl WallMesh {
+    pub fn vertex(&mut self, position: DVec3) -> u32 {
+        self.vertices.push(position);
+        (self.vertices.len() - 1) as u32
+    }
+
+    pub fn triangle(&mut self, corners: [u32; 3], face: Option<Face>) {
+        self.triangles.push(corners);
+        self.faces.push(face);
+    }
+
+    /// Corners counter-clockwise seen from where the normal points.
+    pub fn quad(&mut self, [a, b, c, d]: [u32; 4], face: Option<Face>) {
+        self.triangle([a, b, c], face);
+        self.triangle([a, c, d], face);
+    }
+
+    pub fn flip(&mut self) {
+        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+}
+
+/// The mesh of a shape that is not a file; `wall` is its index, `subject` names it in errors.
+pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMesh, GeometryError> {
+    let positive = |what: &str, value: f64| {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        Err(GeometryError::Shape {
+            wall: subject.into(),
+            what: format!("the {what} must be positive and finite, found {value}"),
+        })
+    };
+    match shape {
+        Shape::Box { min, max, thickness, holes } => {
+            for axis in 0..3 {
+                positive(["x extent", "y extent", "z extent"][axis], max[axis] - min[axis])?;
+            }
+            match thickness {
+                None if holes.is_empty() => Ok(plain_box(*min, *max)),
+                None => Err(GeometryError::Hole {
+                    wall: subject.into(),
+                    hole: holes[0].name.clone(),
+                    what: "needs a wall with a thickness".into(),
+                }),
+                Some(thickness) => {
+                    positive("thickness", *thickness)?;
+                    let cut = outlines(holes, subject)?;
+                    hollow_box(*min, *max, *thickness, &cut, wall, subject)
+                }
+            }
+        }
+        Shape::Cylinder { base, axis, radius, height, segments } => {
+            positive("radius", *radius)?;
+            positive("height", *height)?;
+            let axis = DVec3::from(*axis).try_normalize().ok_or_else(|| GeometryError::Shape {
+                wall: subject.into(),
+                what: "the axis has no direction".into(),
+            })?;
+            if !(3..=4096).contains(segments) {
+                let what = format!("3 to 4096 segments make a cylinder, found {segments}");
+                return Err(GeometryError::Shape { wall: subject.into(), what });
+            }
+            Ok(cylinder(DVec3::from(*base), axis, *radius, *height, *segments))
+        }
+        Shape::Sphere { center, radius, subdivisions } => {
+            positive("radius", *radius)?;
+            if *subdivisions > 7 {
+                let what = format!("at most 7 subdivisions make a sphere, found {subdivisions}");
+                return Err(GeometryError::Shape { wall: subject.into(), what });
+            }
+            Ok(sphere(DVec3::from(*center), *radius, *subdivisions))
+        }
+        Shape::Plane { center, normal, u, size, thickness, holes } => {
+            positive("thickness", *thickness)?;
+            positive("size along u", size[0])?;
+            positive("size across u", size[1])?;
+            let cut = outlines(holes, subject)?;
+            let frame = Frame::new(DVec3::from(*center), DVec3::from(*normal), DVec3::from(*u))
+                .ok_or_else(|| GeometryError::Shape { wall: subject.into(), what: "u must not be along the normal".into() })?;
+            plate(frame, *size, *thickness, &cut, wall, subject)
+        }
+        Shape::Mesh { path, scale } => {
+            positive("scale", *scale)?;
+            super::mesh_file::read(path, *scale, subject)
+        }
+    }
+}
+
+/// Corner k of a box has the larger coordinate on the axes whose bit of k is set.
+fn box_corners(mesh: &mut WallMesh, min: [f64; 3], max: [f64; 3]) -> [u32; 8] {
+    std::array::from_fn(|k| {
+        let corner = |axis: usize| if k >> axis & 1 == 1 { max[axis] } else { min[axis] };
+        mesh.vertex(DVec3::new(corner(0), corner(1), corner(2)))
+    })
+}
+
+/// Corners of a face, counter-clockwise seen from outside, and the axes (u, v) with u x v outwards.
+fn face_corners(axis: usize, positive: bool) -> ([usize; 4], [usize; 2]) {
+    // (y, z), (z, x), (x, y) are right-handed about x, y, z.
+    let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
+    if !positive {
+        std::mem::swap(&mut u, &mut v);
+    }
+    let base = usize::from(positive) << axis;
+    ([base, base | 1 << u, base | 1 << u | 1 << v, base | 1 << v], [u, v])
+}
+
+fn plain_box(min: [f64; 3], max: [f64; 3]) -> WallMesh {
+    let mut mesh = WallMesh::default();
+    let corners = box_corners(&mut mesh, min, max);
+    for axis in 0..3 {
+        for positive in [false, true] {
+            let (face, _) = face_corners(axis, positive);
+            mesh.quad(face.map(|k| corners[k]), Some(Face::Box { axis, positive }));
+        }
+    }
+    mesh
+}
+
+/// The shell around the cavity `min`..`max`. Only the cavity's triangles carry their face: a surface of a box
+/// measures what the gas in the cavity does to it.
+fn hollow_box(
+    min: [f64; 3],
+    max: [f64; 3],
+    thickness: f64,
+    holes: &[HoleOutline],
+    wall: u32,
+    subject: &str,
+) -> Result<WallMesh, GeometryError> {
+    let mut mesh = WallMesh::default();
+    let cavity = box_corners(&mut mesh, min, max);
+    let outside = box_corners(&mut mesh, min.map(|x| x - thickness), max.map(|x| x + thickness));
+    for axis in 0..3 {
+        for positive in [false, true] {
+            let face = Face::Box { axis, positive };
+            let (corners, [u, v]) = face_corners(axis, positive);
+            let sign = if positive { 1.0 } else { -1.0 };
+            let frame = Frame { origin: DVec3::ZERO, u: DVec3::AXES[u], v: DVec3::AXES[v], n: DVec3::AXES[axis] * sign };
+            let level = sign * if positive { max[axis] } else { min[axis] };
+            // A hole's two axes are in x, y, z order, the frame's may be the other way round.
+            let holes: Vec<HoleOutline> =
+                holes.iter().filter(|h| h.face == face).map(|h| if u < v { h.clone() } else { h.transposed() }).collect();
+            Plate {
+                frame,
+                lower: (level, corners.map(|k| cavity[k])),
+                upper: (level + thickness, corners.map(|k| outside[k])),
+                lower_face: Some(face),
+                upper_face: None,
+                side_face: None,
+            }
+            .add_to(&mut mesh, &holes, wall, subject)?;
+        }
+    }
+    match holes.iter().find(|h| !matches!(h.face, Face::Box { axis, .. } if axis < 3)) {
+        Some(hole) => Err(hole.misplaced(subject, "names no face of a box")),
+        None => Ok(mesh),
+    }
+}
+
+fn plate(
+    frame: Frame,
+    size: [f64; 2],
+    thickness: f64,
+    holes: &[HoleOutline],
+    wall: u32,
+    subject: &str,
+) -> Result<WallMesh, GeometryError> {
+    if let Some(hole) = holes.iter().find(|h| h.face != Face::Plane) {
+        return Err(hole.misplaced(subject, "names a face of a box, but the wall is a plane"));
+    }
+    let mut mesh = WallMesh::default();
+    let face = Some(Face::Plane);
+    let mut level = |h: f64| {
+        [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+            .map(|(a, b)| mesh.vertex(frame.point(glam::DVec2::new(a * size[0], b * size[1]), h)))
+    };
+    let (low, high) = (level(-0.5 * thickness), level(0.5 * thickness));
+    for i in 0..4 {
+        let next = (i + 1) % 4;
+        mesh.quad([low[i], low[next], high[next], high[i]], face);
+    }
+    Plate {
+        frame,
+        lower: (-0.5 * thickness, low),
+        upper: (0.5 * thickness, high),
+        lower_face: face,
+        upper_face: face,
+        side_face: face,
+    }
+    .add_to(&mut mesh, holes, wall, subject)?;
+    Ok(mesh)
+}
+
+fn cylinder(base: DVec3, axis: DVec3, radius: f64, height: f64, segments: u32) -> WallMesh {
+    let mut mesh = WallMesh::default();
+    // The coordinate axis furthest from the cylinder's: exact rims for a cylinder along x, y or z.
+    let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
+    let u = (DVec3::AXES[least] - axis * axis[least]).normalize();
+    let v = axis.cross(u);
+    let mut rim = |level: f64| -> Vec<u32> {
+        (0..segments)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * f64::from(i) / f64::from(segments);
+                let out = u * libm::cos(angle) + v * libm::sin(angle);
+                mesh.vertex(base + axis * level + out * radius)
+            })
+            .collect()
+    };
+    let (low, high) = (rim(0.0), rim(height));
+    let (bottom, top) = (mesh.vertex(base), mesh.vertex(base + axis * height));
+    for i in 0..segments as usize {
+        let next = (i + 1) % segments as usize;
+        mesh.quad([low[i], low[next], high[next], high[i]], None);
+        mesh.triangle([bottom, low[next], low[i]], None);
+        mesh.triangle([top, high[i], high[next]], None);
+    }
+    mesh
+}
+
+/// An icosahedron whose triangles are quartered `subdivisions` times, every vertex on the sphere.
+fn sphere(center: DVec3, radius: f64, subdivisions: u32) -> WallMesh {
+    let golden = (1.0 + 5f64.sqrt()) / 2.0;
+    let mut directions: Vec<DVec3> = Vec::new();
+    for axis in 0..3 {
+        for (a, b) in [(-1.0, -golden), (1.0, -golden), (-1.0, golden), (1.0, golden)] {
+            let mut p = DVec3::ZERO;
+            p[(axis + 1) % 3] = a;
+            p[(axis + 2) % 3] = b;
+            directions.push(p.normalize());
+        }
+    }
+    let mut triangles = icosahedron(&directions);
+    for _ in 0..subdivisions {
+        let mut middles: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        let mut finer = Vec::with_capacity(4 * triangles.len());
+        for t in &triangles {
+            let middle = [0, 1, 2].map(|k| {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    directions.push((directions[a as usize] + directions[b as usize]).normalize());
+                    (directions.len() - 1) as u32
+                })
+            });
+            finer.extend([[t[0], middle[0], middle[2]], [middle[0], t[1], middle[1]], [middle[2], middle[1], t[2]], middle]);
+        }
+        triangles = finer;
+    }
+    let mut mesh = WallMesh::default();
+    for direction in directions {
+        mesh.vertex(center + direction * radius);
+    }
+    for t in triangles {
+        mesh.triangle(t, None);
+    }
+    mesh
+}
+
+/// The 20 faces: triples of vertices at the edge length, the shortest distance there is.
+fn icosahedron(directions: &[DVec3]) -> Vec<[u32; 3]> {
+    let near = |a: usize, b: usize| directions[a].dot(directions[b]) > 0.4;
+    let n = directions.len();
+    let mut faces = Vec::new();
+    for a in 0..n {
+        for b in a + 1..n {
+            for c in b + 1..n {
+                if near(a, b) && near(b, c) && near(c, a) {
+                    let outwards = directions[a].dot(directions[b].cross(directions[c])) > 0.0;
+                    faces.push(if outwards { [a, b, c] } else { [a, c, b] }.map(|v| v as u32));
+                }
+            }
+        }
+    }
+    faces
+}

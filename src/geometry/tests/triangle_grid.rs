@@ -1,0 +1,147 @@
+//! Which cells each triangle touches, and what the other cells are.
+
+use super::*;
+use crate::geometry::{CellClass, Grid, TriangleGrid};
+use glam::DVec3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::query::intersection_test;
+use parry3d_f64::math::Pose;
+use parry3d_f64::shape::{Cuboid, Triangle};
+use proptest::prelude::*;
+
+fn scene(turn: [f64; 3]) -> Vessel {
+    let axis = DVec3::from(turn).try_normalize().unwrap_or(DVec3::Z);
+    let plate = Shape::Plane {
+        center: [0.5; 3],
+        normal: axis.to_array(),
+        u: axis.any_orthonormal_vector().to_array(),
+        size: [0.5, 0.3],
+        thickness: 0.03,
+        holes: vec![hole("h", Face::Plane, [0.1, 0.0], Outline::Circle { diameter: 0.1, segments: 12 })],
+    };
+    Vessel::build(&[tank([1.0, 1.1, 0.9]), wall("plate", plate, GasSide::Both)]).unwrap()
+}
+
+fn cell_box(grid: &Grid, cell: usize) -> (DVec3, DVec3) {
+    let [nx, ny, _] = grid.cells.map(|n| n as usize);
+    let index = [cell % nx, cell / nx % ny, cell / nx / ny].map(|i| i as f64);
+    let min = DVec3::from(grid.origin) + grid.cell * DVec3::from(index);
+    (min, min + DVec3::splat(grid.cell))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Never a touched cell missed; none listed that is further away than rounding.
+    #[test]
+    fn lists_are_those_of_the_oracle(turn in prop::array::uniform3(-1.0..1.0f64), margin in 0.0..0.02f64) {
+        let vessel = scene(turn);
+        let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.11).unwrap();
+        let built = TriangleGrid::build(&vessel, &grid, margin).unwrap();
+        let touches = |cell: usize, t: usize, slack: f64| {
+            let (min, max) = cell_box(&grid, cell);
+            let half = (max - min) / 2.0 + DVec3::splat(margin + slack);
+            let corners = built.triangles[t].corners.map(|c| {
+                let p = grid.to_metres(c.map(|q| q as u32));
+                Vector::from_array((DVec3::from(p) - (min + max) / 2.0).to_array())
+            });
+            let triangle = Triangle::new(corners[0], corners[1], corners[2]);
+            let cuboid = Cuboid::new(Vector::from_array(half.to_array()));
+            intersection_test(&Pose::IDENTITY, &cuboid, &Pose::IDENTITY, &triangle).unwrap()
+        };
+        let (mut listed, mut unlisted) = (0, 0);
+        for cell in 0..grid.cell_count() {
+            let list = built.in_cell(cell);
+            prop_assert!(list.is_sorted());
+            for t in 0..built.triangles.len() {
+                if list.contains(&(t as u32)) {
+                    listed += 1;
+                    prop_assert!(touches(cell, t, 1e-6), "cell {cell} lists {t}");
+                } else {
+                    unlisted += 1;
+                    prop_assert!(!touches(cell, t, -1e-6), "cell {cell} misses {t}");
+                }
+            }
+        }
+        // Both answers occur, so either kind of mistake would be seen.
+        prop_assert!(listed > 100 && unlisted > 100);
+    }
+
+    /// Of a cell without triangles every point is what the class says.
+    #[test]
+    fn classes_are_those_of_points(turn in prop::array::uniform3(-1.0..1.0f64), offset in prop::array::uniform3(0.0..1.0f64)) {
+        let vessel = scene(turn);
+        let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.037).unwrap();
+        let built = TriangleGrid::build(&vessel, &grid, 0.001).unwrap();
+        let mut seen = [0; 4];
+        for cell in 0..grid.cell_count() {
+            let (min, max) = cell_box(&grid, cell);
+            let p = (min + (max - min) * DVec3::from(offset)).to_array();
+            let class = built.class[cell];
+            seen[class as usize] += 1;
+            prop_assert_eq!(class == CellClass::Cut, !built.in_cell(cell).is_empty());
+            match class {
+                CellClass::Clear | CellClass::Gas => prop_assert!(vessel.is_gas(p)),
+                CellClass::Solid => prop_assert!(!vessel.is_gas(p)),
+                CellClass::Cut => {}
+            }
+        }
+        prop_assert!(seen.iter().all(|&n| n > 0), "{seen:?}");
+    }
+}
+
+#[test]
+fn clear_cells_are_those_with_no_triangle_in_27() {
+    let vessel = scene([0.3, 0.2, 1.0]);
+    let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.041).unwrap();
+    let built = TriangleGrid::build(&vessel, &grid, 0.002).unwrap();
+    let [nx, ny, nz] = grid.cells;
+    for (x, y, z) in (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z)))) {
+        let class = built.class[grid.cell_index([x, y, z])];
+        let border = [(x, nx), (y, ny), (z, nz)].iter().any(|&(i, n)| i == 0 || i == n - 1);
+        if border {
+            assert!(matches!(class, CellClass::Solid | CellClass::Cut));
+            continue;
+        }
+        let near = |dx: u32, dy: u32, dz: u32| built.class[grid.cell_index([x + dx - 1, y + dy - 1, z + dz - 1])];
+        let lonely = (0..27).all(|k| near(k % 3, k / 3 % 3, k / 9) != CellClass::Cut);
+        assert_eq!(class == CellClass::Clear, lonely && class != CellClass::Solid);
+    }
+}
+
+#[test]
+fn fixed_triangles_keep_ids_and_normals() {
+    let vessel = scene([1.0, 2.0, 3.0]);
+    let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.02).unwrap();
+    let built = TriangleGrid::build(&vessel, &grid, 0.0).unwrap();
+    assert_eq!(built.triangles.len(), vessel.triangles.len());
+    for (k, (fixed, t)) in built.triangles.iter().zip(&vessel.triangles).enumerate() {
+        assert_eq!((fixed.source, fixed.ids), (k as u32, t.vertices));
+        let [a, b, c] = t.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
+        let normal = (b - a).cross(c - a).normalize();
+        assert!(DVec3::from(fixed.normal.map(f64::from)).distance(normal) < 1e-6);
+        for (corner, v) in fixed.corners.iter().zip(t.vertices) {
+            assert_eq!(corner.map(|q| q as u32), grid.to_fixed(vessel.vertices[v as usize]).unwrap());
+        }
+    }
+}
+
+#[test]
+fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
+    let vessel = scene([0.0, 0.0, 1.0]);
+    let grid = Grid::around([0.0; 3], [0.5; 3], 0.1).unwrap();
+    let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
+    assert!(matches!(&error, GeometryError::OutsideGrid { wall, .. } if wall == "wall `tank`"), "{error}");
+
+    let speck = sphere("speck", [0.5; 3], 1e-9, 0, GasSide::Outside);
+    let vessel = Vessel::build(&[tank([1.0; 3]), speck]).unwrap();
+    let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
+    let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
+    assert!(matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"), "{error}");
+}
+
+#[test]
+fn the_oracle_itself_tells_near_from_far() {
+    let cube = Aabb::new(Vector::ZERO, Vector::ONE);
+    assert!(cube.contains_local_point(Vector::splat(0.5)) && !cube.contains_local_point(Vector::splat(1.5)));
+}

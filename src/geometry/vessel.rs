@@ -1,0 +1,267 @@
+//! All walls of a scene as one triangle mesh, and where the gas is.
+//!
+//! Every wall is a solid: what its closed surface encloses, or for a cavity wall (gas inside) all that lies
+//! outside the surface. Gas is where no solid is: `solid_depth` counts the solids that hold a point.
+//!
+//! Gas volume. Over the box B around all walls, with depth d(x): 1[d = 0] = (1 - d) + max(d - 1, 0). The
+//! integral of the first term is exact by the divergence theorem, V_B (1 - cavities) + sum of cavity volumes -
+//! sum of solid volumes; the second, the overlap of solids, is zero unless solids overlap, and is then summed
+//! along lines. So walls that do not overlap leave an exact volume, and a plate let into a wall costs an error
+//! of its hidden rim only.
+//!
+//! Invariants: every wall is watertight and consistently oriented, normals point into the gas, the gas is
+//! bounded and its volume positive.
+
+use super::closed::{area, check_closed, point, signed_volume};
+use super::lines::{Crossing, LineIndex, intervals};
+use super::primitives::{FoundHole, mesh_of};
+use super::sampling::{Line, map, r2, sum};
+use super::GeometryError;
+use crate::scene::{Face, GasSide, Shape, Wall};
+use glam::DVec3;
+
+/// Lines that look for overlaps, and those that measure them.
+const SEARCH_LINES: u64 = 1 << 14;
+pub(super) const VOLUME_LINES: u64 = 1 << 18;
+
+/// Volumes and lengths below this fraction of the vessel's are rounding.
+const ROUNDING: f64 = 1e-12;
+
+#[derive(Debug, Clone)]
+pub struct Vessel {
+    /// m.
+    pub vertices: Vec<[f64; 3]>,
+    pub triangles: Vec<Triangle>,
+    pub holes: Vec<FoundHole>,
+    /// In the scene's order.
+    pub walls: Vec<WallInfo>,
+    /// Smallest and largest coordinates of all vertices, m.
+    pub bounds: ([f64; 3], [f64; 3]),
+    lines: LineIndex,
+    cavities: i32,
+    gas_volume: f64,
+    overlap: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triangle {
+    /// Counter-clockwise seen from the gas.
+    pub vertices: [u32; 3],
+    /// Index of the wall.
+    pub wall: u32,
+    /// Of a plain box its six faces; of a hollow box those of the cavity (its outside and the walls of its
+    /// holes have none); of a plane `Face::Plane` everywhere.
+    pub face: Option<Face>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct WallInfo {
+    pub name: String,
+    /// m2, all of the surface.
+    pub area: f64,
+    /// m3, positive: what the surface encloses, solid or (of a cavity) not.
+    pub volume: f64,
+    /// The gas is inside: the solid is all that lies outside the surface.
+    pub cavity: bool,
+}
+
+impl Vessel {
+    /// The mesh of all walls. Mesh files are read here.
+    pub fn build(walls: &[Wall]) -> Result<Vessel, GeometryError> {
+        let mut vertices: Vec<DVec3> = Vec::new();
+        let mut triangles: Vec<Triangle> = Vec::new();
+        let (mut holes, mut infos) = (Vec::new(), Vec::new());
+        for (index, wall) in walls.iter().enumerate() {
+            let subject = subject(wall);
+            let cavity = is_cavity(wall, &subject)?;
+            let mut mesh = mesh_of(&wall.shape, index as u32, &subject)?;
+            check_closed(&subject, &mesh.vertices, &mesh.triangles)?;
+            let volume = signed_volume(&mesh.vertices, &mesh.triangles);
+            let (min, max) = bounds_of(&mesh.vertices);
+            // Negated: a volume that is not a number is refused too.
+            if !(volume.abs() > ROUNDING * (max - min).max_element().powi(3)) {
+                return Err(GeometryError::NoVolume { wall: subject });
+            }
+            if (volume < 0.0) != cavity {
+                mesh.flip();
+            }
+            infos.push(WallInfo {
+                name: wall.name.clone(),
+                area: area(&mesh.vertices, &mesh.triangles),
+                volume: volume.abs(),
+                cavity,
+            });
+            let first = vertices.len() as u32;
+            let count = triangles.len() + mesh.triangles.len() + vertices.len() + mesh.vertices.len();
+            if u32::try_from(count).is_err() {
+                return Err(GeometryError::TooMany { count });
+            }
+            vertices.extend(&mesh.vertices);
+            triangles.extend(mesh.triangles.iter().zip(&mesh.faces).map(|(t, &face)| Triangle {
+                vertices: t.map(|v| v + first),
+                wall: index as u32,
+                face,
+            }));
+            holes.append(&mut mesh.holes);
+        }
+        if !infos.iter().any(|w| w.cavity) {
+            return Err(GeometryError::Unbounded);
+        }
+        let (min, max) = bounds_of(&vertices);
+        let lines = LineIndex::new(&vertices, triangles.iter().map(|t| (t.vertices, t.wall)), min, max);
+        let mut vessel = Vessel {
+            vertices: vertices.iter().map(|v| v.to_array()).collect(),
+            triangles,
+            holes,
+            cavities: infos.iter().filter(|w| w.cavity).count() as i32,
+            walls: infos,
+            bounds: (min.to_array(), max.to_array()),
+            lines,
+            gas_volume: 0.0,
+            overlap: 0.0,
+        };
+        vessel.find_inside_out(walls)?;
+        vessel.measure()?;
+        Ok(vessel)
+    }
+
+    /// The number of solids that hold the point (m): zero in the gas.
+    pub fn solid_depth(&self, p: [f64; 3]) -> i32 {
+        let mut depth = self.cavities;
+        self.lines.cross(p[1], p[2], |c| {
+            if c.x > p[0] {
+                depth += c.sign;
+            }
+        });
+        depth
+    }
+
+    pub fn is_gas(&self, p: [f64; 3]) -> bool {
+        self.solid_depth(p) == 0
+    }
+
+    /// The x-intervals (m) of gas along the line through (y, z), in order.
+    pub fn gas_intervals(&self, y: f64, z: f64) -> Vec<(f64, f64)> {
+        let mut line = Line::default();
+        self.gas_along(y, z, &mut line);
+        line.gas
+    }
+
+    /// The same into `line.gas`.
+    pub(super) fn gas_along(&self, y: f64, z: f64, line: &mut Line) {
+        self.crossings(y, z, &mut line.crossings);
+        intervals(&line.crossings, self.cavities, |depth| depth == 0, &mut line.gas);
+    }
+
+    /// All crossings of a line, sorted by x.
+    fn crossings(&self, y: f64, z: f64, out: &mut Vec<Crossing>) {
+        out.clear();
+        self.lines.cross(y, z, |c| out.push(c));
+        out.sort_by(|a, b| a.x.total_cmp(&b.x).then((a.wall, a.sign).cmp(&(b.wall, b.sign))));
+    }
+
+    /// m3; exact unless walls overlap (see the head of this module).
+    pub fn gas_volume(&self) -> f64 {
+        self.gas_volume
+    }
+
+    /// Do solids overlap? Found by lines: overlaps of less than about 1e-4 of the vessel's cross-section are
+    /// missed, as is their share of the volume.
+    pub fn overlaps(&self) -> bool {
+        self.overlap > 0.0
+    }
+
+    /// A wall's own number of solids is nowhere negative.
+    fn find_inside_out(&self, walls: &[Wall]) -> Result<(), GeometryError> {
+        let (min, max) = self.bounds;
+        let tolerance = 1e-9 * (max[0] - min[0]);
+        let outside: Vec<i32> = self.walls.iter().map(|w| i32::from(w.cavity)).collect();
+        let found = map(SEARCH_LINES as usize, |i, line| {
+            let [y, z] = self.place(i as u64);
+            self.crossings(y, z, &mut line.crossings);
+            let mut depth = outside.clone();
+            line.crossings.windows(2).find_map(|pair| {
+                depth[pair[0].wall as usize] -= pair[0].sign;
+                let wall = depth.iter().position(|&d| d < 0)?;
+                (pair[1].x - pair[0].x > tolerance).then(|| (wall, DVec3::new((pair[0].x + pair[1].x) / 2.0, y, z)))
+            })
+        });
+        match found.into_iter().flatten().next() {
+            Some((wall, place)) => {
+                Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: point(place) })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Line `i` of the sequence over the bounds: (y, z).
+    fn place(&self, i: u64) -> [f64; 2] {
+        let (min, max) = self.bounds;
+        let [u, v] = r2(i);
+        [min[1] + u * (max[1] - min[1]), min[2] + v * (max[2] - min[2])]
+    }
+
+    fn measure(&mut self) -> Result<(), GeometryError> {
+        let (min, max) = self.bounds;
+        let size: [f64; 3] = std::array::from_fn(|axis| max[axis] - min[axis]);
+        let all = size[0] * size[1] * size[2];
+        let overlap = |lines: u64| {
+            let [length] = sum(lines, |i, line| {
+                let [y, z] = self.place(i);
+                self.crossings(y, z, &mut line.crossings);
+                [self.overlap_length(&line.crossings)]
+            });
+            size[1] * size[2] * length / lines as f64
+        };
+        let seen = overlap(SEARCH_LINES);
+        let overlap = if seen > ROUNDING * all { overlap(VOLUME_LINES) } else { 0.0 };
+        let total = |cavity: bool| self.walls.iter().filter(|w| w.cavity == cavity).map(|w| w.volume).sum::<f64>();
+        let volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
+        if !(volume > ROUNDING * all) {
+            return Err(GeometryError::NoGas);
+        }
+        self.overlap = overlap;
+        self.gas_volume = volume;
+        Ok(())
+    }
+
+    /// Integral of max(depth - 1, 0) along a line through the bounds.
+    fn overlap_length(&self, crossings: &[Crossing]) -> f64 {
+        let (min, max) = (self.bounds.0[0], self.bounds.1[0]);
+        let mut depth = self.cavities;
+        let mut from = min;
+        let mut length = 0.0;
+        for c in crossings {
+            length += f64::from((depth - 1).max(0)) * (c.x - from);
+            depth -= c.sign;
+            from = c.x;
+        }
+        length + f64::from((depth - 1).max(0)) * (max - from)
+    }
+}
+
+/// How errors name a wall.
+fn subject(wall: &Wall) -> String {
+    match &wall.shape {
+        Shape::Mesh { path, .. } => format!("wall `{}` ({})", wall.name, path.display()),
+        _ => format!("wall `{}`", wall.name),
+    }
+}
+
+/// Is the solid outside the surface? Shapes with a thickness are solids; mesh files may be either.
+fn is_cavity(wall: &Wall, subject: &str) -> Result<bool, GeometryError> {
+    let thick = matches!(wall.shape, Shape::Box { thickness: Some(_), .. } | Shape::Plane { .. });
+    let (found, allowed) = match (wall.gas, thick) {
+        (GasSide::Inside, false) => return Ok(true),
+        (GasSide::Outside, _) | (GasSide::Both, true) => return Ok(false),
+        (GasSide::Both, false) if matches!(wall.shape, Shape::Mesh { .. }) => return Ok(false),
+        (GasSide::Both, false) => ("both", "inside or outside"),
+        (GasSide::Inside, true) => ("inside", "both"),
+    };
+    Err(GeometryError::Side { wall: subject.into(), found, allowed })
+}
+
+fn bounds_of(vertices: &[DVec3]) -> (DVec3, DVec3) {
+    let far = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
+    vertices.iter().fold(far, |(min, max), v| (min.min(*v), max.max(*v)))
+}
