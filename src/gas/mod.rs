@@ -1,4 +1,24 @@
 //! Kinetic theory and thermodynamics on the host, f64 throughout.
+//!
+//! Deterministic: every transcendental function of a draw is that of crate `libm`.
+
+mod control_volume;
+mod curve;
+mod discharge;
+mod inflow;
+mod initial;
+pub mod kinetics;
+mod philox;
+mod random;
+pub mod thermo;
+
+pub use control_volume::{Collisions, ControlVolume, Reservoir, Source, State, moles_at};
+pub use curve::{FlowIntegral, flow_times_temperature, value_held, value_inside};
+pub use discharge::{Side, exchange};
+pub use inflow::{Inflow, Newborn};
+pub use initial::{FillError, Filling, fill};
+pub use philox::philox4x32_10;
+pub use random::{Draws, Purpose, key};
 
 /// One particle on the host, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,232 @@
+//! The control-volume (0-D) reference: uniform chambers, the curves of the orifices, the holes between.
+//!
+//! Per chamber: dn_g/dt = inflow + net flow through openings, dU/dt = inflow x h + energy through openings,
+//! with U = sum n cv T and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
+//! number Kn = lambda / length, lambda from the number density of *particles* (moles / V / nu) on the
+//! upstream side: the reference of what the run itself models. So that nothing jumps where two pressures
+//! cross, the two densities are blended while the pressures differ by less than 2 %.
+//!
+//! Integrated with the classical Runge-Kutta method (RK4), each step against two halves of it, between
+//! the kinks of all curves. Invariant: Runge-Kutta keeps linear invariants, and its quadrature is exact for a
+//! product of two linear curves, so moles and U = U0 + integral h dm hold to rounding at any step.
+
+use super::curve::{value_held, value_inside};
+use super::discharge::{Side, exchange};
+use super::{kinetics, thermo};
+use crate::scene::{GAS_CONSTANT, Gas, Opening, Orifice};
+
+/// Error of a step over the chamber's moles or energy.
+const TOLERANCE: f64 = 1e-10;
+/// The smallest step as a fraction of the stretch between two kinks or output times.
+const LEAST_STEP: f64 = 1e-7;
+const BLENDED_DIFFERENCE: f64 = 0.02;
+
+/// Chambers, what flows into them and what connects them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlVolume {
+    pub gases: Vec<Gas>,
+    /// m3, by chamber.
+    pub volumes: Vec<f64>,
+    pub sources: Vec<Source>,
+    pub openings: Vec<Opening>,
+    /// `None`: no collisions, every hole is in the kinetic limit.
+    pub collisions: Option<Collisions>,
+}
+
+/// An orifice and the chamber it blows into.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    pub chamber: usize,
+    pub orifice: Orifice,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Collisions {
+    /// m.
+    pub diameter: f64,
+    pub moles_per_particle: f64,
+}
+
+/// Contents of a chamber at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reservoir {
+    /// By gas.
+    pub moles: Vec<f64>,
+    /// K.
+    pub temperature: f64,
+}
+
+/// A chamber at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Pa.
+    pub pressure: f64,
+    /// K.
+    pub temperature: f64,
+    /// By gas.
+    pub moles: Vec<f64>,
+    /// Internal energy, J.
+    pub energy: f64,
+}
+
+impl ControlVolume {
+    /// The chambers at each of `times` (s, from 0, in order), starting from `initial` (one per chamber) at
+    /// time 0. Outer index: time.
+    pub fn solve(&self, initial: &[Reservoir], times: &[f64]) -> Vec<Vec<State>> {
+        let mut contents = Vec::with_capacity(initial.len() * self.stride());
+        for reservoir in initial {
+            contents.extend_from_slice(&reservoir.moles);
+            contents.push(self.heat_capacity(&reservoir.moles) * reservoir.temperature);
+        }
+        let mut kinks = self.kinks();
+        kinks.extend_from_slice(times);
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        let mut kinks = kinks.into_iter().filter(|&t| t > 0.0).peekable();
+        let mut now = 0.0;
+        let mut step = f64::INFINITY;
+        let mut states = Vec::with_capacity(times.len());
+        for &time in times {
+            while let Some(end) = kinks.next_if(|&kink| kink <= time) {
+                self.advance(&mut contents, now, end, &mut step);
+                now = end;
+            }
+            states.push((0..self.volumes.len()).map(|chamber| self.state(&contents, chamber)).collect());
+        }
+        states
+    }
+
+    /// Numbers per chamber in the vector of unknowns: moles of each gas, then U.
+    fn stride(&self) -> usize {
+        self.gases.len() + 1
+    }
+
+    /// Positive times at which a curve bends or ends.
+    fn kinks(&self) -> Vec<f64> {
+        let curves = self.sources.iter().flat_map(|s| [&s.orifice.mass_flow, &s.orifice.temperature]);
+        curves.flat_map(|curve| &curve.points).map(|point| point[0]).collect()
+    }
+
+    fn heat_capacity(&self, moles: &[f64]) -> f64 {
+        moles.iter().zip(&self.gases).map(|(n, gas)| n * gas.molar_cv).sum()
+    }
+
+    fn side<'a>(&self, contents: &'a [f64], chamber: usize) -> Side<'a> {
+        let own = &contents[chamber * self.stride()..(chamber + 1) * self.stride()];
+        let (moles, energy) = own.split_at(self.gases.len());
+        let capacity = self.heat_capacity(moles);
+        let temperature = if capacity > 0.0 { energy[0] / capacity } else { 0.0 };
+        Side { moles, volume: self.volumes[chamber], temperature }
+    }
+
+    fn state(&self, contents: &[f64], chamber: usize) -> State {
+        let side = self.side(contents, chamber);
+        let energy = contents[(chamber + 1) * self.stride() - 1];
+        State { pressure: side.pressure(), temperature: side.temperature, moles: side.moles.to_vec(), energy }
+    }
+
+    /// Integrates over a stretch without kinks; `step` is the step to try, kept from stretch to stretch.
+    fn advance(&self, contents: &mut Vec<f64>, start: f64, end: f64, step: &mut f64) {
+        let flowing: Vec<bool> = self
+            .sources
+            .iter()
+            .map(|source| value_inside(&source.orifice.mass_flow, 0.5 * (start + end)) > 0.0)
+            .collect();
+        let least = LEAST_STEP * (end - start);
+        let mut now = start;
+        while now < end {
+            let last = *step >= end - now;
+            let tried = if last { end - now } else { *step };
+            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing);
+            let whole = runge_kutta(contents, now, tried, &rate);
+            let half = runge_kutta(contents, now, 0.5 * tried, &rate);
+            let halves = runge_kutta(&half, now + 0.5 * tried, 0.5 * tried, &rate);
+            let error = self.error(&whole, &halves) / (15.0 * TOLERANCE);
+            if error <= 1.0 || tried <= least {
+                *contents = halves;
+                now = if last { end } else { now + tried };
+            }
+            // A NaN (a step so long that a chamber ran empty) compares false everywhere and shrinks the step.
+            let factor = if error > 0.0 {
+                0.9 * error.powf(-0.2)
+            } else if error == 0.0 {
+                4.0
+            } else {
+                0.1
+            };
+            if !(last && error <= 1.0) || factor < 1.0 {
+                *step = (tried * factor.clamp(0.1, 4.0)).max(least);
+            }
+        }
+    }
+
+    /// Largest difference over the chamber's total moles or energy.
+    fn error(&self, a: &[f64], b: &[f64]) -> f64 {
+        let mut worst = 0.0;
+        for (a, b) in a.chunks(self.stride()).zip(b.chunks(self.stride())) {
+            let moles: f64 = b[..self.gases.len()].iter().sum();
+            for (index, (a, b)) in a.iter().zip(b).enumerate() {
+                let scale = if index < self.gases.len() { moles } else { b.abs() };
+                let error = if scale > 0.0 { (a - b).abs() / scale } else { f64::NAN };
+                if error > worst || error.is_nan() {
+                    worst = error;
+                }
+            }
+        }
+        worst
+    }
+
+    /// Time derivative of the unknowns.
+    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool]) -> Vec<f64> {
+        let stride = self.stride();
+        let mut rate = vec![0.0; contents.len()];
+        for (Source { chamber, orifice }, _) in self.sources.iter().zip(flowing).filter(|(_, flowing)| **flowing) {
+            let moles = value_held(&orifice.mass_flow, time) / thermo::molar_mass(&orifice.mixture, &self.gases);
+            let temperature = value_held(&orifice.temperature, time);
+            for &(gas, fraction) in &orifice.mixture.0 {
+                rate[chamber * stride + gas] += moles * fraction;
+                rate[(chamber + 1) * stride - 1] += moles * fraction * self.gases[gas].molar_cp() * temperature;
+            }
+        }
+        let mut flux = vec![0.0; self.gases.len()];
+        for opening in &self.openings {
+            let [a, b] = opening.between;
+            let (side_a, side_b) = (self.side(contents, a), self.side(contents, b));
+            flux.fill(0.0);
+            let knudsen = self.knudsen(side_a, side_b, opening.length);
+            let energy = exchange(&self.gases, side_a, side_b, knudsen, &mut flux);
+            for (gas, flow) in flux.iter().copied().chain([energy]).enumerate() {
+                rate[a * stride + gas] -= opening.area * flow;
+                rate[b * stride + gas] += opening.area * flow;
+            }
+        }
+        rate
+    }
+
+    fn knudsen(&self, a: Side, b: Side, length: f64) -> f64 {
+        let Some(Collisions { diameter, moles_per_particle }) = self.collisions else { return f64::INFINITY };
+        let density = |side: Side| side.moles.iter().sum::<f64>() / (side.volume * moles_per_particle);
+        let (pa, pb) = (a.pressure(), b.pressure());
+        let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);
+        let upstream = weight * density(a) + (1.0 - weight) * density(b);
+        kinetics::mean_free_path(upstream, diameter) / length
+    }
+}
+
+fn runge_kutta(y: &[f64], time: f64, step: f64, rate: &dyn Fn(f64, &[f64]) -> Vec<f64>) -> Vec<f64> {
+    let moved = |slope: &[f64], by: f64| -> Vec<f64> { y.iter().zip(slope).map(|(y, k)| y + by * k).collect() };
+    let k1 = rate(time, y);
+    let k2 = rate(time + 0.5 * step, &moved(&k1, 0.5 * step));
+    let k3 = rate(time + 0.5 * step, &moved(&k2, 0.5 * step));
+    let k4 = rate(time + step, &moved(&k3, step));
+    let mean: Vec<f64> = (0..y.len()).map(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0).collect();
+    moved(&mean, step)
+}
+
+/// Moles of one gas in a chamber: p V / (R T).
+pub fn moles_at(pressure: f64, volume: f64, temperature: f64) -> f64 {
+    pressure * volume / (GAS_CONSTANT * temperature)
+}
+
+#[cfg(test)]
+mod tests;

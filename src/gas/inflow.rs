@@ -1,0 +1,278 @@
+//! Exact injection through orifices (specification, section 4 "Orifice").
+//!
+//! **When.** Particle j of gas g enters orifice o when the moles of g that have flowed there reach
+//! (j + 1/2) nu, so the injected mass is within half a particle of the curve's integral at every time,
+//! per gas and orifice.
+//!
+//! **With what.** Without a jet the normal speed has the Maxwell speed distribution, pdf ~ v^2 exp(-m
+//! v^2/2kT), i.e. m v^2/2kT is Gamma(3/2); tangential components are normal, spin is Gamma(zeta/2) kT, all at
+//! the stagnation temperature T0 of the moment: the mean energy is exactly the enthalpy h = (5 + zeta)/2 kT0.
+//! With a jet of Mach number M, a flux Maxwellian drifts at u = M sqrt(gamma R Ts / M_mix) with
+//! cp Ts + u^2/2 = cp T0, its direction uniform over the solid angle of the cone.
+//!
+//! **Energy debt.** Each orifice carries the sum of h - e over its particles. A particle pays a fraction of
+//! the debt its predecessors left, by its spin (never below zero), or by its speed where zeta = 0 (energy
+//! within a factor of 4, so that it still leaves the plane). The fraction of 1/8 leaves the distributions
+//! nearly as drawn (it adds a/(2-a) = 7 % of a particle's energy variance) and keeps the debt at about two
+//! standard deviations of one particle's energy. The last few particles of an orifice settle what is left, speed
+//! included, so that after them the energy injected is the enthalpy injected.
+//!
+//! Invariants: ids are dense in order of entry over all orifices (ties by orifice, then by the mixture's order);
+//! draws are keyed on the id only; the newborns do not depend on how the time is cut by
+//! [`Inflow::take_until`].
+
+use super::curve::{FlowIntegral, value_held};
+use super::{Draws, Particle, Purpose, thermo};
+use crate::scene::{GAS_CONSTANT, Gas, Jet, Orifice};
+
+/// Share of the debt that one particle pays.
+const DEBT_SHARE: f64 = 0.125;
+/// Particles at the end of an orifice's flow that settle the whole debt.
+const SETTLING: u64 = 16;
+/// Largest change of a particle's translational energy when speed pays.
+const SPEED_PAYMENT: f64 = 4.0;
+
+/// A particle that starts on an orifice's disc at a time, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Newborn {
+    pub time: f64,
+    pub particle: Particle,
+}
+
+/// All the inflow of a run, in order. A clone is a checkpoint: the state is plain data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inflow {
+    sources: Vec<Source>,
+    streams: Vec<Stream>,
+    gases: Vec<Gas>,
+    moles_per_particle: f64,
+    seed: u64,
+    first_id: u32,
+    entered: u64,
+    enthalpy: f64,
+}
+
+/// One orifice and its debt.
+#[derive(Debug, Clone, PartialEq)]
+struct Source {
+    orifice: Orifice,
+    /// Two unit vectors in the disc.
+    tangents: [[f64; 3]; 2],
+    left: u64,
+    debt: f64,
+}
+
+/// One gas of one orifice.
+#[derive(Debug, Clone, PartialEq)]
+struct Stream {
+    source: usize,
+    gas: usize,
+    /// Integral of the orifice's mass flow, kg.
+    flow: FlowIntegral,
+    /// kg of the whole mixture that flow by while this gas delivers one particle.
+    mass_per_particle: f64,
+    count: u64,
+    taken: u64,
+    next: Option<f64>,
+}
+
+impl Stream {
+    fn time_of(&self, index: u64) -> Option<f64> {
+        self.flow.time_of((index as f64 + 0.5) * self.mass_per_particle)
+    }
+
+    fn counted(mut self, end_time: f64) -> Self {
+        let enters = |stream: &Self, index| stream.time_of(index).is_some_and(|time| time < end_time);
+        // The quotient may miss the last particle by rounding: ask the schedule itself.
+        self.count = (self.flow.total() / self.mass_per_particle + 0.5) as u64;
+        while enters(&self, self.count) {
+            self.count += 1;
+        }
+        while self.count > 0 && !enters(&self, self.count - 1) {
+            self.count -= 1;
+        }
+        self.next = if self.count > 0 { self.time_of(0) } else { None };
+        self
+    }
+
+    fn advance(&mut self) {
+        self.taken += 1;
+        self.next = if self.taken < self.count { self.time_of(self.taken) } else { None };
+    }
+}
+
+impl Inflow {
+    /// The inflow of a run from time 0 to `end_time` (s) as particles of `moles_per_particle` with ids from
+    /// `first_id`. Flows must not be negative; `first_id` + [`total`](Self::total) must fit 32 bits (held by
+    /// `scene::load` and by the plan).
+    pub fn new(
+        orifices: &[Orifice],
+        gases: &[Gas],
+        moles_per_particle: f64,
+        seed: u64,
+        first_id: u32,
+        end_time: f64,
+    ) -> Self {
+        let mut streams = Vec::new();
+        let mut sources = Vec::new();
+        for (source, orifice) in orifices.iter().enumerate() {
+            let flow = FlowIntegral::new(&orifice.mass_flow, end_time);
+            let molar_mass = thermo::molar_mass(&orifice.mixture, gases);
+            let of_orifice = orifice.mixture.0.iter().map(|&(gas, fraction)| {
+                let mass_per_particle = moles_per_particle * molar_mass / fraction;
+                let flow = flow.clone();
+                Stream { source, gas, flow, mass_per_particle, count: 0, taken: 0, next: None }.counted(end_time)
+            });
+            let first = streams.len();
+            streams.extend(of_orifice);
+            let left = streams[first..].iter().map(|stream| stream.count).sum();
+            let tangents = tangents(orifice.direction);
+            sources.push(Source { orifice: orifice.clone(), tangents, left, debt: 0.0 });
+        }
+        let gases = gases.to_vec();
+        Self { sources, streams, gases, moles_per_particle, seed, first_id, entered: 0, enthalpy: 0.0 }
+    }
+
+    /// Particles of the whole run, taken and to come.
+    pub fn total(&self) -> u64 {
+        self.streams.iter().map(|stream| stream.count).sum()
+    }
+
+    /// The same by gas.
+    pub fn total_by_gas(&self) -> Vec<u64> {
+        self.by_gas(|stream| stream.count)
+    }
+
+    /// Particles taken so far, by gas.
+    pub fn entered_by_gas(&self) -> Vec<u64> {
+        self.by_gas(|stream| stream.taken)
+    }
+
+    /// Enthalpy of the particles taken so far at their temperatures of entry, J.
+    pub fn enthalpy(&self) -> f64 {
+        self.enthalpy
+    }
+
+    /// Enthalpy of the particles taken so far less their energy, J.
+    pub fn debt(&self) -> f64 {
+        self.sources.iter().map(|source| source.debt).sum()
+    }
+
+    /// The particles not yet taken that enter before `end` (s), in order of time.
+    pub fn take_until(&mut self, end: f64) -> Vec<Newborn> {
+        let mut newborns = Vec::new();
+        while let Some((stream, time)) = self.earliest().filter(|&(_, time)| time < end) {
+            self.streams[stream].advance();
+            newborns.push(self.emit(stream, time));
+        }
+        newborns
+    }
+
+    fn by_gas(&self, number: impl Fn(&Stream) -> u64) -> Vec<u64> {
+        let mut sums = vec![0; self.gases.len()];
+        for stream in &self.streams {
+            sums[stream.gas] += number(stream);
+        }
+        sums
+    }
+
+    /// Streams lie in order of orifice: the first of equals is the one of the lower index.
+    fn earliest(&self) -> Option<(usize, f64)> {
+        let next = self.streams.iter().enumerate().filter_map(|(index, stream)| Some((index, stream.next?)));
+        next.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn emit(&mut self, stream: usize, time: f64) -> Newborn {
+        let Stream { source, gas, .. } = self.streams[stream];
+        let id = self.first_id.wrapping_add(self.entered as u32);
+        self.entered += 1;
+        let source = &mut self.sources[source];
+        source.left -= 1;
+        let species = &self.gases[gas];
+        let temperature = value_held(&source.orifice.temperature, time);
+        let enthalpy = self.moles_per_particle * species.molar_cp() * temperature;
+        self.enthalpy += enthalpy;
+        let mass = species.molar_mass * self.moles_per_particle;
+
+        let mut draws = Draws::new(self.seed, Purpose::Inflow, id);
+        let position = source.point_on_disc(&mut draws);
+        let (local, static_temperature) = match source.orifice.jet {
+            None => (effusing_velocity(temperature, species, &mut draws), temperature),
+            Some(jet) => source.jet_velocity(jet, temperature, species, &self.gases, &mut draws),
+        };
+        let thermal_energy = self.moles_per_particle * GAS_CONSTANT * static_temperature;
+        let mut spin_energy = thermal_energy * draws.gamma(0.5 * species.spin_dof());
+        let translational = 0.5 * mass * local.iter().map(|v| v * v).sum::<f64>();
+
+        let settling = source.left < SETTLING;
+        let drawn = translational + spin_energy;
+        let mut due = if settling { source.debt + enthalpy - drawn } else { DEBT_SHARE * source.debt };
+        if species.spin_dof() > 0.0 {
+            let paid = due.max(-spin_energy);
+            spin_energy += paid;
+            due -= paid;
+        }
+        let mut factor = 1.0;
+        if settling || species.spin_dof() <= 0.0 {
+            factor = (1.0 + due / translational).clamp(1.0 / SPEED_PAYMENT, SPEED_PAYMENT);
+        }
+        source.debt += enthalpy - (factor * translational + spin_energy);
+        let velocity = source.to_global(local.map(|v| v * factor.sqrt()));
+        Newborn { time, particle: Particle { id, gas: gas as u8, position, velocity, spin_energy } }
+    }
+}
+
+/// Normal, then two tangential components, m/s: mean energy (5 + zeta)/2 kT with the spin.
+fn effusing_velocity(temperature: f64, gas: &Gas, draws: &mut Draws) -> [f64; 3] {
+    let c0 = (GAS_CONSTANT * temperature / gas.molar_mass).sqrt();
+    [c0 * (2.0 * draws.gamma(1.5)).sqrt(), c0 * draws.normal(), c0 * draws.normal()]
+}
+
+impl Source {
+    fn point_on_disc(&self, draws: &mut Draws) -> [f64; 3] {
+        let radius = (self.orifice.area / std::f64::consts::PI * draws.uniform()).sqrt();
+        let angle = 2.0 * std::f64::consts::PI * draws.uniform();
+        let offset = self.to_global([0.0, radius * libm::cos(angle), radius * libm::sin(angle)]);
+        std::array::from_fn(|axis| self.orifice.position[axis] + offset[axis])
+    }
+
+    /// Velocity in the orifice's axes, m/s, and the jet's static temperature, K.
+    fn jet_velocity(&self, jet: Jet, stagnation: f64, gas: &Gas, gases: &[Gas], draws: &mut Draws) -> ([f64; 3], f64) {
+        let gamma = thermo::heat_capacity_ratio(&self.orifice.mixture, gases);
+        let temperature = stagnation / (1.0 + 0.5 * (gamma - 1.0) * jet.mach * jet.mach);
+        let molar_mass = thermo::molar_mass(&self.orifice.mixture, gases);
+        let drift = jet.mach * (gamma * GAS_CONSTANT * temperature / molar_mass).sqrt();
+        let cosine = 1.0 - draws.uniform() * (1.0 - libm::cos(jet.cone_angle));
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let around = 2.0 * std::f64::consts::PI * draws.uniform();
+        let c0 = (GAS_CONSTANT * temperature / gas.molar_mass).sqrt();
+        // A cone wider than a half space would drift into the wall: such directions graze instead.
+        let normal = c0 * draws.drifting_flux_speed((drift * cosine / c0).max(0.0));
+        let velocity = [
+            normal,
+            drift * sine * libm::cos(around) + c0 * draws.normal(),
+            drift * sine * libm::sin(around) + c0 * draws.normal(),
+        ];
+        (velocity, temperature)
+    }
+
+    fn to_global(&self, local: [f64; 3]) -> [f64; 3] {
+        let axes = [self.orifice.direction, self.tangents[0], self.tangents[1]];
+        std::array::from_fn(|i| axes[0][i] * local[0] + axes[1][i] * local[1] + axes[2][i] * local[2])
+    }
+}
+
+/// Two unit vectors perpendicular to a unit vector and to each other.
+fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
+    let normal = glam::DVec3::from_array(normal);
+    // The axis the normal leans on least gives the best-conditioned cross product.
+    let least = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z]
+        .into_iter()
+        .min_by(|a, b| normal.dot(*a).abs().total_cmp(&normal.dot(*b).abs()))
+        .unwrap_or(glam::DVec3::X);
+    let first = normal.cross(least).normalize();
+    [first.to_array(), normal.cross(first).to_array()]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+use super::*;
+use crate::scene::{Curve, Mixture};
+
+fn gases() -> Vec<Gas> {
+    let gas = |name: &str, molar_mass, spin: f64| Gas {
+        name: name.into(),
+        molar_mass,
+        molar_cv: 0.5 * (3.0 + spin) * GAS_CONSTANT,
+    };
+    vec![gas("N2", 0.028, 2.0), gas("He", 0.004, 0.0), gas("CO2", 0.044, 4.2)]
+}
+
+fn orifice(mixture: Vec<(usize, f64)>, jet: Option<Jet>) -> Orifice {
+    Orifice {
+        name: "inflator".into(),
+        position: [0.1, 0.2, 0.3],
+        direction: [0.6, 0.0, 0.8],
+        area: 1e-4,
+        mass_flow: Curve { points: vec![[0.0, 0.0], [0.01, 2.0], [0.03, 0.5], [0.06, 0.0]] },
+        temperature: Curve { points: vec![[0.0, 900.0], [0.05, 500.0]] },
+        mixture: Mixture(mixture),
+        jet,
+    }
+}
+
+const NU: f64 = 1e-4;
+
+fn inflow(orifices: &[Orifice]) -> Inflow {
+    Inflow::new(orifices, &gases(), NU, 11, 100, 0.1)
+}
+
+fn energy(newborn: &Newborn) -> f64 {
+    let mass = gases()[usize::from(newborn.particle.gas)].molar_mass * NU;
+    0.5 * mass * newborn.particle.velocity.iter().map(|v| v * v).sum::<f64>() + newborn.particle.spin_energy
+}
+
+fn enthalpy(newborn: &Newborn) -> f64 {
+    let temperature = value_held(&orifice(vec![], None).temperature, newborn.time);
+    NU * gases()[usize::from(newborn.particle.gas)].molar_cp() * temperature
+}
+
+/// Mass: within half a particle per gas and orifice of the curve's integral, at every moment.
+#[test]
+fn mass_is_within_half_a_particle() {
+    let orifices = [orifice(vec![(0, 0.7), (1, 0.3)], None), orifice(vec![(0, 1.0)], None)];
+    let mut whole = inflow(&orifices);
+    assert_eq!(whole.total(), whole.total_by_gas().iter().sum::<u64>());
+    let worst = |counts: &[u64], end: f64| {
+        let kg = FlowIntegral::new(&orifices[0].mass_flow, end).total();
+        let per_mole = kg / thermo::molar_mass(&orifices[0].mixture, &gases());
+        (counts[1] as f64 - 0.3 * per_mole / NU).abs()
+    };
+    for step in 1..=100 {
+        let end = f64::from(step) * 1e-3;
+        whole.take_until(end);
+        let counts = whole.entered_by_gas();
+        assert!(worst(&counts, end) <= 0.5 + 1e-6);
+    }
+    assert_eq!(whole.entered_by_gas(), whole.total_by_gas());
+    // The check can fail: one particle less is outside.
+    let mut counts = whole.entered_by_gas();
+    counts[1] -= 1;
+    assert!(worst(&counts, 0.1) > 0.5);
+    // Nothing enters after the end of the run.
+    let short = Inflow::new(&orifices, &gases(), NU, 11, 0, 0.01);
+    assert!(short.total() < whole.total() / 2);
+}
+
+/// Energy: exactly the enthalpy at the temperatures of entry, for spin, for speed, for mixtures and jets.
+#[test]
+fn energy_is_the_enthalpy_injected() {
+    let jet = |mach| Some(Jet { mach, cone_angle: 0.3 });
+    for orifices in [
+        vec![orifice(vec![(0, 1.0)], None)],
+        vec![orifice(vec![(1, 1.0)], None)],
+        vec![orifice(vec![(0, 0.5), (1, 0.2), (2, 0.3)], None), orifice(vec![(2, 1.0)], jet(0.0))],
+        vec![orifice(vec![(0, 1.0)], jet(2.5)), orifice(vec![(1, 1.0)], jet(1.0))],
+    ] {
+        let mut inflow = inflow(&orifices);
+        // Halfway the debt accounts for the difference.
+        let mut newborns = inflow.take_until(0.02);
+        let sums = |newborns: &[Newborn]| {
+            let (e, h) = (newborns.iter().map(energy).sum::<f64>(), newborns.iter().map(enthalpy).sum::<f64>());
+            assert!(newborns.len() > 1000);
+            (e, h)
+        };
+        let (e, h) = sums(&newborns);
+        assert!(((e + inflow.debt()) / h - 1.0).abs() < 1e-12);
+        assert!((inflow.enthalpy() / h - 1.0).abs() < 1e-12);
+        assert!((inflow.debt() / h).abs() < 0.01);
+        assert!(inflow.debt() != 0.0, "the check must see a debt");
+        newborns.extend(inflow.take_until(0.1));
+        let (e, h) = sums(&newborns);
+        assert!(((e + inflow.debt()) / h - 1.0).abs() < 1e-12);
+        assert!((e / h - 1.0).abs() < 1e-9, "{}", e / h - 1.0);
+        assert!(newborns.iter().all(|newborn| newborn.particle.spin_energy >= 0.0));
+    }
+}
+
+/// The same newborns, bit for bit, however the time is cut; ids dense, times in order.
+#[test]
+fn chunks_do_not_matter() {
+    let orifices = [orifice(vec![(0, 0.7), (1, 0.3)], None), orifice(vec![(0, 1.0)], None)];
+    let mut once = inflow(&orifices);
+    let whole = once.take_until(0.1);
+    assert_eq!(whole.len() as u64, once.total());
+    assert!(whole.iter().zip(100..).all(|(newborn, id)| newborn.particle.id == id));
+    assert!(whole.windows(2).all(|pair| pair[0].time <= pair[1].time));
+    let mut cut = inflow(&orifices);
+    let mut parts = Vec::new();
+    let mut end = 0.0;
+    while end < 0.1 {
+        end += 7.3e-5;
+        parts.extend(cut.take_until(end));
+        cut = cut.clone();
+    }
+    assert_eq!(parts, whole);
+    assert_eq!(cut, once);
+    // The check can fail: another seed gives other velocities.
+    let other = Inflow::new(&orifices, &gases(), NU, 12, 100, 0.1).take_until(0.1);
+    assert_ne!(other, whole);
+}
+
+/// Normal speeds of the default inflow: <v> = sqrt(8 kT / pi m), <v^2> = 3 kT/m, at a constant temperature.
+#[test]
+fn default_speeds_are_maxwellian() {
+    let mut source = orifice(vec![(0, 1.0)], None);
+    source.temperature = Curve { points: vec![[0.0, 700.0]] };
+    let newborns = Inflow::new(&[source.clone()], &gases(), 2e-5, 1, 0, 0.1).take_until(0.1);
+    let c0 = (GAS_CONSTANT * 700.0 / 0.028f64).sqrt();
+    let count = newborns.len() as f64;
+    assert!(count > 50_000.0);
+    let along = |n: &Newborn| n.particle.velocity.iter().zip(source.direction).map(|(v, d)| v * d).sum::<f64>() / c0;
+    let mean = newborns.iter().map(along).sum::<f64>() / count;
+    let square = newborns.iter().map(|n| along(n).powi(2)).sum::<f64>() / count;
+    let expected = (8.0 / std::f64::consts::PI).sqrt();
+    let error = ((3.0 - expected * expected) / count).sqrt();
+    assert!((mean - expected).abs() < 4.0 * error, "{mean}");
+    assert!((square - 3.0).abs() < 4.0 * (6.0 / count).sqrt(), "{square}");
+    assert!((mean - (std::f64::consts::PI / 2.0).sqrt()).abs() > 4.0 * error, "a flux Maxwellian must not pass");
+    // Positions lie on the disc, uniformly: <r^2> = area / 2 pi.
+    let r2 = |n: &Newborn| n.particle.position.iter().zip(source.position).map(|(p, o)| (p - o) * (p - o)).sum::<f64>();
+    let mean_r2 = newborns.iter().map(r2).sum::<f64>() / count;
+    assert!((mean_r2 / (1e-4 / (2.0 * std::f64::consts::PI)) - 1.0).abs() < 0.02);
+    assert!(newborns.iter().all(|n| r2(n) <= 1e-4 / std::f64::consts::PI * (1.0 + 1e-9) && along(n) > 0.0));
+}
+
+/// A fast jet flies at its drift speed: <v_n> close to u cos, and static temperature below stagnation.
+#[test]
+fn jets_drift() {
+    let jet = Jet { mach: 6.0, cone_angle: 1e-3 };
+    let mut source = orifice(vec![(0, 1.0)], Some(jet));
+    source.temperature = Curve { points: vec![[0.0, 700.0]] };
+    let newborns = inflow(&[source.clone()]).take_until(0.1);
+    let ts = 700.0 / (1.0 + 0.2 * 36.0);
+    let c0 = (GAS_CONSTANT * ts / 0.028f64).sqrt();
+    let u = 6.0 * 1.4f64.sqrt() * c0;
+    let along = |n: &Newborn| n.particle.velocity.iter().zip(source.direction).map(|(v, d)| v * d).sum::<f64>();
+    let mean = newborns.iter().map(along).sum::<f64>() / newborns.len() as f64;
+    // Flux weighting adds c0^2 / u.
+    let expected = u + c0 * c0 / u;
+    let error = c0 / (newborns.len() as f64).sqrt();
+    assert!((mean - expected).abs() < 4.0 * error, "{mean} {expected}");
+    assert!((mean - u).abs() > 4.0 * error);
+}

@@ -1,0 +1,165 @@
+//! The decisions in order: amounts, particles, diameter, rounds, step, grid.
+
+use super::amounts::{Amounts, highest_temperature};
+use super::error::{MOST_CELLS, MOST_GASES};
+use super::population::{Population, openings, wanted};
+use super::render::significant;
+use super::resolution::{DEFAULT_OCCUPANCY, Extreme, MeanState, Resolution};
+use super::warnings::warnings;
+use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
+use crate::gas::kinetics;
+use crate::geometry::Grid;
+use crate::scene::{Method, Scene};
+
+const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
+const LADDER_LEVELS: u32 = 12;
+const STEPS_PER_INTERVAL: u32 = 32;
+const TALLY_EVERY: u32 = 8;
+/// Particles in a mean block of the coarse grid, at least.
+const PER_BLOCK: f64 = 64.0;
+
+/// Decides what to model, or says why it cannot be modelled.
+pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
+    if scene.gases.len() > MOST_GASES {
+        return Err(PlanError::TooManyGases { found: scene.gases.len(), limit: MOST_GASES });
+    }
+    let mut reasons = Vec::new();
+    let method = method(scene, &mut reasons);
+    let amounts = Amounts::of(scene, measured)?;
+    let wanted_occupancy = scene.model.occupancy.unwrap_or(DEFAULT_OCCUPANCY);
+    let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
+    let population = Population::count(scene, &amounts, wanted)?;
+    let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
+    let particles = initial_particles + injected_particles;
+
+    let (temperature_max, why) = highest_temperature(scene);
+    reasons.push(Reason {
+        quantity: "highest temperature".into(),
+        value: format!("{} K", significant(temperature_max)),
+        why,
+    });
+    let extreme = Extreme(kinetics::thermal_square(temperature_max, amounts.lightest(scene)));
+    let states = mean_states(scene, measured, &amounts, [initial_particles, particles]);
+    let number_density = states[1].number_density;
+    let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
+    let (collision_number, gases) = gases(scene, &population, &mut reasons)?;
+
+    let grid = Grid::around(measured.bounds_min, measured.bounds_max, resolution.cell)?;
+    // In 128 bits: three axes of 2^15 cells overflow nothing, but the product may pass the limit.
+    if grid.cell_count() > MOST_CELLS {
+        return Err(PlanError::TooManyCells { cells: grid.cell_count(), limit: MOST_CELLS });
+    }
+    let mean_free_path = kinetics::mean_free_path(number_density, resolution.diameter);
+    let openings: Vec<OpeningPlan> = openings(scene, measured)
+        .map(|opening| OpeningPlan {
+            name: opening.name.clone(),
+            between: opening.between,
+            area: opening.area,
+            length: opening.length,
+            knudsen: mean_free_path / opening.length,
+        })
+        .collect();
+    let occupancy = kinetics::occupancy(number_density, resolution.diameter);
+    let warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    Ok(Plan {
+        method,
+        particles,
+        initial_particles,
+        injected_particles,
+        moles_per_particle: population.moles_per_particle,
+        diameter: resolution.diameter,
+        occupancy,
+        mean_free_path,
+        collision_number,
+        rounds: resolution.rounds,
+        collision_limit: resolution.collision_limit,
+        time_step: resolution.time_step,
+        ladder_levels: LADDER_LEVELS,
+        steps_per_interval: STEPS_PER_INTERVAL,
+        tally_every: TALLY_EVERY,
+        block_cells_log2: block_cells_log2(&grid, number_density),
+        temperature_reference: amounts.final_temperature,
+        temperature_max,
+        seed: scene.seed,
+        end_time: scene.end_time,
+        estimated_steps: resolution.steps as f64,
+        grid,
+        chambers: chambers(scene, measured, population.initial),
+        gases,
+        openings,
+        reasons,
+        warnings,
+    })
+}
+
+fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
+    let (method, why) = match scene.model.method {
+        Some(method) => (method, "asked for"),
+        None => (Method::ClosestApproach, "right for jets and vents, with the ideal gas's pressure at any occupancy"),
+    };
+    let value = match method {
+        Method::ClosestApproach => "closest-approach",
+        Method::None => "none",
+    };
+    reasons.push(Reason { quantity: "method".into(), value: value.into(), why: why.into() });
+    method
+}
+
+/// At the start and the end, from the particles in the gas volume at each.
+fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, particles: [u64; 2]) -> [MeanState; 2] {
+    let (final_mass, initial_mass) = amounts.mean_molar_masses(scene);
+    let state = |count: u64, temperature, molar_mass| MeanState {
+        number_density: count as f64 / measured.gas_volume,
+        thermal_square: kinetics::thermal_square(temperature, molar_mass),
+    };
+    let end = state(particles[1], amounts.final_temperature, final_mass);
+    // Without initial gas there is no state to limit the step.
+    let start = if particles[0] > 0 { state(particles[0], amounts.initial_temperature, initial_mass) } else { end };
+    [start, end]
+}
+
+/// Z, raised where nothing was asked and a gas cannot relax that fast, and each gas's exchange.
+fn gases(scene: &Scene, population: &Population, reasons: &mut Vec<Reason>) -> Result<(f64, Vec<GasPlan>), PlanError> {
+    let least = scene.gases.iter().map(|gas| kinetics::least_collision_number(gas.spin_dof())).fold(0.0, f64::max);
+    let (number, why) = match scene.model.collision_number {
+        Some(number) => (number, "asked for"),
+        None if least > DEFAULT_COLLISION_NUMBER => (least, "the fastest spin exchange of the gas with the most spin"),
+        None => (DEFAULT_COLLISION_NUMBER, "rotation relaxes in about five collisions"),
+    };
+    reasons.push(Reason { quantity: "collision number".into(), value: significant(number), why: why.into() });
+    let gases = scene.gases.iter().enumerate().map(|(index, gas)| {
+        let spin_dof = gas.spin_dof();
+        let exchange_probability = kinetics::exchange_probability(spin_dof, number).ok_or_else(|| {
+            let least = kinetics::least_collision_number(spin_dof);
+            PlanError::CollisionNumber { gas: gas.name.clone(), found: number, least }
+        })?;
+        Ok(GasPlan {
+            name: gas.name.clone(),
+            molar_mass: gas.molar_mass,
+            spin_dof,
+            exchange_probability,
+            particles: population.of_gas(index),
+        })
+    });
+    Ok((number, gases.collect::<Result<_, PlanError>>()?))
+}
+
+fn chambers(scene: &Scene, measured: &Measured, counts: Vec<Vec<u64>>) -> Vec<ChamberPlan> {
+    let volumes = measured.chamber_volumes.iter().copied();
+    let chambers = scene.chambers.iter().zip(volumes).zip(counts);
+    chambers
+        .map(|((chamber, volume), particles)| ChamberPlan { name: chamber.name.clone(), volume, particles })
+        .collect()
+}
+
+/// The smallest block, of at least two cells, that holds enough particles at the mean density; no larger
+/// than the grid.
+fn block_cells_log2(grid: &Grid, number_density: f64) -> u32 {
+    let per_cell = number_density * grid.cell * grid.cell * grid.cell;
+    let most = grid.cells.iter().copied().max().unwrap_or(1);
+    let mut log2 = 1;
+    while per_cell * f64::from(1u32 << log2).powi(3) < PER_BLOCK && (1u32 << log2) < most {
+        log2 += 1;
+    }
+    log2
+}

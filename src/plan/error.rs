@@ -1,0 +1,46 @@
+//! Why a scene cannot be planned.
+
+use crate::geometry::GridError;
+
+/// A particle's id and its gas share one 32-bit word on the device: 28 bits of id, 4 of gas.
+pub const MOST_PARTICLES: u64 = (1 << 28) - 1;
+pub const MOST_GASES: usize = 16;
+pub const MOST_ROUNDS: u32 = 16;
+/// Cell numbers are 32-bit on the device, with a bit to spare.
+pub const MOST_CELLS: usize = 1 << 31;
+
+#[derive(Debug, Clone, PartialEq, thiserror::Error, miette::Diagnostic)]
+pub enum PlanError {
+    #[error("the scene holds no gas: no chamber has any, and no orifice delivers any before the end time")]
+    #[diagnostic(help("give a chamber a pressure, or an orifice a mass flow within the run"))]
+    NoGas,
+    #[error("chamber `{chamber}` has {moles:e} mol of gas but no particle at {moles_per_particle:e} mol each")]
+    #[diagnostic(help("give the chamber a particle: set `particles` in [model] to at least {needed}"))]
+    EmptyChamber { chamber: String, moles: f64, moles_per_particle: f64, needed: u64 },
+    #[error("chamber `{chamber}` has a volume of {volume} m3")]
+    #[diagnostic(help("its region must overlap the gas space enclosed by the walls"))]
+    NoVolume { chamber: String, volume: f64 },
+    #[error("{volumes} volumes were measured for {chambers} chambers")]
+    Volumes { volumes: usize, chambers: usize },
+    #[error("{particles} particles are more than the {limit} that an id can name")]
+    #[diagnostic(help("set a smaller `particles` in [model]"))]
+    TooManyParticles { particles: u64, limit: u64 },
+    #[error("{found} gases are more than the {limit} that a particle can tell apart")]
+    #[diagnostic(help("merge gases of like molar mass and heat capacity"))]
+    TooManyGases { found: usize, limit: usize },
+    #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
+    #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
+    Rounds { found: u32, limit: u32 },
+    #[error("a collision number of {found} is less than the {least:.4} that gas `{gas}` can relax with")]
+    #[diagnostic(help("set `collision_number` in [model] to at least {least:.4}, or leave it out"))]
+    CollisionNumber { gas: String, found: f64, least: f64 },
+    #[error("the cell grid does not fit: {0}")]
+    #[diagnostic(help(
+        "cells follow the collision diameter and the time step: use fewer particles, a larger `diameter` or \
+         a larger `time_step` in [model], or a smaller vessel"
+    ))]
+    Grid(#[from] GridError),
+    #[error("the cell grid has {cells} cells, more than the {limit} that can be numbered")]
+    #[diagnostic(help("use fewer particles or a larger `diameter` in [model], or a smaller vessel"))]
+    TooManyCells { cells: usize, limit: usize },
+}

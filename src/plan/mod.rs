@@ -1,0 +1,138 @@
+//! What will be modelled and why: a [`Scene`](crate::scene::Scene) becomes a [`Plan`] (specification,
+//! section 6).
+//!
+//! All moles of the run are shared evenly: one `moles_per_particle` nu for every gas, so that mixtures
+//! thermalise to one temperature (section 1). The density, diameter and mean free path are those of the
+//! mean state at the end of the run, when all gas is in.
+//!
+//! Invariants of a plan:
+//! - `end_time` is an integer multiple of `time_step`;
+//! - the grid's cell edge h satisfies h >= sqrt(sigma^2 + (g_max time_step / 2)^2), g_max = 6 sqrt(k
+//!   `temperature_max` / m) of the lightest gas (section 2), or for free flight h = n^(-1/3);
+//! - the particles of chambers and inflow sum to `particles`, at most 2^28 - 1;
+//! - equal scenes give equal plans, bit for bit.
+
+mod amounts;
+mod decide;
+mod error;
+mod population;
+mod render;
+mod resolution;
+mod warnings;
+
+use crate::geometry::Grid;
+use crate::scene::{Method, Opening};
+use serde::Serialize;
+
+pub use decide::plan;
+pub use error::PlanError;
+
+/// What the plan needs to know of the geometry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// m3.
+    pub gas_volume: f64,
+    /// m3, one per chamber of the scene.
+    pub chamber_volumes: Vec<f64>,
+    /// m, the box around all walls.
+    pub bounds_min: [f64; 3],
+    pub bounds_max: [f64; 3],
+    /// The openings found from the holes of the walls; those declared in the scene are added.
+    pub openings: Vec<Opening>,
+    /// The narrowest passage of the gas, m, where it is known.
+    pub smallest_gap: Option<f64>,
+}
+
+/// What will be modelled; all SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    pub method: Method,
+    /// Initial and injected together.
+    pub particles: u64,
+    pub initial_particles: u64,
+    pub injected_particles: u64,
+    pub moles_per_particle: f64,
+    /// m; 0 without collisions, as are `occupancy`, `rounds` and `collision_limit`.
+    pub diameter: f64,
+    /// n pi sigma^3 / 6 at the mean density at the end.
+    pub occupancy: f64,
+    /// m, at the mean density at the end; infinite without collisions.
+    pub mean_free_path: f64,
+    /// Z of the spin exchange.
+    pub collision_number: f64,
+    /// Pairing rounds per step.
+    pub rounds: u32,
+    /// Largest x = dt/tau for these rounds that loses at most 2 % of the events.
+    pub collision_limit: f64,
+    /// The largest of the ladder, s.
+    pub time_step: f64,
+    /// A step is `time_step` / 2^level, level < `ladder_levels`.
+    pub ladder_levels: u32,
+    /// Steps between changes of the level.
+    pub steps_per_interval: u32,
+    /// Steps between tallies.
+    pub tally_every: u32,
+    /// A block of the coarse grid is 2^this cells along each axis.
+    pub block_cells_log2: u32,
+    /// K, the mean at the end of the run: U / (n cv).
+    pub temperature_reference: f64,
+    /// K, the highest the scene can reach.
+    pub temperature_max: f64,
+    pub seed: u64,
+    /// s.
+    pub end_time: f64,
+    /// Steps at the top of the ladder; dense moments take more.
+    pub estimated_steps: f64,
+    pub grid: Grid,
+    pub chambers: Vec<ChamberPlan>,
+    pub gases: Vec<GasPlan>,
+    pub openings: Vec<OpeningPlan>,
+    pub reasons: Vec<Reason>,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChamberPlan {
+    pub name: String,
+    /// m3.
+    pub volume: f64,
+    /// Initial particles of each gas.
+    pub particles: Vec<u64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GasPlan {
+    pub name: String,
+    /// kg/mol.
+    pub molar_mass: f64,
+    /// zeta.
+    pub spin_dof: f64,
+    /// P of specification section 3.
+    pub exchange_probability: f64,
+    /// Initial and injected.
+    pub particles: u64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OpeningPlan {
+    pub name: String,
+    /// Chamber indices.
+    pub between: [usize; 2],
+    /// m2.
+    pub area: f64,
+    /// m.
+    pub length: f64,
+    /// Mean free path over length at the mean density at the end.
+    pub knudsen: f64,
+}
+
+/// Why a quantity has its value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reason {
+    pub quantity: String,
+    pub value: String,
+    pub why: String,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+//! How many particles, and how many of them in which chamber and of which gas.
+
+use super::amounts::Amounts;
+use super::error::MOST_PARTICLES;
+use super::render::{grouped, significant};
+use super::{Measured, PlanError, Reason};
+use crate::gas::{Inflow, kinetics};
+use crate::scene::{Method, Scene};
+
+/// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
+const NOISE: f64 = 0.05;
+const WINDOW: f64 = 1e-3;
+/// Wanted Knudsen number of the smallest opening: about 7 % on its flow.
+pub const WANTED_KNUDSEN: f64 = 0.1;
+/// The most particles that the plan chooses by itself.
+const MOST_UNASKED: f64 = 1e7;
+
+/// N_stat = 5.1 V / (cbar A T_w eps^2) and N_res = V / d^3, d = Kn l / .79 (specification, section 6).
+///
+/// The area is not a part of the scene: A = V^(2/3) / 16, a sixteenth of the face of a cube of the gas
+/// volume (.0096 m2 for 60 L).
+pub fn wanted(
+    scene: &Scene,
+    measured: &Measured,
+    amounts: &Amounts,
+    method: Method,
+    occupancy: f64,
+    reasons: &mut Vec<Reason>,
+) -> u64 {
+    let mut give = |count: u64, why: String| {
+        reasons.push(Reason { quantity: "particles".into(), value: grouped(count), why });
+        count
+    };
+    if let Some(count) = scene.model.particles {
+        return give(count, "asked for; initial and injected gas together at the end".into());
+    }
+    let volume = measured.gas_volume;
+    let (molar_mass, _) = amounts.mean_molar_masses(scene);
+    let speed = kinetics::mean_speed(kinetics::thermal_square(amounts.final_temperature, molar_mass));
+    let area = libm::pow(volume, 2.0 / 3.0) / 16.0;
+    let statistics = 5.1 * volume / (speed * area * WINDOW * NOISE * NOISE);
+    let noise = format!("{:.0} % noise of the pressure on {} cm2 in 1 ms", 100.0 * NOISE, significant(1e4 * area));
+    let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
+    let spacing = WANTED_KNUDSEN * smallest / kinetics::effective_mean_free_path_over_spacing(occupancy);
+    let resolution = volume / (spacing * spacing * spacing);
+    if method == Method::None || resolution <= statistics {
+        return give(statistics.min(MOST_UNASKED).ceil() as u64, noise);
+    }
+    if resolution > MOST_UNASKED {
+        let why = format!(
+            "the most without being asked; an opening of {} mm at Kn .1 takes {:.1e}",
+            significant(1e3 * smallest),
+            resolution
+        );
+        return give(MOST_UNASKED as u64, why);
+    }
+    let why = format!(
+        "Kn {WANTED_KNUDSEN} at the smallest opening ({} mm); {} would do for {noise}",
+        significant(1e3 * smallest),
+        grouped(statistics.ceil() as u64)
+    );
+    give(resolution.ceil() as u64, why)
+}
+
+/// Openings found, then those declared that were not found under the same name.
+pub fn openings<'a>(scene: &'a Scene, measured: &'a Measured) -> impl Iterator<Item = &'a crate::scene::Opening> {
+    let declared = scene.openings.iter().filter(|own| measured.openings.iter().all(|found| found.name != own.name));
+    measured.openings.iter().chain(declared)
+}
+
+pub struct Population {
+    pub moles_per_particle: f64,
+    /// By chamber, then gas.
+    pub initial: Vec<Vec<u64>>,
+    /// By gas.
+    pub injected: Vec<u64>,
+}
+
+impl Population {
+    /// Equal moles per particle for all; chamber counts by rounding, injected ones by the inflow itself.
+    pub fn count(scene: &Scene, amounts: &Amounts, wanted: u64) -> Result<Self, PlanError> {
+        let limit = MOST_PARTICLES;
+        if wanted > limit {
+            return Err(PlanError::TooManyParticles { particles: wanted, limit });
+        }
+        let moles_per_particle = amounts.total() / wanted.max(1) as f64;
+        let round = |moles: &f64| (moles / moles_per_particle).round() as u64;
+        let initial: Vec<Vec<u64>> = amounts.initial.iter().map(|gases| gases.iter().map(round).collect()).collect();
+        for (chamber, (moles, counts)) in scene.chambers.iter().zip(amounts.initial.iter().zip(&initial)) {
+            let moles: f64 = moles.iter().sum();
+            if moles > 0.0 && counts.iter().sum::<u64>() == 0 {
+                let needed = (amounts.total() / moles).ceil() as u64;
+                let chamber = chamber.name.clone();
+                return Err(PlanError::EmptyChamber { chamber, moles, moles_per_particle, needed });
+            }
+        }
+        let inflow = Inflow::new(&scene.orifices, &scene.gases, moles_per_particle, scene.seed, 0, scene.end_time);
+        let population = Self { moles_per_particle, initial, injected: inflow.total_by_gas() };
+        let particles = population.initial_total() + population.injected_total();
+        if particles > limit { Err(PlanError::TooManyParticles { particles, limit }) } else { Ok(population) }
+    }
+
+    pub fn initial_total(&self) -> u64 {
+        self.initial.iter().flatten().sum()
+    }
+
+    pub fn injected_total(&self) -> u64 {
+        self.injected.iter().sum()
+    }
+
+    pub fn of_gas(&self, gas: usize) -> u64 {
+        self.injected[gas] + self.initial.iter().map(|chamber| chamber[gas]).sum::<u64>()
+    }
+}

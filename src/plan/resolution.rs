@@ -1,0 +1,177 @@
+//! Diameter, rounds, time step and cell edge.
+
+use super::error::MOST_ROUNDS;
+use super::render::significant;
+use super::{PlanError, Reason};
+use crate::gas::kinetics;
+use crate::scene::{Method, ModelRequest};
+
+/// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
+pub const DEFAULT_OCCUPANCY: f64 = 0.12;
+const DEFAULT_ROUNDS: u32 = 4;
+/// A cell edge must not fall short of its rule by rounding.
+const EDGE_MARGIN: f64 = 1.0001;
+/// Relative speeds above this many sqrt(kT/m) do not occur in practice.
+const FASTEST_PAIR: f64 = 6.0;
+/// 99.9 % of the molecules are slower than this many sqrt(kT/m).
+const FAST_PARTICLE: f64 = 4.04;
+
+/// A uniform state of the modelled gas.
+#[derive(Debug, Clone, Copy)]
+pub struct MeanState {
+    /// Particles per m3.
+    pub number_density: f64,
+    /// kT/m, m2/s2.
+    pub thermal_square: f64,
+}
+
+/// kT/m of the lightest gas at the highest temperature, m2/s2.
+#[derive(Debug, Clone, Copy)]
+pub struct Extreme(pub f64);
+
+pub struct Resolution {
+    pub diameter: f64,
+    pub rounds: u32,
+    pub collision_limit: f64,
+    pub time_step: f64,
+    pub steps: u64,
+    pub cell: f64,
+    /// x = dt/tau of the denser of the two mean states.
+    pub collisions_per_step: f64,
+    /// |v| dt of all but .1 % of the fastest gas, over the cell edge.
+    pub flight_over_cell: f64,
+}
+
+/// Largest x with at most 2 % of the events lost (specification, section 2).
+fn collision_limit(rounds: u32) -> f64 {
+    match rounds {
+        1 => 0.02,
+        2 => 0.1,
+        3 => 0.2,
+        _ => 0.3,
+    }
+}
+
+impl Resolution {
+    /// `states`: the mean states at the start and the end; sizes follow that at the end.
+    pub fn choose(
+        method: Method,
+        request: &ModelRequest,
+        states: [MeanState; 2],
+        extreme: Extreme,
+        end_time: f64,
+        reasons: &mut Vec<Reason>,
+    ) -> Result<Self, PlanError> {
+        match method {
+            Method::None => Ok(Self::free_flight(request, states[1], extreme, end_time, reasons)),
+            Method::ClosestApproach => Self::collisional(request, states, extreme, end_time, reasons),
+        }
+    }
+
+    fn collisional(
+        request: &ModelRequest,
+        states: [MeanState; 2],
+        extreme: Extreme,
+        end_time: f64,
+        reasons: &mut Vec<Reason>,
+    ) -> Result<Self, PlanError> {
+        let mut because = |quantity: &str, value: String, why: String| {
+            reasons.push(Reason { quantity: quantity.into(), value, why });
+        };
+        let density = states[1].number_density;
+        let (diameter, why) = match (request.diameter, request.occupancy) {
+            (Some(diameter), _) => (diameter, "asked for".to_string()),
+            (None, Some(f)) => (kinetics::diameter(density, f), format!("occupancy {f} asked for")),
+            (None, None) => (
+                kinetics::diameter(density, DEFAULT_OCCUPANCY),
+                "0.61 of the mean spacing at the end (occupancy 0.12): more buys almost no resolution".to_string(),
+            ),
+        };
+        because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
+
+        let rounds = request.rounds.unwrap_or(DEFAULT_ROUNDS);
+        if rounds == 0 || rounds > MOST_ROUNDS {
+            return Err(PlanError::Rounds { found: rounds, limit: MOST_ROUNDS });
+        }
+        let limit = collision_limit(rounds);
+        let why = match request.rounds {
+            Some(_) => format!("asked for; at most 2 % of collisions are lost up to dt = {limit} tau"),
+            None => format!(
+                "allows dt = {limit} tau, 1.5 times that of three rounds, while a round adds less than a third to a step"
+            ),
+        };
+        because("rounds", rounds.to_string(), why);
+
+        let fastest = FASTEST_PAIR * extreme.0.sqrt();
+        let tau = states
+            .iter()
+            .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
+            .fold(f64::INFINITY, f64::min);
+        let by_cell = diameter / fastest;
+        let by_rate = limit * tau;
+        let (wanted, why) = match request.time_step {
+            Some(step) => (step, "asked for, cut to divide the end time".to_string()),
+            None if by_cell <= by_rate => {
+                (by_cell, "the fastest pairs close in by no more than a diameter: cells stay small".to_string())
+            }
+            None => (by_rate, format!("{limit} of the mean collision time, for {rounds} rounds")),
+        };
+        let (time_step, steps) = divide(end_time, wanted);
+        because("time step", format!("{} us", significant(1e6 * time_step)), why);
+        let reach = 0.5 * fastest * time_step;
+        let cell = EDGE_MARGIN * (diameter * diameter + reach * reach).sqrt();
+        because(
+            "cell",
+            format!("{} mm", significant(1e3 * cell)),
+            "no pair that meets within the step lies further apart than neighbouring cells".into(),
+        );
+        Ok(Self {
+            diameter,
+            rounds,
+            collision_limit: limit,
+            time_step,
+            steps,
+            cell,
+            collisions_per_step: time_step / tau,
+            flight_over_cell: FAST_PARTICLE * extreme.0.sqrt() * time_step / cell,
+        })
+    }
+
+    fn free_flight(
+        request: &ModelRequest,
+        state: MeanState,
+        extreme: Extreme,
+        end_time: f64,
+        reasons: &mut Vec<Reason>,
+    ) -> Self {
+        let cell = kinetics::mean_spacing(state.number_density);
+        let speed = FAST_PARTICLE * extreme.0.sqrt();
+        let (wanted, why) = match request.time_step {
+            Some(step) => (step, "asked for, cut to divide the end time"),
+            None => (cell / speed, "99.9 % of the particles fly no further than a cell"),
+        };
+        let (time_step, steps) = divide(end_time, wanted);
+        let because =
+            |quantity: &str, value: String, why: &str| Reason { quantity: quantity.into(), value, why: why.into() };
+        reasons.push(because("time step", format!("{} us", significant(1e6 * time_step)), why));
+        let value = format!("{} mm", significant(1e3 * cell));
+        reasons.push(because("cell", value, "the mean spacing at the end; nothing is searched for in it"));
+        Self {
+            diameter: 0.0,
+            rounds: 0,
+            collision_limit: 0.0,
+            time_step,
+            steps,
+            cell,
+            collisions_per_step: 0.0,
+            flight_over_cell: speed * time_step / cell,
+        }
+    }
+}
+
+/// The largest step of at most `wanted` of which the end time is an integer multiple, and that integer.
+fn divide(end_time: f64, wanted: f64) -> (f64, u64) {
+    // A step asked for as end / k must not become end / (k + 1) by rounding.
+    let steps = (end_time / wanted - 1e-9).ceil().max(1.0);
+    (end_time / steps, steps as u64)
+}
