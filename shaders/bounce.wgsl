@@ -14,8 +14,8 @@ override MOST_BOUNCES: u32 = 32;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;
 
-// Words of a surface's tally: three impulse components of two words, hits of two words.
-const SURFACE_WORDS: u32 = 8;
+// Words of a surface's tally, two each: three impulse components, normal impulse, hits.
+const SURFACE_WORDS: u32 = 10;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
@@ -25,18 +25,18 @@ const SURFACE_WORDS: u32 = 8;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(26) var<storage, read> bouncing: array<u32>;
 
-fn tally_impulse(surface: u32, impulse: vec3<f32>) {
-    let scaled = impulse * IMPULSE_SCALE;
-    if (any(abs(scaled) >= vec3<f32>(1073741824.0))) {
+fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
+    let scaled = vec4<f32>(impulse, -dot(impulse, normal)) * IMPULSE_SCALE;
+    if (any(abs(scaled) >= vec4<f32>(1073741824.0))) {
         atomicAdd(&counters[TALLY_OVERFLOW], 1u);
         return;
     }
-    let whole = vec3<i32>(round(scaled));
-    for (var axis = 0u; axis < 3u; axis++) {
+    let whole = vec4<i32>(round(scaled));
+    for (var axis = 0u; axis < 4u; axis++) {
         let word = bitcast<u32>(whole[axis]);
         add64(surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
-    add64(surface * SURFACE_WORDS + 6u, 1u, 0u);
+    add64(surface * SURFACE_WORDS + 8u, 1u, 0u);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -82,7 +82,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             particle.spin = max(particle.spin - 0.5 * gas.mass * dot(turned - old, turned + old), 0.0);
         }
         if (SURFACES && triangle.surface != NOBODY) {
-            tally_impulse(triangle.surface, gas.mass * (old - turned));
+            tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
         }
         let place = shifted(particle.position, old * hit.time);
         particle.position = shifted(place, -turned * hit.time);

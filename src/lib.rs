@@ -4,5 +4,8 @@
 
 pub mod gas;
 pub mod geometry;
+pub mod gpu;
 pub mod plan;
 pub mod scene;
+pub mod simulation;
+pub mod subdomain;

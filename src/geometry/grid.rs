@@ -16,7 +16,7 @@ pub struct Grid {
     pub cell_bits: u32,
 }
 
-#[derive(Debug, thiserror::Error, PartialEq)]
+#[derive(Debug, Clone, thiserror::Error, PartialEq)]
 pub enum GridError {
     #[error("the cell edge must be positive and finite, found {0} m")]
     CellSize(f64),

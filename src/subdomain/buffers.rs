@@ -11,8 +11,8 @@ use super::walls::Walls;
 pub const CHUNK: u64 = 64;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
-/// Words per surface (`shaders/advect.wgsl`).
-pub const SURFACE_WORDS: usize = 8;
+/// Words per surface (`shaders/bounce.wgsl`).
+pub const SURFACE_WORDS: usize = 10;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 

@@ -33,8 +33,6 @@ use kernels::{Compiled, Kernels};
 
 /// First length of the neighbour lists; they grow when a device finds one too short.
 const FIRST_LIST: u64 = 16;
-/// Lists longer than this are left to the search of cells.
-const LONGEST_LIST: u64 = 64;
 
 /// What a subdomain is made from.
 pub struct SubdomainInput<'a> {
@@ -45,6 +43,12 @@ pub struct SubdomainInput<'a> {
     /// Patches of wall whose impulse is tallied.
     pub patches: usize,
     pub particles: &'a [GpuParticle],
+}
+
+/// The particles before an interval, so that it can be run again with larger buffers.
+pub struct Remembered {
+    pub particles: wgpu::Buffer,
+    count: u32,
 }
 
 pub struct Subdomain {
@@ -124,14 +128,13 @@ impl Subdomain {
         self.particle.bytes()
     }
 
-    /// Makes room for `newborns` more particles, and for neighbour lists of `list` if they were found too
-    /// short. Particles are copied on the device, in order with the work already submitted.
+    /// Makes room for `newborns` more particles, and for neighbour lists of `wanted_list`. Particles are copied on the device, in order with the work already submitted.
     ///
     /// # Errors
     /// If the larger buffers are over the device's limits.
     pub fn make_room(&mut self, device: &Device, newborns: usize, wanted_list: u32) -> Result<(), GpuError> {
         let needed = u64::from(self.count) + newborns as u64;
-        let longer = u64::from(wanted_list).next_power_of_two().min(LONGEST_LIST);
+        let longer = u64::from(wanted_list).next_multiple_of(8);
         let list = self.particle.list.max(longer);
         let room_for_newborns = self.particle.newborns.size() / size_of::<GpuNewborn>() as u64;
         if needed <= self.particle.capacity && newborns as u64 <= room_for_newborns && list == self.particle.list {
@@ -155,6 +158,37 @@ impl Subdomain {
         self.particle = grown;
         self.kernels = self.compiled.bind(device, self.features, &self.fixed, &self.particle)?;
         Ok(())
+    }
+
+    /// Copies the particles as they are before the next interval, into `spare` where it has the room.
+    ///
+    /// # Errors
+    /// If the device has no memory for the copy.
+    pub fn remember(&self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
+        let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
+        let particles = match spare.filter(|buffer| buffer.size() >= bytes) {
+            Some(buffer) => buffer,
+            None => device.storage::<GpuParticle>("remembered", self.particle.capacity)?,
+        };
+        let mut encoder = device.encoder();
+        encoder.copy_buffer_to_buffer(&self.particle.particles, 0, &particles, 0, bytes);
+        device.submit(encoder);
+        Ok(Remembered { particles, count: self.count })
+    }
+
+    /// Back to a remembered state, as if the intervals since had not run. Their tallies are cleared.
+    pub fn restore(&mut self, device: &Device, remembered: &Remembered) {
+        let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
+        let mut encoder = device.encoder();
+        encoder.copy_buffer_to_buffer(&remembered.particles, 0, &self.particle.particles, 0, bytes);
+        for buffer in
+            [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums]
+        {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+        device.submit(encoder);
+        device.write(&self.fixed.counters, 4 * counters::PARTICLES as u64, &[remembered.count]);
+        self.count = remembered.count;
     }
 
     /// Every particle, in the order of the device; waits for the device.

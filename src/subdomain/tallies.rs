@@ -16,6 +16,8 @@ pub struct ZoneSum {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SurfaceSum {
     pub impulse: [i64; 3],
+    /// Along the wall's inward normal, summed without sign: what makes pressure.
+    pub normal: i64,
     pub hits: i64,
 }
 
@@ -66,7 +68,7 @@ impl Tallies {
                 .collect(),
             surfaces: surfaces
                 .chunks_exact(SURFACE_WORDS)
-                .map(|w| SurfaceSum { impulse: [signed(w, 0), signed(w, 2), signed(w, 4)], hits: signed(w, 6) })
+                .map(|w| SurfaceSum { impulse: [signed(w, 0), signed(w, 2), signed(w, 4)], normal: signed(w, 6), hits: signed(w, 8) })
                 .collect(),
             blocks: block_words[..blocks * BLOCK_WORDS]
                 .chunks_exact(BLOCK_WORDS)

@@ -1,0 +1,217 @@
+//! Rows of the history: averages over a window of whole step intervals, from the integer tallies.
+//!
+//! Of a zone of volume V with N particles of nu moles, mass M and thermal kinetic energy
+//! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
+//! normal impulse of its hits over area and time.
+
+use crate::plan::Plan;
+use crate::scene::GAS_CONSTANT;
+use crate::subdomain::{Scales, SurfaceSum, Tallies, ZoneSum};
+
+/// Mean state of a zone over a window.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ZoneState {
+    /// Pa.
+    pub pressure: f64,
+    /// K; zero in an empty zone.
+    pub temperature: f64,
+    /// kg/m3.
+    pub density: f64,
+    /// m/s, of the mass.
+    pub velocity: [f64; 3],
+    /// Mean number of particles of each gas.
+    pub particles: Vec<f64>,
+}
+
+/// What a surface received in a window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurfaceState {
+    /// Pa.
+    pub pressure: f64,
+    /// kg m/s since the start of the run.
+    pub impulse: [f64; 3],
+    /// In the window.
+    pub hits: u64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// s, the middle of the window.
+    pub time: f64,
+    /// s.
+    pub window: [f64; 2],
+    /// Mean step in the window, s.
+    pub step: f64,
+    /// At the end of the window.
+    pub particles: u64,
+    pub chambers: Vec<ZoneState>,
+    pub probes: Vec<ZoneState>,
+    pub surfaces: Vec<SurfaceState>,
+}
+
+/// The scene's side of the averages.
+pub struct Layout {
+    /// m3, chambers then probes.
+    pub volumes: Vec<f64>,
+    pub chambers: usize,
+    /// Patches of each surface, and its area, m2.
+    pub surfaces: Vec<(Vec<usize>, f64)>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    number: f64,
+    velocity: [f64; 3],
+    kinetic: f64,
+}
+
+/// The window that is being filled.
+pub struct Averages {
+    layout: Layout,
+    gases: Vec<f64>,
+    moles_per_particle: f64,
+    scales: Scales,
+    heaviest: f64,
+    start: f64,
+    steps: u64,
+    /// Sum of step lengths over the tallies.
+    weight: f64,
+    /// Zone-major, then gas, without the zone of everything.
+    sums: Vec<Sum>,
+    /// Per patch, in the window: impulse, normal impulse, hits.
+    patches: Vec<SurfaceSum>,
+    /// Per patch since the start.
+    received: Vec<[i128; 3]>,
+}
+
+impl Averages {
+    pub fn new(plan: &Plan, layout: Layout, patches: usize) -> Averages {
+        let scales = Scales::new(plan);
+        let zones = layout.volumes.len();
+        Averages {
+            gases: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
+            moles_per_particle: plan.moles_per_particle,
+            heaviest: scales.reference_mass / plan.moles_per_particle,
+            scales,
+            start: 0.0,
+            steps: 0,
+            weight: 0.0,
+            sums: vec![Sum::default(); zones * plan.gases.len()],
+            patches: vec![SurfaceSum::default(); patches],
+            received: vec![[0; 3]; patches],
+            layout,
+        }
+    }
+
+    /// Adds an interval of `steps` steps of `dt` that took `samples` tallies.
+    pub fn add(&mut self, tallies: &Tallies, dt: f64, steps: u32, samples: u32) {
+        self.steps += u64::from(steps);
+        self.weight += dt * f64::from(samples);
+        let zones = tallies.zones.iter().skip(self.gases.len());
+        for (sum, measured) in self.sums.iter_mut().zip(zones) {
+            let ZoneSum { number, velocity, kinetic, .. } = *measured;
+            sum.number += dt * number as f64;
+            sum.kinetic += dt * kinetic as f64;
+            for axis in 0..3 {
+                sum.velocity[axis] += dt * velocity[axis] as f64;
+            }
+        }
+        for ((patch, received), measured) in self.patches.iter_mut().zip(&mut self.received).zip(&tallies.surfaces) {
+            patch.normal += measured.normal;
+            patch.hits += measured.hits;
+            for (total, impulse) in received.iter_mut().zip(measured.impulse) {
+                *total += i128::from(impulse);
+            }
+        }
+    }
+
+    /// Whether the window holds a tally.
+    pub fn ready(&self) -> bool {
+        self.weight > 0.0
+    }
+
+    /// The row of the window that ends at `end`, s; starts the next.
+    pub fn row(&mut self, end: f64, particles: u64) -> Row {
+        let states: Vec<ZoneState> =
+            (0..self.layout.volumes.len()).map(|zone| self.zone(zone)).collect();
+        let duration = end - self.start;
+        let surfaces = self.layout.surfaces.iter().map(|(patches, area)| self.surface(patches, *area, duration));
+        let row = Row {
+            time: 0.5 * (self.start + end),
+            window: [self.start, end],
+            step: duration / self.steps as f64,
+            particles,
+            surfaces: surfaces.collect(),
+            chambers: states[..self.layout.chambers].to_vec(),
+            probes: states[self.layout.chambers..].to_vec(),
+        };
+        self.start = end;
+        self.steps = 0;
+        self.weight = 0.0;
+        self.sums.fill(Sum::default());
+        self.patches.fill(SurfaceSum::default());
+        row
+    }
+
+    fn zone(&self, zone: usize) -> ZoneState {
+        let gases = self.gases.len();
+        let volume = self.layout.volumes[zone];
+        let (mut mass, mut kinetic, mut number) = (0.0, 0.0, 0.0);
+        let mut momentum = [0.0; 3];
+        let mut particles = Vec::with_capacity(gases);
+        for (sum, molar_mass) in self.sums[zone * gases..(zone + 1) * gases].iter().zip(&self.gases) {
+            let own = molar_mass * self.moles_per_particle;
+            let count = sum.number / self.weight;
+            particles.push(count);
+            number += count;
+            mass += own * count;
+            kinetic += own * sum.kinetic / self.weight / self.scales.energy;
+            for (total, velocity) in momentum.iter_mut().zip(sum.velocity) {
+                *total += own * velocity / self.weight / self.scales.velocity;
+            }
+        }
+        if number == 0.0 {
+            return ZoneState { particles, ..ZoneState::default() };
+        }
+        let velocity = momentum.map(|p| p / mass);
+        let bulk = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
+        let thermal = kinetic - bulk;
+        ZoneState {
+            pressure: 2.0 / 3.0 * thermal / volume,
+            temperature: 2.0 / 3.0 * thermal / (number * self.moles_per_particle * GAS_CONSTANT),
+            density: mass / volume,
+            velocity,
+            particles,
+        }
+    }
+
+    fn impulse_unit(&self) -> f64 {
+        self.heaviest * self.moles_per_particle / self.scales.velocity
+    }
+
+    fn surface(&self, patches: &[usize], area: f64, duration: f64) -> SurfaceState {
+        let mut state = SurfaceState::default();
+        let (mut normal, mut received) = (0i64, [0i128; 3]);
+        for &patch in patches {
+            normal += self.patches[patch].normal;
+            state.hits += self.patches[patch].hits.unsigned_abs();
+            for (total, own) in received.iter_mut().zip(self.received[patch]) {
+                *total += own;
+            }
+        }
+        state.pressure = normal as f64 * self.impulse_unit() / (area * duration);
+        state.impulse = received.map(|units| units as f64 * self.impulse_unit());
+        state
+    }
+
+    /// All that walls have received since the start, kg m/s.
+    pub fn total_impulse(&self) -> [f64; 3] {
+        let mut total = [0i128; 3];
+        for received in &self.received {
+            for axis in 0..3 {
+                total[axis] += received[axis];
+            }
+        }
+        total.map(|units| units as f64 * self.impulse_unit())
+    }
+}

@@ -1,0 +1,93 @@
+//! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
+
+use crate::geometry::{GeometryError, Vessel, region_contains};
+use crate::plan::{Measured, Plan, PlanError, plan};
+use crate::scene::{Opening, Scene};
+
+pub struct Model {
+    pub scene: Scene,
+    pub vessel: Vessel,
+    pub plan: Plan,
+}
+
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ModelError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Geometry(#[from] GeometryError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Plan(#[from] PlanError),
+    #[error("orifice \"{orifice}\": its disc is not in the gas: ({:.4}, {:.4}, {:.4}) m lies in or behind a wall", point[0], point[1], point[2])]
+    #[diagnostic(help("move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"))]
+    OrificeInWall { orifice: String, point: [f64; 3] },
+}
+
+impl Model {
+    /// # Errors
+    /// If the walls are not closed, an orifice is not in the gas, or no plan can be made.
+    pub fn new(scene: Scene) -> Result<Model, ModelError> {
+        let vessel = Vessel::build(&scene.walls)?;
+        check_orifices(&scene, &vessel)?;
+        let (bounds_min, bounds_max) = vessel.bounds;
+        let measured = Measured {
+            gas_volume: vessel.gas_volume(),
+            chamber_volumes: vessel.chamber_volumes(&scene.chambers),
+            bounds_min,
+            bounds_max,
+            openings: found_openings(&scene, &vessel),
+            smallest_gap: None,
+        };
+        let plan = plan(&scene, &measured)?;
+        Ok(Model { scene, vessel, plan })
+    }
+}
+
+/// The chamber that a point of the gas belongs to.
+pub fn chamber_of(scene: &Scene, vessel: &Vessel, point: [f64; 3]) -> Option<usize> {
+    let holds = |chamber: &crate::scene::Chamber| chamber.region.as_ref().is_none_or(|r| region_contains(r, point));
+    if vessel.is_gas(point) { scene.chambers.iter().position(holds) } else { None }
+}
+
+fn along(point: [f64; 3], direction: [f64; 3], distance: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| point[axis] + direction[axis] * distance)
+}
+
+/// Holes of walls that join two chambers.
+fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
+    vessel
+        .holes
+        .iter()
+        .filter_map(|hole| {
+            // A little beyond either face of the wall.
+            let reach = 0.5 * hole.thickness + 1e-3 * hole.area.sqrt();
+            let side = |sign: f64| chamber_of(scene, vessel, along(hole.center, hole.normal, sign * reach));
+            let (a, b) = (side(-1.0)?, side(1.0)?);
+            (a != b).then(|| Opening {
+                name: hole.name.clone(),
+                between: [a, b],
+                area: hole.area,
+                length: 4.0 * hole.area / hole.perimeter,
+            })
+        })
+        .collect()
+}
+
+/// A ring of points just inside each orifice's disc must lie in the gas.
+fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
+    for orifice in &scene.orifices {
+        let radius = (orifice.area / std::f64::consts::PI).sqrt();
+        let normal = glam::DVec3::from(orifice.direction);
+        let (u, v) = normal.any_orthonormal_pair();
+        let center = glam::DVec3::from(orifice.position) + normal * (1e-4 * radius);
+        for k in 0..=8 {
+            let angle = std::f64::consts::TAU * f64::from(k) / 8.0;
+            let arm = if k == 8 { 0.0 } else { 0.999 * radius };
+            let point = (center + arm * (libm::cos(angle) * u + libm::sin(angle) * v)).to_array();
+            if !vessel.is_gas(point) {
+                return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point });
+            }
+        }
+    }
+    Ok(())
+}

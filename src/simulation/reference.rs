@@ -1,0 +1,46 @@
+//! The control-volume reference of a run: the same chambers, openings and curves without space.
+
+use crate::gas::{Collisions, ControlVolume, Reservoir, Source, State};
+use crate::plan::Plan;
+use crate::scene::{Method, Opening, Scene};
+
+use super::model::{Model, chamber_of};
+
+/// The reference states of the chambers at `times` (s, ascending); outer index time.
+pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
+    let Model { scene, plan, .. } = model;
+    let sources = scene.orifices.iter().filter_map(|orifice| {
+        // Just off the wall that an orifice may lie on.
+        let radius = (orifice.area / std::f64::consts::PI).sqrt();
+        let point = std::array::from_fn(|axis| orifice.position[axis] + 1e-3 * radius * orifice.direction[axis]);
+        let chamber = chamber_of(scene, &model.vessel, point)?;
+        Some(Source { chamber, orifice: orifice.clone() })
+    });
+    let volume = ControlVolume {
+        gases: scene.gases.clone(),
+        volumes: plan.chambers.iter().map(|chamber| chamber.volume).collect(),
+        sources: sources.collect(),
+        openings: plan.openings.iter().map(opening).collect(),
+        collisions: (plan.method != Method::None)
+            .then_some(Collisions { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle }),
+    };
+    volume.solve(&initial(scene, plan), times)
+}
+
+fn opening(planned: &crate::plan::OpeningPlan) -> Opening {
+    Opening { name: planned.name.clone(), between: planned.between, area: planned.area, length: planned.length }
+}
+
+/// What the chambers hold at the start: the particles that are there, so that the rounding of their number
+/// is not taken for an error of the method.
+fn initial(scene: &Scene, plan: &Plan) -> Vec<Reservoir> {
+    scene
+        .chambers
+        .iter()
+        .zip(&plan.chambers)
+        .map(|(asked, planned)| Reservoir {
+            moles: planned.particles.iter().map(|&n| n as f64 * plan.moles_per_particle).collect(),
+            temperature: asked.temperature,
+        })
+        .collect()
+}
