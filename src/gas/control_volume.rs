@@ -148,7 +148,7 @@ impl ControlVolume {
             }
             // A NaN (a step so long that a chamber ran empty) compares false everywhere and shrinks the step.
             let factor = if error > 0.0 {
-                0.9 * error.powf(-0.2)
+                0.9 * libm::pow(error, -0.2)
             } else if error == 0.0 {
                 4.0
             } else {

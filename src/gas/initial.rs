@@ -93,13 +93,13 @@ fn stop_drift(particles: &mut [Particle], gases: &[Gas]) {
     for particle in &*particles {
         let own = gases[usize::from(particle.gas)].molar_mass;
         mass += own;
-        for axis in 0..3 {
-            momentum[axis] += own * particle.velocity[axis];
+        for (sum, speed) in momentum.iter_mut().zip(particle.velocity) {
+            *sum += own * speed;
         }
     }
     for particle in particles {
-        for axis in 0..3 {
-            particle.velocity[axis] -= momentum[axis] / mass;
+        for (speed, sum) in particle.velocity.iter_mut().zip(momentum) {
+            *speed -= sum / mass;
         }
     }
 }
@@ -166,9 +166,9 @@ mod tests {
         for particle in particles {
             let gas = &gases()[usize::from(particle.gas)];
             let mass = gas.molar_mass * 1e-6;
-            for axis in 0..3 {
-                p[axis] += mass * particle.velocity[axis];
-                translational += 0.5 * mass * particle.velocity[axis].powi(2);
+            for (sum, speed) in p.iter_mut().zip(particle.velocity) {
+                *sum += mass * speed;
+                translational += 0.5 * mass * speed * speed;
             }
             spin += particle.spin_energy;
             spin_wanted += 0.5 * gas.spin_dof() * kt;

@@ -45,7 +45,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let (collision_number, gases) = gases(scene, &population, &mut reasons)?;
 
     let grid = Grid::around(measured.bounds_min, measured.bounds_max, resolution.cell)?;
-    // In 128 bits: three axes of 2^15 cells overflow nothing, but the product may pass the limit.
+    // Each axis may fit a position while all cells together do not fit a number.
     if grid.cell_count() > MOST_CELLS {
         return Err(PlanError::TooManyCells { cells: grid.cell_count(), limit: MOST_CELLS });
     }

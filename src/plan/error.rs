@@ -9,7 +9,7 @@ pub const MOST_ROUNDS: u32 = 16;
 /// Cell numbers are 32-bit on the device, with a bit to spare.
 pub const MOST_CELLS: usize = 1 << 31;
 
-#[derive(Debug, Clone, PartialEq, thiserror::Error, miette::Diagnostic)]
+#[derive(Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum PlanError {
     #[error("the scene holds no gas: no chamber has any, and no orifice delivers any before the end time")]
     #[diagnostic(help("give a chamber a pressure, or an orifice a mass flow within the run"))]

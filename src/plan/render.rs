@@ -14,7 +14,7 @@ impl Plan {
         let mut row = |quantity: &str, value: String, why: &str| rows.push([quantity.into(), value, why.into()]);
         let split =
             format!("{} initial, {} injected", grouped(self.initial_particles), grouped(self.injected_particles));
-        row("", grouped(self.particles), &split);
+        row("particles counted", grouped(self.particles), &split);
         row("moles per particle", format!("{:.4e} mol", self.moles_per_particle), "the same for every gas");
         if self.diameter > 0.0 {
             let value = format!("{} mm", significant(1e3 * self.mean_free_path));
@@ -98,7 +98,7 @@ pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let magnitude = value.abs().log10().floor() as i32;
+    let magnitude = libm::log10(value.abs()).floor() as i32;
     if !(-4..7).contains(&magnitude) {
         return format!("{value:.3e}");
     }
