@@ -1,6 +1,52 @@
+//! A rank's time loop and the step: owns the subdomain, the inflow and the clock; audits.
+//!
+//! `Simulation::run` submits intervals of steps, one ahead of what it reads: the tallies of an interval
+//! set the step size of the interval after next, so the device never waits for the host. If a neighbour
+//! list was too short, the intervals since are run again from a remembered state with longer lists.
+
+mod audit;
+mod averages;
 mod clock;
+mod interval;
 mod ladder;
+mod model;
+mod reference;
+mod run;
+mod setup;
 mod step;
+
+pub use averages::{Layout, Row, SurfaceState, ZoneState};
 pub use clock::Clock;
 pub use ladder::{Demand, Ladder, LadderError};
+pub use model::{Model, ModelError, chamber_of};
+pub use reference::reference;
+pub use run::{Observer, Options, Outcome, Simulation};
+pub use setup::{Shuffle, initial_particles};
 pub use step::{Sampling, step};
+
+use crate::gas::FillError;
+use crate::geometry::GeometryError;
+use crate::gpu::GpuError;
+use crate::subdomain::StateError;
+
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum SimulationError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Geometry(#[from] GeometryError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Fill(#[from] FillError),
+    #[error(transparent)]
+    State(#[from] StateError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error("at {time:.6} s: {source}")]
+    Ladder { time: f64, source: LadderError },
+    #[error("at {time:.6} s: {what}")]
+    #[diagnostic(help("the run cannot be trusted beyond this point; please report it with the scene"))]
+    Lost { time: f64, what: String },
+    /// What an observer could not do, such as write a file.
+    #[error("{0}")]
+    Observer(String),
+}

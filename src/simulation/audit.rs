@@ -1,0 +1,208 @@
+//! The account of a run: what entered, what is there, what was lost.
+
+use crate::gas::Inflow;
+use crate::geometry::Vessel;
+use crate::output::{Audit, PhaseTable};
+use crate::plan::Plan;
+use crate::scene::Method;
+use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
+
+use super::averages::Averages;
+use super::interval::Interval;
+use super::model::Model;
+
+pub struct Account {
+    scales: Scales,
+    molar_masses: Vec<f64>,
+    moles_per_particle: f64,
+    start: State,
+    injected_momentum: [f64; 3],
+    pub particles: u64,
+    pub particle_steps: u64,
+    pub collisions: u64,
+    pub bounces: u64,
+    pub step_range: [f64; 2],
+    steps: u64,
+    lost: u64,
+    sampled: u64,
+    truncated: u64,
+    overshoot: u32,
+    /// Phase, seconds, dispatch groups.
+    phases: Vec<(&'static str, f64, u64)>,
+}
+
+/// Totals of all gas, SI.
+#[derive(Debug, Clone, Copy, Default)]
+struct State {
+    number: u64,
+    mass: f64,
+    momentum: [f64; 3],
+    energy: f64,
+}
+
+impl Account {
+    pub fn new(plan: &Plan) -> Account {
+        Account {
+            scales: Scales::new(plan),
+            molar_masses: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
+            moles_per_particle: plan.moles_per_particle,
+            start: State::default(),
+            injected_momentum: [0.0; 3],
+            particles: plan.initial_particles,
+            particle_steps: 0,
+            collisions: 0,
+            bounces: 0,
+            step_range: [f64::INFINITY, 0.0],
+            steps: 0,
+            lost: 0,
+            sampled: 0,
+            truncated: 0,
+            overshoot: 0,
+            phases: Vec::new(),
+        }
+    }
+
+    /// Zone 0 holds everything.
+    fn state(&self, tallies: &Tallies) -> State {
+        let mut state = State::default();
+        for (zone, molar_mass) in tallies.zones.iter().zip(&self.molar_masses) {
+            let mass = molar_mass * self.moles_per_particle;
+            state.number += zone.number.unsigned_abs();
+            state.mass += mass * zone.number as f64;
+            for (total, velocity) in state.momentum.iter_mut().zip(zone.velocity) {
+                *total += mass * velocity as f64 / self.scales.velocity;
+            }
+            let spin = self.scales.reference_mass * zone.spin as f64;
+            state.energy += (mass * zone.kinetic as f64 + spin) / self.scales.energy;
+        }
+        state
+    }
+
+    pub fn start(&mut self, tallies: &Tallies) {
+        self.start = self.state(tallies);
+    }
+
+    /// What must hold after every interval.
+    pub fn check(&self, tallies: &Tallies, expected: u32) -> Result<(), String> {
+        let counters = &tallies.counters;
+        if counters.capacity_failed > 0 || counters.particles != expected {
+            return Err(format!("{} particles are on the device, {expected} should be", counters.particles));
+        }
+        if counters.tally_overflow > 0 {
+            return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
+        }
+        if counters.outside > 0 {
+            return Err(format!("particles were found outside the vessel ({} times in these steps)", counters.outside));
+        }
+        Ok(())
+    }
+
+    pub fn add(
+        &mut self,
+        plan: &Plan,
+        tallies: &Tallies,
+        interval: &Interval,
+        samples: u32,
+        particles: u32,
+        timed: &[(&'static str, f64)],
+    ) {
+        let counters = &tallies.counters;
+        let steps = u64::from(interval.steps);
+        let mut present = u64::from(particles) - interval.newborns.len() as u64;
+        for born in &interval.newborns_of {
+            present += u64::from(*born);
+            self.particle_steps += present;
+        }
+        self.particles = u64::from(particles);
+        self.steps += steps;
+        self.collisions += counters.collisions;
+        self.bounces += u64::from(counters.bounces);
+        self.lost += u64::from(counters.lost);
+        self.sampled += u64::from(counters.sampled);
+        self.truncated += u64::from(counters.truncated);
+        self.overshoot = self.overshoot.max(counters.overshoot);
+        self.step_range = [self.step_range[0].min(interval.dt), self.step_range[1].max(interval.dt)];
+        for (total, own) in self.injected_momentum.iter_mut().zip(interval.momentum) {
+            *total += own;
+        }
+        // One step was timed; a tally, if it had one, is in fewer steps than the others.
+        let tallied = (interval.first_step + steps).is_multiple_of(u64::from(plan.tally_every));
+        for &(name, seconds) in timed {
+            let share = if name == "tally" && tallied { u64::from(samples) } else { steps };
+            match self.phases.iter_mut().find(|(known, ..)| *known == name) {
+                Some((_, total, count)) => {
+                    *total += seconds * share as f64;
+                    *count += share;
+                }
+                None => self.phases.push((name, seconds * share as f64, share)),
+            }
+        }
+    }
+
+    pub fn phases(&self) -> PhaseTable {
+        PhaseTable {
+            rows: self.phases.iter().map(|(name, seconds, count)| ((*name).to_string(), *seconds, *count)).collect(),
+            steps: self.steps,
+            particle_steps: self.particle_steps,
+        }
+    }
+
+    /// The account at the end; `particles` are all particles.
+    pub fn close(
+        &self,
+        model: &Model,
+        inflow: &Inflow,
+        tallies: &Tallies,
+        particles: &[GpuParticle],
+        averages: &Averages,
+    ) -> Audit {
+        let end = self.state(tallies);
+        let plan = &model.plan;
+        let outside = count_outside(&model.vessel, plan, particles);
+        let entered = inflow.entered_by_gas();
+        let injected_mass =
+            entered.iter().zip(&self.molar_masses).map(|(&n, mass)| n as f64 * mass * self.moles_per_particle).sum();
+        let surfaces = !model.scene.surfaces.is_empty();
+        let events = (self.lost + self.sampled) as f64;
+        Audit {
+            particles_initial: plan.initial_particles,
+            particles_injected: entered.iter().sum(),
+            particles_vented: 0,
+            particles_inside: end.number - outside,
+            particles_outside: outside,
+            mass_start: self.start.mass,
+            mass_injected: injected_mass,
+            mass_vented: 0.0,
+            mass_end: end.mass,
+            momentum_start: self.start.momentum,
+            momentum_injected: self.injected_momentum,
+            momentum_to_walls: surfaces.then(|| averages.total_impulse()),
+            momentum_end: end.momentum,
+            energy_start: self.start.energy,
+            enthalpy_injected: inflow.enthalpy(),
+            enthalpy_vented: 0.0,
+            energy_end: end.energy,
+            lost_collision_fraction: (plan.method != Method::None && events > 0.0).then(|| self.lost as f64 / events),
+            wall_overshoot: f64::from(self.overshoot) * plan.grid.quantum(),
+            truncated_flights: self.truncated,
+            overflows: Vec::new(),
+        }
+    }
+}
+
+/// Particles that are in no gas, nor within the tolerance of a wall: each has passed a closed mesh.
+fn count_outside(vessel: &Vessel, plan: &Plan, particles: &[GpuParticle]) -> u64 {
+    let reach = 2.0 * Walls::tolerance(&plan.grid);
+    let outside = particles.iter().filter(|particle| {
+        let place = plan.grid.to_metres(particle.position);
+        if vessel.is_gas(place) {
+            return false;
+        }
+        (0..6).all(|side| {
+            let mut near = place;
+            near[side / 2] += if side % 2 == 0 { reach } else { -reach };
+            !vessel.is_gas(near)
+        })
+    });
+    outside.count() as u64
+}

@@ -1,0 +1,123 @@
+//! What a model becomes on a device: walls, zones, patches and the initial particles.
+
+use crate::gas::{Filling, fill};
+use crate::geometry::{TriangleGrid, region_bounds, region_contains};
+use crate::gpu::Device;
+use crate::scene::{Face, Region};
+use crate::subdomain::{GpuParticle, GpuZone, Scales, Subdomain, SubdomainInput, Walls, zone_of};
+
+use super::SimulationError;
+use super::averages::Layout;
+use super::model::Model;
+
+pub struct Setup {
+    pub subdomain: Subdomain,
+    pub layout: Layout,
+    pub patches: usize,
+}
+
+/// The order in which the initial particles are handed to the device; results must not depend on it.
+pub type Shuffle = dyn Fn(&mut Vec<GpuParticle>);
+
+pub fn set_up(model: &Model, device: &Device, shuffle: Option<&Shuffle>) -> Result<Setup, SimulationError> {
+    let plan = &model.plan;
+    let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
+    let (patch, patches) = patches(model);
+    let walls = Walls::new(&triangle_grid, &plan.grid, &patch);
+    let mut particles = initial_particles(model)?;
+    if let Some(shuffle) = shuffle {
+        shuffle(&mut particles);
+    }
+    let zones = zones(model);
+    let input =
+        SubdomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), particles: &particles };
+    let subdomain = Subdomain::new(device, &input)?;
+    Ok(Setup { subdomain, layout: layout(model, &patches), patches: patches.len() })
+}
+
+/// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without
+/// surfaces.
+fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
+    let mut patches = Vec::new();
+    if model.scene.surfaces.is_empty() {
+        return (Vec::new(), patches);
+    }
+    let of_triangle = model
+        .vessel
+        .triangles
+        .iter()
+        .map(|triangle| {
+            let key = (triangle.wall, triangle.face);
+            let known = patches.iter().position(|patch| *patch == key);
+            known.unwrap_or_else(|| {
+                patches.push(key);
+                patches.len() - 1
+            }) as u32
+        })
+        .collect();
+    (of_triangle, patches)
+}
+
+/// Everything, the chambers, the probes.
+fn zones(model: &Model) -> Vec<GpuZone> {
+    let grid = &model.plan.grid;
+    let chambers = model.scene.chambers.iter().map(|chamber| zone_of(chamber.region.as_ref(), grid));
+    let probes = model.scene.probes.iter().map(|probe| zone_of(Some(&probe.region), grid));
+    std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
+}
+
+fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
+    let Model { scene, vessel, plan } = model;
+    let probe_volumes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
+    let area_of = |wall: u32, face: Option<Face>| -> f64 {
+        let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
+        let triangles = vessel.triangles.iter().filter(|triangle| (triangle.wall, triangle.face) == (wall, face));
+        triangles
+            .map(|triangle| {
+                let [a, b, c] = triangle.vertices.map(vertex);
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum()
+    };
+    let surfaces = scene.surfaces.iter().map(|surface| {
+        let members = patches.iter().enumerate().filter(|(_, (wall, face))| {
+            *wall as usize == surface.wall && (surface.face.is_none() || *face == surface.face)
+        });
+        let members: Vec<usize> = members.map(|(index, _)| index).collect();
+        let area = members.iter().map(|&index| area_of(patches[index].0, patches[index].1)).sum();
+        (members, area)
+    });
+    Layout {
+        volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes).collect(),
+        chambers: scene.chambers.len(),
+        surfaces: surfaces.collect(),
+    }
+}
+
+/// The initial gas, by id.
+pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationError> {
+    let Model { scene, vessel, plan } = model;
+    let holds = |region: &Option<Region>, point| region.as_ref().is_none_or(|region| region_contains(region, point));
+    let in_chamber: Vec<Box<dyn Fn([f64; 3]) -> bool>> = (0..scene.chambers.len())
+        .map(|index| -> Box<dyn Fn([f64; 3]) -> bool> {
+            Box::new(move |point| {
+                scene.chambers.iter().position(|chamber| holds(&chamber.region, point)) == Some(index)
+            })
+        })
+        .collect();
+    let fillings: Vec<Filling<'_>> = scene
+        .chambers
+        .iter()
+        .zip(&plan.chambers)
+        .zip(&in_chamber)
+        .map(|((asked, planned), inside)| {
+            let (min, max) = asked.region.as_ref().map_or(vessel.bounds, region_bounds);
+            Filling { counts: &planned.particles, temperature: asked.temperature, min, max, in_chamber: inside }
+        })
+        .collect();
+    let is_gas = |point| vessel.is_gas(point);
+    let particles = fill(&fillings, &scene.gases, &is_gas, plan.moles_per_particle, plan.seed)?;
+    let scales = Scales::new(plan);
+    let on_device = particles.iter().map(|particle| GpuParticle::from_host(particle, &plan.grid, &scales));
+    Ok(on_device.collect::<Result<_, _>>()?)
+}
