@@ -112,8 +112,9 @@ fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
         .length_squared()
         .max((c - b).length_squared())
         .max((a - c).length_squared());
-    // Negated, so that an overflow to NaN counts as degenerate too.
-    !((b - a).cross(c - a).length() > FLAT * longest)
+    let doubled = (b - a).cross(c - a).length();
+    // An overflow to NaN counts as degenerate too.
+    doubled.is_nan() || doubled <= FLAT * longest
 }
 
 /// Volume on the side the normals point away from, m3, by the divergence theorem: sum of a . (b x c) / 6.

@@ -104,3 +104,46 @@ impl Grid {
         fixed.map(|p| p >> self.cell_bits)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn positions_in_the_box_round_to_half_a_quantum_and_stay_off_the_border(
+            min in prop::array::uniform3(-1e3..1e3f64),
+            size in prop::array::uniform3(0.0..2.0f64),
+            cell in 0.01..0.5f64,
+            at in prop::array::uniform3(0.0..=1.0f64),
+        ) {
+            let max = std::array::from_fn(|a| min[a] + size[a]);
+            let grid = Grid::around(min, max, cell).unwrap();
+            let position: [f64; 3] = std::array::from_fn(|a| min[a] + at[a] * size[a]);
+            let fixed = grid.to_fixed(position).unwrap();
+            let back = grid.to_metres(fixed);
+            for a in 0..3 {
+                // Rounding of f64 at 1e3 m is some 1e-13 m.
+                prop_assert!((back[a] - position[a]).abs() <= 0.5 * grid.quantum() + 1e-12);
+                let index = grid.cell_of(fixed)[a];
+                prop_assert!(fixed[a] < 1 << 31 && index > 0 && index < grid.cells[a] - 1);
+                prop_assert_eq!(grid.blocks(2)[a], grid.cells[a].div_ceil(4));
+            }
+            prop_assert!(grid.to_fixed([f64::NAN, back[1], back[2]]).is_none());
+            prop_assert!(grid.to_fixed(max.map(|m| m + 3.0 * cell)).is_none());
+        }
+    }
+
+    #[test]
+    fn cells_that_cannot_be_are_refused() {
+        assert_eq!(
+            Grid::around([0.0; 3], [1.0; 3], 0.0),
+            Err(GridError::CellSize(0.0))
+        );
+        assert!(matches!(
+            Grid::around([0.0; 3], [1.0; 3], 1e-5),
+            Err(GridError::TooManyCells { .. })
+        ));
+    }
+}

@@ -48,7 +48,8 @@ impl LineIndex {
         max: DVec3,
     ) -> LineIndex {
         let extent = (max.y - min.y).max(max.z - min.z).max(f64::MIN_POSITIVE);
-        let scale = libm::exp2(f64::from(BITS) - libm::ceil(libm::log2(extent)));
+        // Finite also for a vessel of no size.
+        let scale = libm::exp2((f64::from(BITS) - libm::ceil(libm::log2(extent))).min(1000.0));
         let origin = [min.y, min.z];
         let fixed = |p: DVec3| [quanta(p.y, origin[0], scale), quanta(p.z, origin[1], scale)];
         let triangles: Vec<Projected> = triangles
@@ -154,12 +155,13 @@ impl Projected {
 
     fn cross(&self, q: [i64; 2]) -> Option<Crossing> {
         let area = self.area();
-        let mut weights = [0i128; 3];
-        for k in 0..3 {
+        let weights: [i128; 3] = std::array::from_fn(|k| {
+            cross_product(self.corners[(k + 1) % 3], self.corners[(k + 2) % 3], q)
+        });
+        for (k, &weight) in weights.iter().enumerate() {
             let (a, b) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
-            weights[k] = cross_product(a, b, q);
             // On the edge: the sign after moving q by (e, e^2).
-            let moved = match weights[k] {
+            let moved = match weight {
                 0 if b[1] != a[1] => i128::from(a[1] - b[1]),
                 0 => i128::from(b[0] - a[0]),
                 weight => weight,

@@ -38,7 +38,7 @@ pub fn region_volume(region: &Region) -> f64 {
         Region::Box { min, max } => (0..3)
             .map(|axis| (max[axis] - min[axis]).max(0.0))
             .product(),
-        Region::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+        Region::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius * radius * radius,
         Region::Cylinder { radius, height, .. } => PI * radius * radius * height,
     }
 }

@@ -270,8 +270,7 @@ fn near_cut(grid: &Grid, class: &[CellClass]) -> Vec<bool> {
         grid.cells[0] as usize,
         grid.cells[0] as usize * grid.cells[1] as usize,
     ];
-    for axis in 0..3 {
-        let (stride, n) = (strides[axis], grid.cells[axis] as usize);
+    for (stride, n) in strides.into_iter().zip(grid.cells.map(|n| n as usize)) {
         near = (0..near.len())
             .map(|cell| {
                 let i = cell / stride % n;

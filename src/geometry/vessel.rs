@@ -78,8 +78,8 @@ impl Vessel {
             check_closed(&subject, &mesh.vertices, &mesh.triangles)?;
             let volume = signed_volume(&mesh.vertices, &mesh.triangles);
             let (min, max) = bounds_of(&mesh.vertices);
-            // Negated: a volume that is not a number is refused too.
-            if !(volume.abs() > ROUNDING * (max - min).max_element().powi(3)) {
+            let size = (max - min).max_element();
+            if volume.is_nan() || volume.abs() <= ROUNDING * size * size * size {
                 return Err(GeometryError::NoVolume { wall: subject });
             }
             if (volume < 0.0) != cavity {
@@ -253,7 +253,7 @@ impl Vessel {
                 .sum::<f64>()
         };
         let volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
-        if !(volume > ROUNDING * all) {
+        if volume.is_nan() || volume <= ROUNDING * all {
             return Err(GeometryError::NoGas);
         }
         self.overlap = overlap;
