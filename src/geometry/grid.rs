@@ -20,7 +20,9 @@ pub struct Grid {
 pub enum GridError {
     #[error("the cell edge must be positive and finite, found {0} m")]
     CellSize(f64),
-    #[error("the walls span {cells} cells of {cell} m along one axis; at most {limit} fit a 32-bit position with the required resolution")]
+    #[error(
+        "the walls span {cells} cells of {cell} m along one axis; at most {limit} fit a 32-bit position with the required resolution"
+    )]
     TooManyCells { cells: f64, cell: f64, limit: u32 },
 }
 
@@ -40,14 +42,23 @@ impl Grid {
             // Gas may touch the faces of the box: half a cell of slack on either side keeps it off the border layer.
             let inner = (extent / cell).floor() + 1.0;
             if !(inner.is_finite() && inner + 2.0 <= f64::from(Self::MAX_CELLS)) {
-                return Err(GridError::TooManyCells { cells: inner, cell, limit: Self::MAX_CELLS - 2 });
+                return Err(GridError::TooManyCells {
+                    cells: inner,
+                    cell,
+                    limit: Self::MAX_CELLS - 2,
+                });
             }
             cells[axis] = inner as u32 + 2;
             origin[axis] = min[axis] - 0.5 * (f64::from(cells[axis]) * cell - extent);
         }
         let most = cells.iter().copied().max().unwrap_or(3);
         let index_bits = 32 - (most - 1).leading_zeros();
-        Ok(Grid { origin, cell, cells, cell_bits: 31 - index_bits })
+        Ok(Grid {
+            origin,
+            cell,
+            cells,
+            cell_bits: 31 - index_bits,
+        })
     }
 
     /// Metres per quantum.
@@ -80,7 +91,8 @@ impl Grid {
 
     /// x fastest: the three cells of an x-row are neighbours in memory.
     pub fn cell_index(&self, cell: [u32; 3]) -> usize {
-        (cell[2] as usize * self.cells[1] as usize + cell[1] as usize) * self.cells[0] as usize + cell[0] as usize
+        (cell[2] as usize * self.cells[1] as usize + cell[1] as usize) * self.cells[0] as usize
+            + cell[0] as usize
     }
 
     /// Blocks of 2^`log2_cells` cells per axis; the last of an axis may reach beyond the grid.
@@ -90,5 +102,48 @@ impl Grid {
 
     pub fn cell_of(&self, fixed: [u32; 3]) -> [u32; 3] {
         fixed.map(|p| p >> self.cell_bits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn positions_in_the_box_round_to_half_a_quantum_and_stay_off_the_border(
+            min in prop::array::uniform3(-1e3..1e3f64),
+            size in prop::array::uniform3(0.0..2.0f64),
+            cell in 0.01..0.5f64,
+            at in prop::array::uniform3(0.0..=1.0f64),
+        ) {
+            let max = std::array::from_fn(|a| min[a] + size[a]);
+            let grid = Grid::around(min, max, cell).unwrap();
+            let position: [f64; 3] = std::array::from_fn(|a| min[a] + at[a] * size[a]);
+            let fixed = grid.to_fixed(position).unwrap();
+            let back = grid.to_metres(fixed);
+            for a in 0..3 {
+                // Rounding of f64 at 1e3 m is some 1e-13 m.
+                prop_assert!((back[a] - position[a]).abs() <= 0.5 * grid.quantum() + 1e-12);
+                let index = grid.cell_of(fixed)[a];
+                prop_assert!(fixed[a] < 1 << 31 && index > 0 && index < grid.cells[a] - 1);
+                prop_assert_eq!(grid.blocks(2)[a], grid.cells[a].div_ceil(4));
+            }
+            prop_assert!(grid.to_fixed([f64::NAN, back[1], back[2]]).is_none());
+            prop_assert!(grid.to_fixed(max.map(|m| m + 3.0 * cell)).is_none());
+        }
+    }
+
+    #[test]
+    fn cells_that_cannot_be_are_refused() {
+        assert_eq!(
+            Grid::around([0.0; 3], [1.0; 3], 0.0),
+            Err(GridError::CellSize(0.0))
+        );
+        assert!(matches!(
+            Grid::around([0.0; 3], [1.0; 3], 1e-5),
+            Err(GridError::TooManyCells { .. })
+        ));
     }
 }

@@ -4,9 +4,8 @@ use super::*;
 use crate::geometry::{CellClass, Grid, TriangleGrid};
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::query::intersection_test;
-use parry3d_f64::math::Pose;
-use parry3d_f64::shape::{Cuboid, Triangle};
+use parry3d_f64::query::details::intersection_test_aabb_triangle;
+use parry3d_f64::shape::Triangle;
 use proptest::prelude::*;
 
 fn scene(turn: [f64; 3]) -> Vessel {
@@ -17,7 +16,15 @@ fn scene(turn: [f64; 3]) -> Vessel {
         u: axis.any_orthonormal_vector().to_array(),
         size: [0.5, 0.3],
         thickness: 0.03,
-        holes: vec![hole("h", Face::Plane, [0.1, 0.0], Outline::Circle { diameter: 0.1, segments: 12 })],
+        holes: vec![hole(
+            "h",
+            Face::Plane,
+            [0.1, 0.0],
+            Outline::Circle {
+                diameter: 0.1,
+                segments: 12,
+            },
+        )],
     };
     Vessel::build(&[tank([1.0, 1.1, 0.9]), wall("plate", plate, GasSide::Both)]).unwrap()
 }
@@ -40,14 +47,11 @@ proptest! {
         let built = TriangleGrid::build(&vessel, &grid, margin).unwrap();
         let touches = |cell: usize, t: usize, slack: f64| {
             let (min, max) = cell_box(&grid, cell);
-            let half = (max - min) / 2.0 + DVec3::splat(margin + slack);
-            let corners = built.triangles[t].corners.map(|c| {
-                let p = grid.to_metres(c.map(|q| q as u32));
-                Vector::from_array((DVec3::from(p) - (min + max) / 2.0).to_array())
-            });
-            let triangle = Triangle::new(corners[0], corners[1], corners[2]);
-            let cuboid = Cuboid::new(Vector::from_array(half.to_array()));
-            intersection_test(&Pose::IDENTITY, &cuboid, &Pose::IDENTITY, &triangle).unwrap()
+            let grown = DVec3::splat(margin + slack);
+            let [low, high] = [min - grown, max + grown].map(|p| Vector::from_array(p.to_array()));
+            let [a, b, c] =
+                built.triangles[t].corners.map(|c| Vector::from_array(grid.to_metres(c.map(|q| q as u32))));
+            intersection_test_aabb_triangle(&Aabb::new(low, high), &Triangle::new(a, b, c))
         };
         let (mut listed, mut unlisted) = (0, 0);
         for cell in 0..grid.cell_count() {
@@ -96,16 +100,25 @@ fn clear_cells_are_those_with_no_triangle_in_27() {
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.041).unwrap();
     let built = TriangleGrid::build(&vessel, &grid, 0.002).unwrap();
     let [nx, ny, nz] = grid.cells;
-    for (x, y, z) in (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z)))) {
+    for (x, y, z) in
+        (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))))
+    {
         let class = built.class[grid.cell_index([x, y, z])];
-        let border = [(x, nx), (y, ny), (z, nz)].iter().any(|&(i, n)| i == 0 || i == n - 1);
+        let border = [(x, nx), (y, ny), (z, nz)]
+            .iter()
+            .any(|&(i, n)| i == 0 || i == n - 1);
         if border {
             assert!(matches!(class, CellClass::Solid | CellClass::Cut));
             continue;
         }
-        let near = |dx: u32, dy: u32, dz: u32| built.class[grid.cell_index([x + dx - 1, y + dy - 1, z + dz - 1])];
+        let near = |dx: u32, dy: u32, dz: u32| {
+            built.class[grid.cell_index([x + dx - 1, y + dy - 1, z + dz - 1])]
+        };
         let lonely = (0..27).all(|k| near(k % 3, k / 3 % 3, k / 9) != CellClass::Cut);
-        assert_eq!(class == CellClass::Clear, lonely && class != CellClass::Solid);
+        assert_eq!(
+            class == CellClass::Clear,
+            lonely && class != CellClass::Solid
+        );
     }
 }
 
@@ -119,9 +132,14 @@ fn fixed_triangles_keep_ids_and_normals() {
         assert_eq!((fixed.source, fixed.ids), (k as u32, t.vertices));
         let [a, b, c] = t.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
         let normal = (b - a).cross(c - a).normalize();
-        assert!(DVec3::from(fixed.normal.map(f64::from)).distance(normal) < 1e-6);
+        let error = DVec3::from(fixed.normal.map(f64::from)).distance(normal);
+        // A quantum (6e-10 m) over the height of the flattest triangle.
+        assert!(error < 1e-5, "{error} {t:?}");
         for (corner, v) in fixed.corners.iter().zip(t.vertices) {
-            assert_eq!(corner.map(|q| q as u32), grid.to_fixed(vessel.vertices[v as usize]).unwrap());
+            assert_eq!(
+                corner.map(|q| q as u32),
+                grid.to_fixed(vessel.vertices[v as usize]).unwrap()
+            );
         }
     }
 }
@@ -131,17 +149,17 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
     let vessel = scene([0.0, 0.0, 1.0]);
     let grid = Grid::around([0.0; 3], [0.5; 3], 0.1).unwrap();
     let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
-    assert!(matches!(&error, GeometryError::OutsideGrid { wall, .. } if wall == "wall `tank`"), "{error}");
+    assert!(
+        matches!(&error, GeometryError::OutsideGrid { wall, .. } if wall == "wall `tank`"),
+        "{error}"
+    );
 
-    let speck = sphere("speck", [0.5; 3], 1e-9, 0, GasSide::Outside);
+    let speck = sphere("speck", [0.5; 3], 1e-10, 0, GasSide::Outside);
     let vessel = Vessel::build(&[tank([1.0; 3]), speck]).unwrap();
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
     let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
-    assert!(matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"), "{error}");
-}
-
-#[test]
-fn the_oracle_itself_tells_near_from_far() {
-    let cube = Aabb::new(Vector::ZERO, Vector::ONE);
-    assert!(cube.contains_local_point(Vector::splat(0.5)) && !cube.contains_local_point(Vector::splat(1.5)));
+    assert!(
+        matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"),
+        "{error}"
+    );
 }
