@@ -4,4 +4,5 @@
 
 pub mod gas;
 pub mod geometry;
+pub mod output;
 pub mod scene;

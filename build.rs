@@ -1,0 +1,233 @@
+//! Parses and validates every shader, so that a broken one is a build error, and generates the table of kernels.
+//!
+//! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
+//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). The result is
+//! `$OUT_DIR/shaders.rs`: `pub const KERNELS: &[(&str, &str)]`, name and full source, in order of name.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs, process};
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
+const CAPABILITIES: Capabilities = Capabilities::empty();
+
+/// A kernel with the shared files before it.
+pub struct Kernel {
+    pub name: String,
+    pub source: String,
+    parts: Vec<Part>,
+}
+
+/// One file's place in the source of a kernel.
+struct Part {
+    path: PathBuf,
+    /// Bytes of the kernel's source.
+    start: usize,
+}
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    // Cargo looks at every file below.
+    println!("cargo::rerun-if-changed=shaders");
+    let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
+        for path in unused {
+            println!("cargo::warning={} is used by no kernel", path.display());
+        }
+        let out = env::var_os("OUT_DIR").ok_or("cargo did not set OUT_DIR")?;
+        let path = Path::new(&out).join("shaders.rs");
+        fs::write(&path, table(&kernels)).map_err(|error| format!("{}: {error}", path.display()))
+    });
+    if let Err(message) = written {
+        eprintln!("{message}");
+        process::exit(1);
+    }
+}
+
+/// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.
+pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
+    let mut kernels = Vec::new();
+    let mut errors = Vec::new();
+    for path in wgsl_files(folder)? {
+        match Kernel::assemble(folder, &path) {
+            Ok(kernel) => kernels.push(kernel),
+            Err(error) => errors.push(error),
+        }
+    }
+    errors.extend(kernels.iter().filter_map(|kernel| kernel.validate().err()));
+    if !errors.is_empty() {
+        return Err(errors.join("\n"));
+    }
+    let mut unused = wgsl_files(&folder.join("shared"))?;
+    unused.retain(|path| {
+        !kernels
+            .iter()
+            .any(|kernel| kernel.parts.iter().any(|part| part.path == *path))
+    });
+    Ok((kernels, unused))
+}
+
+/// Rust source of the table.
+pub fn table(kernels: &[Kernel]) -> String {
+    let mut rust = String::from("pub const KERNELS: &[(&str, &str)] = &[\n");
+    for kernel in kernels {
+        rust += &format!("    ({:?}, {:?}),\n", kernel.name, kernel.source);
+    }
+    rust + "];\n"
+}
+
+impl Kernel {
+    fn assemble(folder: &Path, path: &Path) -> Result<Kernel, String> {
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let mut kernel = Kernel {
+            name,
+            source: String::new(),
+            parts: Vec::new(),
+        };
+        kernel.append(folder, path, &mut Vec::new())?;
+        Ok(kernel)
+    }
+
+    /// Appends what `path` uses and is not there yet, then `path` itself. `visited` ends circles.
+    fn append(
+        &mut self,
+        folder: &Path,
+        path: &Path,
+        visited: &mut Vec<PathBuf>,
+    ) -> Result<(), String> {
+        visited.push(path.to_path_buf());
+        let text =
+            fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        for (line, used) in uses(&text) {
+            let shared = folder.join("shared").join(used);
+            if visited.contains(&shared) {
+                continue;
+            }
+            if !shared.is_file() {
+                return Err(format!(
+                    "{}:{line}: error: uses {used}, but there is no {}",
+                    path.display(),
+                    shared.display()
+                ));
+            }
+            self.append(folder, &shared, visited)?;
+        }
+        self.parts.push(Part {
+            path: path.to_path_buf(),
+            start: self.source.len(),
+        });
+        self.source += &text;
+        if !text.ends_with('\n') {
+            self.source.push('\n');
+        }
+        Ok(())
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
+            let labels = error
+                .labels()
+                .map(|(span, label)| (span, label.to_owned()))
+                .collect();
+            let notes = error.notes().map(str::to_owned).collect();
+            self.report(error.message(), labels, notes)
+        })?;
+        if module.entry_points.is_empty() {
+            return Err(self.report("a kernel file needs an entry point", Vec::new(), Vec::new()));
+        }
+        let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
+        validator.validate(&module).map(drop).map_err(|error| {
+            let labels = error.spans().cloned().collect();
+            let mut causes = Vec::new();
+            let mut cause = std::error::Error::source(error.as_inner());
+            while let Some(inner) = cause {
+                causes.push(inner.to_string());
+                cause = inner.source();
+            }
+            self.report(&error.as_inner().to_string(), labels, causes)
+        })
+    }
+
+    /// naga's message with each place mapped from the joined source back to its file.
+    fn report(
+        &self,
+        message: &str,
+        labels: Vec<(naga::Span, String)>,
+        notes: Vec<String>,
+    ) -> String {
+        let kernel = self.parts.last().map_or(Path::new(""), |part| &part.path);
+        let mut text = format!("error in kernel {}: {message}\n", kernel.display());
+        for (span, label) in labels {
+            let Some(range) = span.to_range() else {
+                continue;
+            };
+            let Some(part) = self
+                .parts
+                .iter()
+                .rev()
+                .find(|part| part.start <= range.start)
+            else {
+                continue;
+            };
+            let before = &self.source[part.start..range.start];
+            let line = before.matches('\n').count() + 1;
+            let line_start = part.start + before.rfind('\n').map_or(0, |at| at + 1);
+            let column = self.source[line_start..range.start].chars().count();
+            let shown = self.source[line_start..].lines().next().unwrap_or_default();
+            let marked = self.source[range]
+                .lines()
+                .next()
+                .unwrap_or_default()
+                .chars()
+                .count()
+                .max(1);
+            let (path, carets) = (part.path.display(), "^".repeat(marked));
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "  {path}:{line}:{}: {label}\n    {shown}\n    {:column$}{carets}\n",
+                column + 1,
+                ""
+            );
+        }
+        for note in notes {
+            text += &format!("  note: {note}\n");
+        }
+        text
+    }
+}
+
+/// The files that the leading `//!` lines name, with their line numbers.
+fn uses(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.lines()
+        .enumerate()
+        .map_while(|(i, line)| Some((i + 1, line.strip_prefix("//!")?)))
+        .filter_map(|(line, comment)| Some((line, comment.trim_start().strip_prefix("uses:")?)))
+        .flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
+}
+
+/// In order of name; none if the folder is missing.
+fn wgsl_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let list = || -> std::io::Result<Vec<PathBuf>> {
+        fs::read_dir(folder)?
+            .map(|entry| Ok(entry?.path()))
+            .collect()
+    };
+    let mut paths = list().map_err(|error| format!("{}: {error}", folder.display()))?;
+    paths.retain(|path| {
+        path.is_file()
+            && path
+                .extension()
+                .is_some_and(|extension| extension == "wgsl")
+    });
+    paths.sort();
+    Ok(paths)
+}
