@@ -5,6 +5,7 @@
 pub mod gas;
 pub mod geometry;
 pub mod gpu;
+pub mod output;
 pub mod plan;
 pub mod scene;
 pub mod simulation;

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Sets up and runs every check:  ./scripts/test.sh [--long]
+# --long adds the tests that take more than minutes.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tests=()
+case "$*" in
+  '') ;;
+  --long) tests=(-- --include-ignored) ;;
+  *)
+    echo "usage: $0 [--long]" >&2
+    exit 2
+    ;;
+esac
+
+./scripts/setup.sh
+for component in rustfmt clippy; do
+  if ! "cargo-${component/rust/}" --version >/dev/null 2>&1; then
+    if ! command -v rustup >/dev/null; then
+      echo "test: $component is missing and there is no rustup to add it: install it and run this again." >&2
+      exit 1
+    fi
+    echo "test: adding $component with rustup" >&2
+    rustup component add "$component"
+  fi
+done
+
+# Silences a warning of Mesa's device selection layer.
+export NODEVICE_SELECT=1
+cargo fmt --check
+cargo clippy --release --locked --all-targets -- -D warnings
+cargo test --release --locked ${tests[@]+"${tests[@]}"}

@@ -1,0 +1,349 @@
+//! The audit at the end of a run: does the account of particles, mass and energy close?
+//!
+//! - particles: initial + injected = inside + outside + vented, with none outside the vessel;
+//! - mass: start + injected = end + vented;
+//! - energy: U0 + integral of h dm in = U + integral of h dm out (specification, section 4), for rigid walls
+//!   that take no heat.
+//!
+//! Momentum is shown, not judged: the walls take it. Every comparison is written so that a NaN fails it.
+
+use super::table::{aligned, grouped};
+
+/// What a run counted and measured, SI.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Audit {
+    pub particles_initial: u64,
+    pub particles_injected: u64,
+    pub particles_vented: u64,
+    /// At the end, inside the vessel.
+    pub particles_inside: u64,
+    /// At the end, outside the vessel: each one has passed a closed wall.
+    pub particles_outside: u64,
+    /// kg.
+    pub mass_start: f64,
+    pub mass_injected: f64,
+    pub mass_vented: f64,
+    pub mass_end: f64,
+    /// kg m/s.
+    pub momentum_start: [f64; 3],
+    pub momentum_end: [f64; 3],
+    /// J, kinetic and spin.
+    pub energy_start: f64,
+    /// J, the integral of h dm over the mass actually injected.
+    pub enthalpy_injected: f64,
+    /// J.
+    pub enthalpy_vented: f64,
+    pub energy_end: f64,
+    /// Pairs still mutually eligible after the last round, over all that should have collided; `None`
+    /// where the method has no collisions.
+    pub lost_collision_fraction: Option<f64>,
+    /// Largest distance by which a particle was found beyond a wall, m.
+    pub wall_overshoot: f64,
+    /// Flights that used up their bounces in a step and were cut short.
+    pub truncated_flights: u64,
+    /// Names of the buffers or tallies that overflowed.
+    pub overflows: Vec<String>,
+}
+
+/// What an audit lets pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AuditLimits {
+    /// Relative, of mass and of energy (specification, section 8: 1e-4).
+    pub mass_error: f64,
+    pub energy_error: f64,
+    /// m.
+    pub wall_overshoot: f64,
+    pub truncated_flights: u64,
+    /// Above it a warning (specification, section 2: 3 %).
+    pub lost_collision_fraction: f64,
+}
+
+impl Default for AuditLimits {
+    fn default() -> AuditLimits {
+        AuditLimits {
+            mass_error: 1e-6,
+            energy_error: 1e-4,
+            wall_overshoot: 1e-6,
+            truncated_flights: 0,
+            lost_collision_fraction: 0.03,
+        }
+    }
+}
+
+impl Audit {
+    /// (U + vented - U0 - injected) / (U0 + injected); NaN where there was no energy at all.
+    pub fn energy_error(&self) -> f64 {
+        relative(
+            self.energy_end + self.enthalpy_vented,
+            self.energy_start + self.enthalpy_injected,
+        )
+    }
+
+    /// As [`Audit::energy_error`], of the mass.
+    pub fn mass_error(&self) -> f64 {
+        relative(
+            self.mass_end + self.mass_vented,
+            self.mass_start + self.mass_injected,
+        )
+    }
+
+    /// Why the run cannot be trusted, one sentence each; empty if the audit is clean.
+    pub fn verdict(&self, limits: &AuditLimits) -> Vec<String> {
+        let mut failures = Vec::new();
+        let entered = self.particles_initial + self.particles_injected;
+        let found = self.particles_inside + self.particles_outside + self.particles_vented;
+        if entered != found {
+            failures.push(format!(
+                "{} particles entered and {} are accounted for",
+                grouped(entered),
+                grouped(found)
+            ));
+        }
+        if self.particles_outside > 0 {
+            failures.push(format!(
+                "{} particles are outside the vessel",
+                grouped(self.particles_outside)
+            ));
+        }
+        // A run without any gas has nothing to balance.
+        if entered > 0 {
+            for (what, error, limit) in [
+                ("mass", self.mass_error(), limits.mass_error),
+                ("energy", self.energy_error(), limits.energy_error),
+            ] {
+                if !within(error.abs(), limit) {
+                    failures.push(format!(
+                        "the {what} is off by {error:.2e} of it; {limit:.0e} is allowed"
+                    ));
+                }
+            }
+        }
+        if !within(self.wall_overshoot, limits.wall_overshoot) {
+            failures.push(format!(
+                "a particle was {:.2e} m beyond a wall; {:.0e} m is allowed",
+                self.wall_overshoot, limits.wall_overshoot
+            ));
+        }
+        if self.truncated_flights > limits.truncated_flights {
+            failures.push(format!(
+                "{} flights had more bounces in a step than are followed; {} are allowed",
+                grouped(self.truncated_flights),
+                grouped(limits.truncated_flights)
+            ));
+        }
+        for name in &self.overflows {
+            failures.push(format!("{name} overflowed"));
+        }
+        failures
+    }
+
+    /// What makes the run less accurate than planned without making its account wrong.
+    pub fn warnings(&self, limits: &AuditLimits) -> Vec<String> {
+        match self.lost_collision_fraction {
+            Some(lost) if !within(lost, limits.lost_collision_fraction) => vec![format!(
+                "{:.1} % of the collisions were lost (more than {:.0} %): use a smaller time step or more rounds",
+                100.0 * lost,
+                100.0 * limits.lost_collision_fraction
+            )],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The table for the end of the run and the report.
+    pub fn render(&self) -> String {
+        let row = |name: &str, cells: &[String]| -> Vec<String> {
+            std::iter::once(name.to_owned())
+                .chain(cells.iter().cloned())
+                .collect()
+        };
+        let head: Vec<String> = ["start", "in", "out", "end", "error"]
+            .map(str::to_owned)
+            .into();
+        let amounts = |values: [f64; 4], error: f64| -> Vec<String> {
+            let amounts = values.iter().map(|value| format!("{value:.6e}"));
+            amounts.chain([format!("{error:+.2e}")]).collect()
+        };
+        let entered = self.particles_initial + self.particles_injected;
+        let found = self.particles_inside + self.particles_outside + self.particles_vented;
+        let particles = [
+            grouped(self.particles_initial),
+            grouped(self.particles_injected),
+            grouped(self.particles_vented),
+            grouped(self.particles_inside + self.particles_outside),
+            (i128::from(found) - i128::from(entered)).to_string(),
+        ];
+        let mass = [
+            self.mass_start,
+            self.mass_injected,
+            self.mass_vented,
+            self.mass_end,
+        ];
+        let energy = [
+            self.energy_start,
+            self.enthalpy_injected,
+            self.enthalpy_vented,
+            self.energy_end,
+        ];
+        let accounts = aligned(&[
+            row("Audit", &head),
+            row("particles", &particles),
+            row("mass, kg", &amounts(mass, self.mass_error())),
+            row("energy, J", &amounts(energy, self.energy_error())),
+        ]);
+        let vector = |[x, y, z]: [f64; 3]| format!("({x:.3e}, {y:.3e}, {z:.3e})");
+        let lost = match self.lost_collision_fraction {
+            Some(lost) => format!("{:.3} %", 100.0 * lost),
+            None => "no collisions".to_owned(),
+        };
+        let overflows = if self.overflows.is_empty() {
+            "none".to_owned()
+        } else {
+            self.overflows.join(", ")
+        };
+        let momentum = format!(
+            "{} -> {}",
+            vector(self.momentum_start),
+            vector(self.momentum_end)
+        );
+        let facts = [
+            ("outside the vessel", grouped(self.particles_outside)),
+            ("lost collisions", lost),
+            (
+                "largest wall overshoot, m",
+                format!("{:.2e}", self.wall_overshoot),
+            ),
+            ("truncated flights", grouped(self.truncated_flights)),
+            ("overflows", overflows),
+            ("momentum, kg m/s", momentum),
+        ];
+        let widest = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        facts.iter().fold(accounts, |text, (name, fact)| {
+            text + &format!("{name:<widest$}  {fact}\n")
+        })
+    }
+}
+
+fn relative(found: f64, expected: f64) -> f64 {
+    (found - expected) / expected
+}
+
+/// False for a NaN.
+fn within(value: f64, limit: f64) -> bool {
+    value <= limit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clean() -> Audit {
+        Audit {
+            particles_initial: 9_440,
+            particles_injected: 10_560,
+            particles_vented: 1_000,
+            particles_inside: 19_000,
+            particles_outside: 0,
+            mass_start: 0.07,
+            mass_injected: 0.08,
+            mass_vented: 0.01,
+            mass_end: 0.14,
+            momentum_start: [0.0; 3],
+            momentum_end: [1e-3, -2e-3, 0.0],
+            energy_start: 15_000.0,
+            enthalpy_injected: 57_000.0,
+            enthalpy_vented: 2_000.0,
+            energy_end: 70_000.5,
+            lost_collision_fraction: Some(0.012),
+            wall_overshoot: 1e-9,
+            truncated_flights: 0,
+            overflows: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn an_account_that_closes_passes_and_each_one_that_does_not_is_named() {
+        let limits = AuditLimits::default();
+        assert_eq!(clean().verdict(&limits), Vec::<String>::new());
+        assert_eq!(clean().warnings(&limits), Vec::<String>::new());
+        type Spoil = fn(&mut Audit);
+        let faults: [(Spoil, &str); 9] = [
+            (
+                |a| a.particles_inside -= 1,
+                "20,000 particles entered and 19,999",
+            ),
+            (
+                |a| (a.particles_inside, a.particles_outside) = (18_998, 2),
+                "2 particles are outside",
+            ),
+            (|a| a.mass_end *= 1.001, "the mass is off"),
+            (|a| a.energy_end += 72.0, "the energy is off by 1.01e-3"),
+            (|a| a.energy_end = f64::NAN, "the energy is off by NaN"),
+            (|a| a.wall_overshoot = 1e-3, "1.00e-3 m beyond a wall"),
+            (|a| a.wall_overshoot = f64::NAN, "beyond a wall"),
+            (|a| a.truncated_flights = 5, "5 flights"),
+            (
+                |a| a.overflows.push("energy tally".to_owned()),
+                "energy tally overflowed",
+            ),
+        ];
+        for (spoil, expected) in faults {
+            let mut audit = clean();
+            spoil(&mut audit);
+            let verdict = audit.verdict(&limits);
+            assert_eq!(verdict.len(), 1, "{verdict:?}");
+            assert!(
+                verdict[0].contains(expected),
+                "{verdict:?} without {expected:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn lost_collisions_warn_and_do_not_fail() {
+        let audit = Audit {
+            lost_collision_fraction: Some(0.05),
+            ..clean()
+        };
+        let limits = AuditLimits::default();
+        assert!(audit.verdict(&limits).is_empty());
+        assert!(audit.warnings(&limits)[0].starts_with("5.0 % of the collisions were lost"));
+        let none = Audit {
+            lost_collision_fraction: None,
+            ..clean()
+        };
+        assert!(none.warnings(&limits).is_empty() && none.render().contains("no collisions"));
+    }
+
+    #[test]
+    fn the_energy_error_is_relative_to_all_energy_that_entered() {
+        let audit = clean();
+        assert!((audit.energy_error() - 0.5 / 72_000.0).abs() < 1e-12);
+        // Leaving the vented enthalpy out would be an error of 2.8 %.
+        let forgotten = Audit {
+            enthalpy_vented: 0.0,
+            ..audit
+        };
+        assert!((forgotten.energy_error() + 1999.5 / 72_000.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_table_shows_every_account() {
+        insta::assert_snapshot!(clean().render(), @r"
+        Audit            start           in          out          end     error
+        particles        9,440       10,560        1,000       19,000         0
+        mass, kg   7.000000e-2  8.000000e-2  1.000000e-2  1.400000e-1   +0.00e0
+        energy, J   1.500000e4   5.700000e4   2.000000e3   7.000050e4  +6.94e-6
+        outside the vessel         0
+        lost collisions            1.200 %
+        largest wall overshoot, m  1.00e-9
+        truncated flights          0
+        overflows                  none
+        momentum, kg m/s           (0.000e0, 0.000e0, 0.000e0) -> (1.000e-3, -2.000e-3, 0.000e0)
+        ");
+    }
+
+    #[test]
+    fn an_empty_run_is_clean() {
+        assert!(Audit::default().verdict(&AuditLimits::default()).is_empty());
+    }
+}

@@ -1,0 +1,80 @@
+//! What can go wrong while results are written or read.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    #[error("cannot {action} {path}: {source}", path = path.display())]
+    Io {
+        action: &'static str,
+        path: PathBuf,
+        source: io::Error,
+    },
+    #[error(
+        "the output folder {path} holds {foreign}, which no earlier run wrote; \
+         choose another folder, or pass --force to write into this one (what is not a result stays)",
+        path = path.display()
+    )]
+    FolderInUse { path: PathBuf, foreign: String },
+    #[error("{path} is a file, not a folder; choose another output folder", path = path.display())]
+    NotAFolder { path: PathBuf },
+    #[error("the history has two columns called {header:?}")]
+    DuplicateColumn { header: String },
+    #[error("a history row has {found} values, the table has {expected} columns")]
+    RowLength { found: usize, expected: usize },
+    #[error("{path}:{line}: {problem}", path = path.display())]
+    BadRow {
+        path: PathBuf,
+        line: u64,
+        problem: String,
+    },
+    #[error("{path}:{line}: column {header:?} holds {found:?}, which is not a number", path = path.display())]
+    BadValue {
+        path: PathBuf,
+        line: u64,
+        header: String,
+        found: String,
+    },
+    #[error("triangle {triangle} of the walls names vertex {vertex}, but there are {vertices}")]
+    BadTriangle {
+        triangle: usize,
+        vertex: u32,
+        vertices: usize,
+    },
+    #[error("{triangles} wall triangles came with {indices} wall indices")]
+    WallIndexCount { triangles: usize, indices: usize },
+    #[error("cannot draw {path}: {problem}", path = path.display())]
+    Chart { path: PathBuf, problem: String },
+}
+
+impl OutputError {
+    /// For `map_err`: what was being done to which file.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+        move |source| OutputError::Io {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+}
+
+/// Writes `path` through a sibling that is renamed into place: a killed run leaves the old file or the
+/// new one, never half of one.
+pub(super) fn write_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(PARTIAL_SUFFIX);
+    let partial = path.with_file_name(name);
+    let file = std::fs::File::create(&partial).map_err(OutputError::io("create", &partial))?;
+    let mut out = BufWriter::with_capacity(1 << 20, file);
+    write(&mut out)
+        .and_then(|()| out.flush())
+        .map_err(OutputError::io("write", &partial))?;
+    std::fs::rename(&partial, path).map_err(OutputError::io("replace", path))
+}
+
+/// Ends the name of a file that is still being written.
+pub(super) const PARTIAL_SUFFIX: &str = ".partial";

@@ -1,0 +1,254 @@
+//! The folder of one run.
+//!
+//! A folder is ours if it carries the marker file that [`OutputFolder::create`] leaves in it. An earlier run's
+//! results are removed before a new run starts, so that no stale snapshot stays beside new ones; nothing
+//! that a run does not write is ever removed or, without `force`, written beside.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::OutputError;
+use super::error::{PARTIAL_SUFFIX, write_atomically};
+
+pub const HISTORY_FILE: &str = "history.csv";
+pub const PLAN_FILE: &str = "plan.toml";
+pub const SCENE_FILE: &str = "scene.toml";
+pub const ENVIRONMENT_FILE: &str = "environment.json";
+pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
+/// The audit and the phase table as text.
+pub const REPORT_FILE: &str = "report.txt";
+pub const SNAPSHOT_FOLDER: &str = "snapshots";
+
+/// Says that the folder is a run's.
+const MARKER_FILE: &str = ".corpuscle-run";
+
+/// Everything a run writes at the top of its folder, apart from the snapshots.
+const RESULT_FILES: [&str; 7] = [
+    MARKER_FILE,
+    HISTORY_FILE,
+    PLAN_FILE,
+    SCENE_FILE,
+    ENVIRONMENT_FILE,
+    PRESSURE_CHART_FILE,
+    REPORT_FILE,
+];
+
+/// A folder that exists, holds no earlier results, and carries the marker.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OutputFolder {
+    path: PathBuf,
+}
+
+impl OutputFolder {
+    /// Makes `path` (with its parents) ready for a run; the results of an earlier run in it are removed.
+    ///
+    /// Errors: `path` is a file; it holds something that no run wrote and `force` is not set; the
+    /// system refuses. With `force`, files that carry the names of results are replaced and all others stay.
+    pub fn create(path: &Path, force: bool) -> Result<OutputFolder, OutputError> {
+        if path.exists() && !path.is_dir() {
+            return Err(OutputError::NotAFolder {
+                path: path.to_path_buf(),
+            });
+        }
+        fs::create_dir_all(path).map_err(OutputError::io("create", path))?;
+        let contents = Contents::of(path)?;
+        if !force && let Some(foreign) = contents.foreign() {
+            return Err(OutputError::FolderInUse {
+                path: path.to_path_buf(),
+                foreign,
+            });
+        }
+        for file in &contents.results {
+            fs::remove_file(file).map_err(OutputError::io("remove", file))?;
+        }
+        let folder = OutputFolder {
+            path: path.to_path_buf(),
+        };
+        folder.write_text(
+            MARKER_FILE,
+            "Results of a corpuscle run; the next run into this folder replaces them.\n",
+        )?;
+        Ok(folder)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes one of the result files (`PLAN_FILE`, ...) whole; returns its path.
+    pub fn write_text(&self, name: &str, text: &str) -> Result<PathBuf, OutputError> {
+        debug_assert!(
+            RESULT_FILES.contains(&name),
+            "{name} would be foreign to the next run"
+        );
+        let path = self.path.join(name);
+        write_atomically(&path, |out| out.write_all(text.as_bytes()))?;
+        Ok(path)
+    }
+}
+
+/// What a folder holds before a run.
+struct Contents {
+    marked: bool,
+    results: Vec<PathBuf>,
+    /// Names, sorted, of what no run writes.
+    others: Vec<String>,
+}
+
+impl Contents {
+    fn of(folder: &Path) -> Result<Contents, OutputError> {
+        let mut contents = Contents {
+            marked: false,
+            results: Vec::new(),
+            others: Vec::new(),
+        };
+        for (name, path, kind) in entries(folder)? {
+            if name == SNAPSHOT_FOLDER && kind.is_dir() {
+                for (inner, path, kind) in entries(&path)? {
+                    if kind.is_file() && is_snapshot_file(&inner) {
+                        contents.results.push(path);
+                    } else {
+                        contents.others.push(format!("{name}/{inner}"));
+                    }
+                }
+            } else if kind.is_file()
+                && RESULT_FILES.contains(&name.trim_end_matches(PARTIAL_SUFFIX))
+            {
+                contents.marked |= name == MARKER_FILE;
+                contents.results.push(path);
+            } else {
+                contents.others.push(name);
+            }
+        }
+        contents.others.sort();
+        Ok(contents)
+    }
+
+    /// What forbids writing here, in words; `None` if the folder is empty or an earlier run's alone.
+    fn foreign(&self) -> Option<String> {
+        if self.others.is_empty() && (self.marked || self.results.is_empty()) {
+            return None;
+        }
+        let mut names = self.others.clone();
+        if !self.marked {
+            names.extend(
+                self.results
+                    .iter()
+                    .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())),
+            );
+        }
+        const SHOWN: usize = 3;
+        let more = names.len().saturating_sub(SHOWN);
+        names.truncate(SHOWN);
+        let mut list = names.join(", ");
+        if more > 0 {
+            list += &format!(" and {more} more");
+        }
+        Some(list)
+    }
+}
+
+fn entries(folder: &Path) -> Result<Vec<(String, PathBuf, fs::FileType)>, OutputError> {
+    let list = || -> std::io::Result<Vec<_>> {
+        fs::read_dir(folder)?
+            .map(|entry| {
+                let entry = entry?;
+                let name = entry.file_name().to_string_lossy().into_owned();
+                Ok((name, entry.path(), entry.file_type()?))
+            })
+            .collect()
+    };
+    list().map_err(OutputError::io("list", folder))
+}
+
+fn is_snapshot_file(name: &str) -> bool {
+    let name = name.trim_end_matches(PARTIAL_SUFFIX);
+    let numbered = name
+        .strip_prefix("particles_")
+        .and_then(|rest| rest.strip_suffix(".vtu"))
+        .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()));
+    numbered || name == "particles.pvd" || name == "walls.vtp"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{Column, HistoryWriter, SnapshotWriter};
+
+    fn finished_run(path: &Path) {
+        let folder = OutputFolder::create(path, false).unwrap();
+        HistoryWriter::create(folder.path(), &[Column::new("time", "s")]).unwrap();
+        for name in [
+            PLAN_FILE,
+            SCENE_FILE,
+            ENVIRONMENT_FILE,
+            PRESSURE_CHART_FILE,
+            REPORT_FILE,
+        ] {
+            folder.write_text(name, "x").unwrap();
+        }
+        let mut snapshots = SnapshotWriter::create(folder.path()).unwrap();
+        snapshots.write(0.0, &[]).unwrap();
+        snapshots.write_walls(&[], &[], &[]).unwrap();
+    }
+
+    #[test]
+    fn a_run_may_replace_an_earlier_run_and_leaves_nothing_of_it() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("new/results");
+        finished_run(&path);
+        assert!(path.join("snapshots/particles_000000.vtu").exists());
+        // A run killed while it wrote leaves a partial file, which is no obstacle either.
+        fs::write(path.join("plan.toml.partial"), "half").unwrap();
+        OutputFolder::create(&path, false).unwrap();
+        assert!(!path.join("snapshots/particles_000000.vtu").exists());
+        assert!(!path.join(HISTORY_FILE).exists() && !path.join("plan.toml.partial").exists());
+        assert!(path.join(MARKER_FILE).exists());
+    }
+
+    #[test]
+    fn a_folder_with_anything_else_is_refused_with_path_and_remedy_and_left_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        finished_run(dir.path());
+        let notes = dir.path().join("snapshots/notes.txt");
+        fs::write(&notes, "mine").unwrap();
+        let error = OutputFolder::create(dir.path(), false)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(&dir.path().display().to_string()), "{error}");
+        assert!(
+            error.contains("snapshots/notes.txt") && error.contains("--force"),
+            "{error}"
+        );
+        assert!(
+            dir.path().join(HISTORY_FILE).exists(),
+            "a refusal changes nothing"
+        );
+        OutputFolder::create(dir.path(), true).unwrap();
+        assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
+        assert!(!dir.path().join(HISTORY_FILE).exists());
+    }
+
+    #[test]
+    fn a_users_own_scene_file_is_not_taken_for_a_result() {
+        let dir = tempfile::tempdir().unwrap();
+        let scene = dir.path().join(SCENE_FILE);
+        fs::write(&scene, "title = 'mine'").unwrap();
+        let error = OutputFolder::create(dir.path(), false)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("scene.toml"), "{error}");
+        assert_eq!(fs::read_to_string(&scene).unwrap(), "title = 'mine'");
+    }
+
+    #[test]
+    fn a_file_in_the_folders_place_is_an_error() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("file");
+        fs::write(&path, "").unwrap();
+        assert!(matches!(
+            OutputFolder::create(&path, true),
+            Err(OutputError::NotAFolder { .. })
+        ));
+    }
+}

@@ -1,0 +1,31 @@
+//! What a run leaves behind: its folder, the history table, snapshots, charts, the record of the
+//! environment, the closing audit and phase table, and the progress display.
+//!
+//! Everything here takes plain data in SI units and knows neither devices nor the time loop. Numbers are
+//! written with the fewest digits that read back to the same bits, so equal runs leave equal bytes. Files
+//! that are rewritten or that must never be seen half done are written beside their place and renamed.
+
+mod audit;
+mod chart;
+mod environment;
+mod error;
+mod folder;
+mod history;
+mod phases;
+mod progress;
+mod snapshot;
+mod table;
+mod vtk;
+
+pub use audit::{Audit, AuditLimits};
+pub use chart::{PALETTE, Series, line_chart};
+pub use environment::{AdapterRecord, Environment};
+pub use error::OutputError;
+pub use folder::{
+    ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, REPORT_FILE,
+    SCENE_FILE, SNAPSHOT_FOLDER,
+};
+pub use history::{Column, History, HistoryWriter};
+pub use phases::PhaseTable;
+pub use progress::Progress;
+pub use snapshot::{ParticleRow, SnapshotWriter};

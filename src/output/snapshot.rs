@@ -1,0 +1,381 @@
+//! Snapshots that ParaView opens: the particles as `snapshots/particles_000000.vtu`, ..., their times as
+//! `snapshots/particles.pvd`, and the walls once as `snapshots/walls.vtp`.
+//!
+//! Each particle is a vertex cell, so that thresholds and selections work on single particles. Positions
+//! are f64 because fixed-point positions hold 31 bits (specification, section 9); what is only looked at is f32.
+
+use std::path::{Path, PathBuf};
+
+use super::OutputError;
+use super::error::write_atomically;
+use super::folder::SNAPSHOT_FOLDER;
+use super::vtk::{Array, DataSet, Section};
+
+/// One particle of a snapshot, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParticleRow {
+    pub id: u32,
+    /// Gas index.
+    pub gas: u8,
+    /// m.
+    pub position: [f64; 3],
+    /// m/s.
+    pub velocity: [f32; 3],
+    /// J, of the whole particle.
+    pub spin_energy: f32,
+}
+
+/// Writes the snapshots of one run, numbered from zero.
+#[derive(Debug)]
+pub struct SnapshotWriter {
+    folder: PathBuf,
+    /// Time (s) and file name of each snapshot so far.
+    written: Vec<(f64, String)>,
+}
+
+impl SnapshotWriter {
+    /// Makes `snapshots` in the existing output folder `dir`.
+    pub fn create(dir: &Path) -> Result<SnapshotWriter, OutputError> {
+        let folder = dir.join(SNAPSHOT_FOLDER);
+        std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
+        Ok(SnapshotWriter {
+            folder,
+            written: Vec::new(),
+        })
+    }
+
+    /// Writes the particles at `time` (s) in the order given and lists the file in the collection.
+    /// Returns the new file's path.
+    pub fn write(&mut self, time: f64, particles: &[ParticleRow]) -> Result<PathBuf, OutputError> {
+        let name = format!("particles_{:06}.vtu", self.written.len());
+        let path = self.folder.join(&name);
+        let data = particle_data(time, particles);
+        write_atomically(&path, |out| data.write(out))?;
+        self.written.push((time, name));
+        self.write_collection()?;
+        Ok(path)
+    }
+
+    /// Writes the walls: `vertices` in m, `triangles` as vertex indices, and for each triangle the index of its wall.
+    ///
+    /// Errors: a triangle that names no vertex, or another number of wall indices than of triangles.
+    pub fn write_walls(
+        &self,
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        walls: &[u32],
+    ) -> Result<PathBuf, OutputError> {
+        if walls.len() != triangles.len() {
+            return Err(OutputError::WallIndexCount {
+                triangles: triangles.len(),
+                indices: walls.len(),
+            });
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+                let vertices = vertices.len();
+                return Err(OutputError::BadTriangle {
+                    triangle,
+                    vertex,
+                    vertices,
+                });
+            }
+        }
+        let path = self.folder.join("walls.vtp");
+        let data = wall_data(vertices, triangles, walls);
+        write_atomically(&path, |out| data.write(out))?;
+        Ok(path)
+    }
+
+    fn write_collection(&self) -> Result<(), OutputError> {
+        write_atomically(&self.folder.join("particles.pvd"), |out| {
+            writeln!(out, r#"<?xml version="1.0"?>"#)?;
+            writeln!(out, r#"<VTKFile type="Collection" version="1.0">"#)?;
+            writeln!(out, "<Collection>")?;
+            for (time, name) in &self.written {
+                writeln!(
+                    out,
+                    r#"<DataSet timestep="{time}" part="0" file="{name}"/>"#
+                )?;
+            }
+            writeln!(out, "</Collection>\n</VTKFile>")
+        })
+    }
+}
+
+/// VTK's number for a cell of one point.
+const VTK_VERTEX: u8 = 1;
+
+fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
+    let count = particles.len();
+    let rows = || particles.iter();
+    let index = |i: usize| (i as i64).to_le_bytes();
+    DataSet {
+        kind: "UnstructuredGrid",
+        counts: format!(r#"NumberOfPoints="{count}" NumberOfCells="{count}""#),
+        time: Some(time),
+        sections: vec![
+            Section {
+                element: "PointData",
+                attributes: r#" Scalars="gas" Vectors="velocity""#,
+                arrays: vec![
+                    Array::new("velocity", "Float32", rows(), |p| {
+                        p.velocity.map(f32::to_le_bytes)
+                    }),
+                    Array::new("gas", "UInt8", rows(), |p| [[p.gas]]),
+                    Array::new("spin_energy", "Float32", rows(), |p| {
+                        [p.spin_energy.to_le_bytes()]
+                    }),
+                    Array::new("id", "UInt32", rows(), |p| [p.id.to_le_bytes()]),
+                ],
+            },
+            Section {
+                element: "Points",
+                attributes: "",
+                arrays: vec![Array::new("position", "Float64", rows(), |p| {
+                    p.position.map(f64::to_le_bytes)
+                })],
+            },
+            Section {
+                element: "Cells",
+                attributes: "",
+                arrays: vec![
+                    Array::new("connectivity", "Int64", 0..count, move |i| [index(i)]),
+                    Array::new("offsets", "Int64", 0..count, move |i| [index(i + 1)]),
+                    Array::new("types", "UInt8", 0..count, |_| [[VTK_VERTEX]]),
+                ],
+            },
+        ],
+    }
+}
+
+fn wall_data<'a>(
+    vertices: &'a [[f64; 3]],
+    triangles: &'a [[u32; 3]],
+    walls: &'a [u32],
+) -> DataSet<'a> {
+    DataSet {
+        kind: "PolyData",
+        counts: format!(
+            r#"NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}""#,
+            vertices.len(),
+            triangles.len()
+        ),
+        time: None,
+        sections: vec![
+            Section {
+                element: "CellData",
+                attributes: r#" Scalars="wall""#,
+                arrays: vec![Array::new("wall", "UInt32", walls.iter(), |wall| {
+                    [wall.to_le_bytes()]
+                })],
+            },
+            Section {
+                element: "Points",
+                attributes: "",
+                arrays: vec![Array::new(
+                    "position",
+                    "Float64",
+                    vertices.iter(),
+                    |vertex| vertex.map(f64::to_le_bytes),
+                )],
+            },
+            Section {
+                element: "Polys",
+                attributes: "",
+                arrays: vec![
+                    // One list of indices: VTK refuses triples here.
+                    Array::new(
+                        "connectivity",
+                        "Int64",
+                        triangles.as_flattened().iter(),
+                        |&vertex| [i64::from(vertex).to_le_bytes()],
+                    ),
+                    Array::new("offsets", "Int64", 0..triangles.len(), |i| {
+                        [(3 * (i as i64 + 1)).to_le_bytes()]
+                    }),
+                ],
+            },
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    /// Arrays by name with their declared type, read by offsets alone: shares nothing with the writer.
+    fn appended_arrays(bytes: &[u8]) -> HashMap<String, (String, Vec<u8>)> {
+        let marker = b"<AppendedData encoding=\"raw\">\n_";
+        let at = bytes
+            .windows(marker.len())
+            .position(|w| w == marker)
+            .unwrap();
+        let (xml, block) = (
+            std::str::from_utf8(&bytes[..at]).unwrap(),
+            &bytes[at + marker.len()..],
+        );
+        let attribute = |line: &str, name: &str| {
+            let start = line.find(&format!(" {name}=\"")).unwrap() + name.len() + 3;
+            line[start..].split('"').next().unwrap().to_owned()
+        };
+        assert_eq!(attribute(xml, "header_type"), "UInt64");
+        assert_eq!(attribute(xml, "byte_order"), "LittleEndian");
+        let mut end = 0;
+        let arrays = xml
+            .lines()
+            .filter(|line| line.contains("format=\"appended\""))
+            .map(|line| {
+                let offset: usize = attribute(line, "offset").parse().unwrap();
+                let vector = ["position", "velocity"].contains(&attribute(line, "Name").as_str());
+                let components = attribute(line, "NumberOfComponents");
+                assert_eq!(components, if vector { "3" } else { "1" }, "{line}");
+                assert_eq!(offset, end, "arrays follow each other");
+                let length = u64::from_le_bytes(block[offset..offset + 8].try_into().unwrap());
+                end = offset + 8 + length as usize;
+                let values = block[offset + 8..end].to_vec();
+                (attribute(line, "Name"), (attribute(line, "type"), values))
+            })
+            .collect();
+        assert_eq!(&block[end..], b"\n</AppendedData>\n</VTKFile>\n");
+        arrays
+    }
+
+    fn numbers<const N: usize, T>(
+        array: &(String, Vec<u8>),
+        kind: &str,
+        decode: fn([u8; N]) -> T,
+    ) -> Vec<T> {
+        assert_eq!(array.0, kind);
+        array
+            .1
+            .chunks_exact(N)
+            .map(|chunk| decode(chunk.try_into().unwrap()))
+            .collect()
+    }
+
+    fn particles() -> Vec<ParticleRow> {
+        (0..3u8)
+            .map(|i| ParticleRow {
+                id: 4_000_000_000 + u32::from(i),
+                gas: i,
+                position: [0.1 * f64::from(i), -2.0, 1.0 / 3.0],
+                velocity: [f32::from(i), 431.5, -0.25],
+                spin_energy: 1e-3 * f32::from(i),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_snapshot_holds_exactly_the_particles_given() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut writer = SnapshotWriter::create(dir.path()).unwrap();
+        let given = particles();
+        let path = writer.write(1.25e-3, &given).unwrap();
+        assert_eq!(path, dir.path().join("snapshots/particles_000000.vtu"));
+        let bytes = std::fs::read(&path).unwrap();
+        let arrays = appended_arrays(&bytes);
+        let back = |arrays: &HashMap<String, (String, Vec<u8>)>| {
+            let position = numbers(&arrays["position"], "Float64", f64::from_le_bytes);
+            let velocity = numbers(&arrays["velocity"], "Float32", f32::from_le_bytes);
+            let spin_energy = numbers(&arrays["spin_energy"], "Float32", f32::from_le_bytes);
+            let id = numbers(&arrays["id"], "UInt32", u32::from_le_bytes);
+            let gas = numbers(&arrays["gas"], "UInt8", u8::from_le_bytes);
+            (0..id.len())
+                .map(|i| ParticleRow {
+                    id: id[i],
+                    gas: gas[i],
+                    position: position[3 * i..3 * i + 3].try_into().unwrap(),
+                    velocity: velocity[3 * i..3 * i + 3].try_into().unwrap(),
+                    spin_energy: spin_energy[i],
+                })
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(back(&arrays), given);
+        assert_eq!(
+            numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes),
+            [0, 1, 2]
+        );
+        assert_eq!(
+            numbers(&arrays["offsets"], "Int64", i64::from_le_bytes),
+            [1, 2, 3]
+        );
+        assert_eq!(arrays["types"].1, [VTK_VERTEX; 3]);
+        // The comparison can fail: one flipped bit in the block is another particle.
+        let mut damaged = bytes.clone();
+        let last_id = given[2].id.to_le_bytes();
+        let at = damaged.windows(4).rposition(|w| w == last_id).unwrap();
+        damaged[at] ^= 1;
+        assert_ne!(back(&appended_arrays(&damaged)), given);
+    }
+
+    #[test]
+    fn the_collection_lists_every_snapshot_with_its_time() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut writer = SnapshotWriter::create(dir.path()).unwrap();
+        writer.write(0.0, &[]).unwrap();
+        let pvd = dir.path().join("snapshots/particles.pvd");
+        assert!(
+            !std::fs::read_to_string(&pvd)
+                .unwrap()
+                .contains("particles_000001")
+        );
+        writer.write(1.0 / 3.0, &particles()).unwrap();
+        let text = std::fs::read_to_string(&pvd).unwrap();
+        assert!(
+            text.contains(r#"timestep="0" part="0" file="particles_000000.vtu""#),
+            "{text}"
+        );
+        assert!(
+            text.contains(r#"timestep="0.3333333333333333" part="0" file="particles_000001.vtu""#),
+            "{text}"
+        );
+        let mut names: Vec<_> = std::fs::read_dir(dir.path().join("snapshots"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        assert_eq!(
+            names,
+            [
+                "particles.pvd",
+                "particles_000000.vtu",
+                "particles_000001.vtu"
+            ]
+        );
+    }
+
+    #[test]
+    fn walls_hold_the_triangles_given_and_refuse_bad_ones() {
+        let dir = tempfile::tempdir().unwrap();
+        let writer = SnapshotWriter::create(dir.path()).unwrap();
+        let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3]];
+        let path = writer.write_walls(&vertices, &triangles, &[0, 7]).unwrap();
+        let arrays = appended_arrays(&std::fs::read(path).unwrap());
+        let corners = numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes);
+        assert_eq!(corners, [0, 2, 1, 0, 1, 3]);
+        assert_eq!(
+            numbers(&arrays["offsets"], "Int64", i64::from_le_bytes),
+            [3, 6]
+        );
+        assert_eq!(
+            numbers(&arrays["wall"], "UInt32", u32::from_le_bytes),
+            [0, 7]
+        );
+        assert_eq!(
+            numbers(&arrays["position"], "Float64", f64::from_le_bytes),
+            vertices.as_flattened()
+        );
+        let error = writer
+            .write_walls(&vertices, &[[0, 1, 4]], &[0])
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            error,
+            "triangle 0 of the walls names vertex 4, but there are 4"
+        );
+        assert!(writer.write_walls(&vertices, &triangles, &[0]).is_err());
+    }
+}

@@ -1,0 +1,152 @@
+//! The build refuses a broken shader and says where the fault is: in its own file, not in the joined source.
+
+// The build script's `main` is the only thing this test does not call.
+#[allow(dead_code)]
+#[path = "../build.rs"]
+mod build;
+
+use std::path::Path;
+
+const KERNEL: &str = "//! Doubles a value.\n//! uses: double.wgsl\n\
+    @group(0) @binding(0) var<storage, read_write> values: array<u32>;\n\
+    @compute @workgroup_size(64)\n\
+    fn main(@builtin(global_invocation_id) id: vec3<u32>) {\n    values[id.x] = double(values[id.x]);\n}\n";
+const DOUBLE: &str = "//! Shared arithmetic.\n//! uses: two.wgsl\nfn double(x: u32) -> u32 {\n    return TWO * x;\n}\n";
+const TWO: &str = "const TWO = 2u;";
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir(dir.path().join("shared")).unwrap();
+    for (name, text) in files {
+        std::fs::write(dir.path().join(name), text).unwrap();
+    }
+    dir
+}
+
+fn error(files: &[(&str, &str)]) -> String {
+    let dir = folder(files);
+    match build::kernels(dir.path()) {
+        Ok(_) => panic!("accepted"),
+        Err(message) => message.replace(&dir.path().display().to_string(), "shaders"),
+    }
+}
+
+#[test]
+fn a_kernel_holds_what_it_uses_once_and_before_it() {
+    let dir = folder(&[
+        (
+            "advect.wgsl",
+            &KERNEL.replace("double.wgsl", "double.wgsl two.wgsl"),
+        ),
+        ("shared/double.wgsl", DOUBLE),
+        ("shared/two.wgsl", TWO),
+        ("shared/idle.wgsl", TWO),
+        ("notes.txt", "not a shader"),
+    ]);
+    let (kernels, unused) = build::kernels(dir.path()).unwrap();
+    assert_eq!(kernels.len(), 1);
+    assert_eq!(kernels[0].name, "advect");
+    let source = &kernels[0].source;
+    assert_eq!(source.matches(TWO).count(), 1);
+    assert!(
+        source.find(TWO) < source.find("fn double")
+            && source.find("fn double") < source.find("fn main")
+    );
+    assert_eq!(unused, [dir.path().join("shared/idle.wgsl")]);
+    let table = build::table(&kernels);
+    assert!(
+        table.starts_with(
+            "pub const KERNELS: &[(&str, &str)] = &[\n    (\"advect\", \"const TWO = 2u;\\n"
+        ),
+        "{table}"
+    );
+}
+
+#[test]
+fn without_shaders_the_table_is_empty() {
+    let (kernels, unused) = build::kernels(Path::new("no/such/folder")).unwrap();
+    assert!(unused.is_empty());
+    assert_eq!(
+        build::table(&kernels),
+        "pub const KERNELS: &[(&str, &str)] = &[\n];\n"
+    );
+}
+
+#[test]
+fn a_fault_is_reported_with_its_own_file_and_line() {
+    let in_shared = error(&[
+        ("advect.wgsl", KERNEL),
+        (
+            "shared/double.wgsl",
+            &DOUBLE.replace("TWO * x", "THREE * x"),
+        ),
+        ("shared/two.wgsl", TWO),
+    ]);
+    assert!(
+        in_shared
+            .contains("kernel shaders/advect.wgsl: no definition in scope for identifier: `THREE`"),
+        "{in_shared}"
+    );
+    assert!(
+        in_shared.contains("shaders/shared/double.wgsl:4:12"),
+        "{in_shared}"
+    );
+    assert!(
+        in_shared.contains("    return THREE * x;\n               ^^^^^\n"),
+        "{in_shared}"
+    );
+
+    let in_kernel = error(&[
+        (
+            "advect.wgsl",
+            &KERNEL.replace("double(values", "double(f32(1) + values"),
+        ),
+        ("shared/double.wgsl", DOUBLE),
+        ("shared/two.wgsl", TWO),
+    ]);
+    assert!(in_kernel.contains("shaders/advect.wgsl:6:"), "{in_kernel}");
+}
+
+#[test]
+fn what_parses_but_is_not_valid_is_refused() {
+    let message = error(&[
+        (
+            "advect.wgsl",
+            &KERNEL.replace("@workgroup_size(64)", "@workgroup_size(0)"),
+        ),
+        ("shared/double.wgsl", DOUBLE),
+        ("shared/two.wgsl", TWO),
+    ]);
+    assert!(
+        message.contains("error in kernel shaders/advect.wgsl")
+            && message.to_lowercase().contains("workgroup"),
+        "{message}"
+    );
+    // A capability that no adapter need have.
+    let wide = error(&[(
+        "wide.wgsl",
+        "@compute @workgroup_size(1)\nfn main() {\n    var x = 1.0lf;\n    x = x + x;\n}\n",
+    )]);
+    assert!(wide.contains("shaders/wide.wgsl"), "{wide}");
+    assert!(error(&[("empty.wgsl", "const A = 1;\n")]).contains("needs an entry point"));
+}
+
+#[test]
+fn a_missing_shared_file_and_every_broken_kernel_are_named() {
+    let message = error(&[("a.wgsl", KERNEL), ("b.wgsl", "fn main( {}\n")]);
+    assert!(
+        message.contains("shaders/a.wgsl:2: error: uses double.wgsl"),
+        "{message}"
+    );
+    assert!(message.contains("kernel shaders/b.wgsl"), "{message}");
+}
+
+#[test]
+fn files_that_use_each_other_end() {
+    let dir = folder(&[
+        ("advect.wgsl", KERNEL),
+        ("shared/double.wgsl", DOUBLE),
+        ("shared/two.wgsl", &format!("//! uses: double.wgsl\n{TWO}")),
+    ]);
+    assert_eq!(build::kernels(dir.path()).unwrap().0.len(), 1);
+}
