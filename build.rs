@@ -1,115 +1,266 @@
-//! Validates every shader at build time and writes the table of kernels that `src/gpu/kernel.rs` includes.
+//! Parses and validates every shader, so that a broken one is a build error, and generates the table of kernels.
 //!
-//! A kernel is a file `shaders/NAME.wgsl`; its first line may be `//! uses: a.wgsl b.wgsl`, files of
-//! `shaders/shared/` that are put before it. A shader that naga refuses is a build error.
+//! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
+//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). The result is
+//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
+//! entry point, and the bindings and override constants that the entry point uses.
 
-use std::fmt::Write as _;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::{env, fs, process};
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// One kernel's source and, for error messages, which file each of its lines came from.
-struct Source {
-    text: String,
-    /// (first line in `text`, file), ascending.
-    parts: Vec<(usize, PathBuf)>,
+/// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
+const CAPABILITIES: Capabilities = Capabilities::empty();
+
+/// A kernel with the shared files before it.
+pub struct Kernel {
+    pub name: String,
+    pub source: String,
+    pub entry_point: String,
+    /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
+    pub bindings: Vec<(u32, String, &'static str)>,
+    /// Override constants, and whether they have no default.
+    pub overrides: Vec<(String, bool)>,
+    parts: Vec<Part>,
+}
+
+/// One file's place in the source of a kernel.
+struct Part {
+    path: PathBuf,
+    /// Bytes of the kernel's source.
+    start: usize,
 }
 
 fn main() {
-    println!("cargo:rerun-if-changed=shaders");
-    println!("cargo:rerun-if-changed=build.rs");
-    let mut kernels: Vec<PathBuf> = fs::read_dir("shaders")
-        .expect("the folder shaders/ exists")
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "wgsl"))
-        .collect();
-    kernels.sort();
-    let mut table = String::from("pub static KERNELS: &[KernelSource] = &[\n");
-    for path in kernels {
-        match entry(&path) {
-            Ok(text) => table.push_str(&text),
-            Err(message) => {
-                eprintln!("{message}");
-                std::process::exit(1);
-            }
+    println!("cargo::rerun-if-changed=build.rs");
+    // Cargo looks at every file below.
+    println!("cargo::rerun-if-changed=shaders");
+    let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
+        for path in unused {
+            println!("cargo::warning={} is used by no kernel", path.display());
         }
-    }
-    table.push_str("];\n");
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-    fs::write(out.join("kernels.rs"), table).expect("OUT_DIR is writable");
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-fn assemble(path: &Path) -> Result<Source, String> {
-    let own = read(path)?;
-    let mut source = Source { text: String::new(), parts: Vec::new() };
-    let uses = own.lines().next().and_then(|line| line.strip_prefix("//! uses:")).unwrap_or("");
-    let shared = uses.split_whitespace().map(|name| Path::new("shaders/shared").join(name));
-    for part in shared.chain([path.to_path_buf()]) {
-        source.parts.push((source.text.lines().count() + 1, part.clone()));
-        source.text.push_str(&read(&part)?);
-        source.text.push('\n');
-    }
-    Ok(source)
-}
-
-impl Source {
-    /// naga's error, with the file and line that it means.
-    fn located(&self, line: Option<u32>, message: &str) -> String {
-        let line = line.unwrap_or(1) as usize;
-        let part = self.parts.iter().rev().find(|(first, _)| *first <= line);
-        match part {
-            Some((first, file)) => format!("{}:{}: {message}", file.display(), line - first + 1),
-            None => message.to_string(),
-        }
+        let out = env::var_os("OUT_DIR").ok_or("cargo did not set OUT_DIR")?;
+        let path = Path::new(&out).join("shaders.rs");
+        fs::write(&path, table(&kernels)).map_err(|error| format!("{}: {error}", path.display()))
+    });
+    if let Err(message) = written {
+        eprintln!("{message}");
+        process::exit(1);
     }
 }
 
-/// One row of the table: name, source, bindings, overrides.
-fn entry(path: &Path) -> Result<String, String> {
-    let source = assemble(path)?;
-    let module = naga::front::wgsl::parse_str(&source.text).map_err(|error| {
-        let line = error.location(&source.text).map(|location| location.line_number);
-        source.located(line, &error.emit_to_string(&source.text))
-    })?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| {
-        let line = error.location(&source.text).map(|location| location.line_number);
-        source.located(line, &error.emit_to_string(&source.text))
-    })?;
-    let [entry_point] = module.entry_points.as_slice() else {
-        return Err(format!("{}: a kernel file has one entry point", path.display()));
-    };
-    let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    let mut row = format!("KernelSource {{ name: {name:?}, entry_point: {:?}, bindings: &[", entry_point.name);
-    let mut bindings = Vec::new();
-    for (handle, global) in module.global_variables.iter() {
-        // A shared file may declare what this kernel does not touch.
-        if info.get_entry_point(0)[handle].is_empty() {
-            continue;
+/// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.
+pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
+    let mut kernels = Vec::new();
+    let mut errors = Vec::new();
+    for path in wgsl_files(folder)? {
+        match Kernel::assemble(folder, &path) {
+            Ok(kernel) => kernels.push(kernel),
+            Err(error) => errors.push(error),
         }
-        let (Some(binding), Some(variable)) = (&global.binding, &global.name) else { continue };
-        let kind = match global.space {
-            naga::AddressSpace::Uniform => "Uniform",
-            naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => "ReadWrite",
-            naga::AddressSpace::Storage { .. } => "Read",
-            _ => return Err(format!("{}: unexpected binding `{variable}`", path.display())),
+    }
+    errors.extend(kernels.iter_mut().filter_map(|kernel: &mut Kernel| kernel.validate().err()));
+    if !errors.is_empty() {
+        return Err(errors.join("\n"));
+    }
+    let mut unused = wgsl_files(&folder.join("shared"))?;
+    unused.retain(|path| {
+        !kernels
+            .iter()
+            .any(|kernel| kernel.parts.iter().any(|part| part.path == *path))
+    });
+    Ok((kernels, unused))
+}
+
+/// Rust source of the table.
+pub fn table(kernels: &[Kernel]) -> String {
+    let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
+    for kernel in kernels {
+        let Kernel { name, source, entry_point, .. } = kernel;
+        rust += &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, bindings: &[");
+        for (index, variable, access) in &kernel.bindings {
+            rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
+        }
+        rust += &format!("], overrides: &{:?}, source: {source:?} }},\n", kernel.overrides);
+    }
+    rust + "];\n"
+}
+
+impl Kernel {
+    fn assemble(folder: &Path, path: &Path) -> Result<Kernel, String> {
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let mut kernel = Kernel {
+            name,
+            source: String::new(),
+            entry_point: String::new(),
+            bindings: Vec::new(),
+            overrides: Vec::new(),
+            parts: Vec::new(),
         };
-        bindings.push((binding.binding, variable.clone(), kind));
+        kernel.append(folder, path, &mut Vec::new())?;
+        Ok(kernel)
     }
-    bindings.sort();
-    for (index, variable, kind) in bindings {
-        let _ = write!(row, "Binding {{ index: {index}, name: {variable:?}, access: Access::{kind} }}, ");
-    }
-    row.push_str("], overrides: &[");
-    for (_, constant) in module.overrides.iter() {
-        if let Some(name) = &constant.name {
-            let _ = write!(row, "({name:?}, {}), ", constant.init.is_none());
+
+    /// Appends what `path` uses and is not there yet, then `path` itself. `visited` ends circles.
+    fn append(
+        &mut self,
+        folder: &Path,
+        path: &Path,
+        visited: &mut Vec<PathBuf>,
+    ) -> Result<(), String> {
+        visited.push(path.to_path_buf());
+        let text =
+            fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        for (line, used) in uses(&text) {
+            let shared = folder.join("shared").join(used);
+            if visited.contains(&shared) {
+                continue;
+            }
+            if !shared.is_file() {
+                return Err(format!(
+                    "{}:{line}: error: uses {used}, but there is no {}",
+                    path.display(),
+                    shared.display()
+                ));
+            }
+            self.append(folder, &shared, visited)?;
         }
+        self.parts.push(Part {
+            path: path.to_path_buf(),
+            start: self.source.len(),
+        });
+        self.source += &text;
+        if !text.ends_with('\n') {
+            self.source.push('\n');
+        }
+        Ok(())
     }
-    let _ = writeln!(row, "], source: {:?} }},", source.text);
-    Ok(row)
+
+    fn validate(&mut self) -> Result<(), String> {
+        let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
+            let labels = error
+                .labels()
+                .map(|(span, label)| (span, label.to_owned()))
+                .collect();
+            let notes = error.notes().map(str::to_owned).collect();
+            self.report(error.message(), labels, notes)
+        })?;
+        let [entry_point] = module.entry_points.as_slice() else {
+            return Err(self.report("a kernel file needs one entry point", Vec::new(), Vec::new()));
+        };
+        let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
+        let info = validator.validate(&module).map_err(|error| {
+            let labels = error.spans().cloned().collect();
+            let mut causes = Vec::new();
+            let mut cause = std::error::Error::source(error.as_inner());
+            while let Some(inner) = cause {
+                causes.push(inner.to_string());
+                cause = inner.source();
+            }
+            self.report(&error.as_inner().to_string(), labels, causes)
+        })?;
+        self.entry_point = entry_point.name.clone();
+        for (handle, global) in module.global_variables.iter() {
+            // A shared file may declare what this kernel does not touch.
+            if info.get_entry_point(0)[handle].is_empty() {
+                continue;
+            }
+            let (Some(binding), Some(name)) = (&global.binding, &global.name) else { continue };
+            let access = match global.space {
+                naga::AddressSpace::Uniform => "Uniform",
+                naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => "ReadWrite",
+                naga::AddressSpace::Storage { .. } => "Read",
+                _ => return Err(self.report(&format!("unexpected binding {name}"), Vec::new(), Vec::new())),
+            };
+            self.bindings.push((binding.binding, name.clone(), access));
+        }
+        self.bindings.sort();
+        let named = module.overrides.iter().filter_map(|(_, o)| Some((o.name.clone()?, o.init.is_none())));
+        self.overrides = named.collect();
+        Ok(())
+    }
+
+    /// naga's message with each place mapped from the joined source back to its file.
+    fn report(
+        &self,
+        message: &str,
+        labels: Vec<(naga::Span, String)>,
+        notes: Vec<String>,
+    ) -> String {
+        let kernel = self.parts.last().map_or(Path::new(""), |part| &part.path);
+        let mut text = format!("error in kernel {}: {message}\n", kernel.display());
+        for (span, label) in labels {
+            let Some(range) = span.to_range() else {
+                continue;
+            };
+            let Some(part) = self
+                .parts
+                .iter()
+                .rev()
+                .find(|part| part.start <= range.start)
+            else {
+                continue;
+            };
+            let before = &self.source[part.start..range.start];
+            let line = before.matches('\n').count() + 1;
+            let line_start = part.start + before.rfind('\n').map_or(0, |at| at + 1);
+            let column = self.source[line_start..range.start].chars().count();
+            let shown = self.source[line_start..].lines().next().unwrap_or_default();
+            let marked = self.source[range]
+                .lines()
+                .next()
+                .unwrap_or_default()
+                .chars()
+                .count()
+                .max(1);
+            let (path, carets) = (part.path.display(), "^".repeat(marked));
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "  {path}:{line}:{}: {label}\n    {shown}\n    {:column$}{carets}\n",
+                column + 1,
+                ""
+            );
+        }
+        for note in notes {
+            text += &format!("  note: {note}\n");
+        }
+        text
+    }
+}
+
+/// The files that the leading `//!` lines name, with their line numbers.
+fn uses(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.lines()
+        .enumerate()
+        .map_while(|(i, line)| Some((i + 1, line.strip_prefix("//!")?)))
+        .filter_map(|(line, comment)| Some((line, comment.trim_start().strip_prefix("uses:")?)))
+        .flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
+}
+
+/// In order of name; none if the folder is missing.
+fn wgsl_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let list = || -> std::io::Result<Vec<PathBuf>> {
+        fs::read_dir(folder)?
+            .map(|entry| Ok(entry?.path()))
+            .collect()
+    };
+    let mut paths = list().map_err(|error| format!("{}: {error}", folder.display()))?;
+    paths.retain(|path| {
+        path.is_file()
+            && path
+                .extension()
+                .is_some_and(|extension| extension == "wgsl")
+    });
+    paths.sort();
+    Ok(paths)
 }

@@ -120,6 +120,11 @@ pub struct Readback {
 }
 
 impl Readback {
+    /// What it waits for.
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
+        &self.submission
+    }
+
     /// Waits for the copy and gives its bytes to `read`; returns the staging buffer for reuse.
     ///
     /// # Errors

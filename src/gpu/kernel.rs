@@ -31,7 +31,7 @@ pub struct KernelSource {
     pub source: &'static str,
 }
 
-include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 /// The name of the uniform whose offset is chosen at each dispatch.
 const DYNAMIC: &str = "step";

@@ -26,6 +26,9 @@ pub struct Audit {
     pub mass_end: f64,
     /// kg m/s.
     pub momentum_start: [f64; 3],
+    pub momentum_injected: [f64; 3],
+    /// What the walls received; `None` in a scene without surfaces, where it is not tallied.
+    pub momentum_to_walls: Option<[f64; 3]>,
     pub momentum_end: [f64; 3],
     /// J, kinetic and spin.
     pub energy_start: f64,

@@ -11,7 +11,6 @@ use super::step::{Sampling, step};
 
 /// An interval as it was decided.
 pub struct Interval {
-    pub level: u32,
     pub dt: f64,
     pub first_step: u64,
     pub steps: u32,
@@ -41,7 +40,6 @@ impl Interval {
         inflow: &mut Inflow,
         start: f64,
         end: f64,
-        level: u32,
         first_step: u64,
         steps: u32,
     ) -> Result<Interval, SimulationError> {
@@ -63,7 +61,7 @@ impl Interval {
             }
             newborns.push(on_device);
         }
-        Ok(Interval { level, dt, first_step, steps, newborns_of, newborns, first_id, momentum })
+        Ok(Interval { dt, first_step, steps, newborns_of, newborns, first_id, momentum })
     }
 
     /// How many of its steps add to the zones.

@@ -189,7 +189,7 @@ impl<'a> Simulation<'a> {
         let (start, first_step) = (self.clock.time(), self.clock.steps);
         self.clock.advance(level, steps);
         let end = self.clock.time();
-        let interval = Interval::new(plan, &mut self.inflow, start, end, level, first_step, steps)?;
+        let interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps)?;
         self.submit(interval)
     }
 
