@@ -15,12 +15,14 @@ if ! command -v cargo >/dev/null || ! command -v rustc >/dev/null; then
   fail "Rust is missing: install version $wanted or later from https://rustup.rs and run this again."
 fi
 found=$(rustc --version | sed 's/^rustc \([0-9.]*\).*/\1/')
-if [ "$(printf '%s\n' "$wanted" "$found" | sort --version-sort | head -n 1)" != "$wanted" ]; then
+if ! printf '%s\n' "$wanted" "$found" | sort --version-sort --check=quiet; then
   fail "Rust $found is too old, $wanted or later is needed: run 'rustup update' and run this again."
 fi
 
+# The list is taken whole: 'grep -q' would hang up on ldconfig, which pipefail takes for its failure.
 library_present() {
-  PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null | grep -q "$1"
+  local list
+  list=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null) && [[ $list == *"$1"* ]]
 }
 
 # A Vulkan driver manifest whose name matches.
@@ -35,10 +37,10 @@ driver_present() {
 missing=()
 if ! command -v cc >/dev/null; then missing+=(gcc); fi
 # cc may be there without the C library's headers and start files.
-if ! printf '#include <stdio.h>\nint main(void) { return 0; }\n' | cc -x c -o /dev/null - 2>/dev/null; then
+if ! cc -x c -o /dev/null - 2>/dev/null <<<$'#include <stdio.h>\nint main(void) { return 0; }'; then
   missing+=(libc6-dev)
 fi
-if ! library_present 'libvulkan\.so\.1'; then missing+=(libvulkan1); fi
+if ! library_present libvulkan.so.1; then missing+=(libvulkan1); fi
 # lavapipe, which runs and tests everything where there is no GPU.
 if ! driver_present 'lvp_icd*.json'; then missing+=(mesa-vulkan-drivers); fi
 

@@ -11,6 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::OutputError;
 use super::error::write_atomically;
+use super::ticks::Ticks;
 
 /// Colours that stay apart for colour-blind readers and in print (Okabe and Ito, 2008).
 pub const PALETTE: [[u8; 3]; 7] = [
@@ -176,7 +177,7 @@ fn draw_legend(
         let line = [(x, y), (x + SAMPLE, y)];
         if series.dashed {
             root.draw(&plotters::element::DashedPathElement::new(
-                line.into_iter(),
+                line,
                 DASH,
                 GAP,
                 line_style(series),
@@ -222,55 +223,6 @@ fn extent(values: impl Iterator<Item = f64>, slack: f64) -> std::ops::Range<f64>
         (0.05 * low.abs()).max(f64::MIN_POSITIVE.sqrt())
     };
     (low - pad).max(-0.5 * f64::MAX)..(high + pad).min(0.5 * f64::MAX)
-}
-
-/// Tick labels with just the digits that tell neighbours apart.
-struct Ticks {
-    decimals: usize,
-    scientific: bool,
-}
-
-impl Ticks {
-    /// At most so many labels on an axis.
-    const WANTED: usize = 9;
-
-    fn over(range: &std::ops::Range<f64>) -> Ticks {
-        let largest = range.start.abs().max(range.end.abs());
-        // The smallest distance at which the axis may set its labels: 1, 2 or 5 times a power of ten.
-        let spacing = (range.end - range.start) / (2.5 * Ticks::WANTED as f64);
-        let scientific = !(1e-3..1e6).contains(&largest);
-        let unit = if scientific {
-            10f64.powf(largest.log10().floor())
-        } else {
-            1.0
-        };
-        let decimals = (-(spacing / unit).log10().floor()).clamp(0.0, 12.0) as usize;
-        Ticks {
-            decimals,
-            scientific,
-        }
-    }
-
-    fn label(&self, value: f64) -> String {
-        let decimals = self.decimals;
-        if self.scientific && value != 0.0 {
-            let text = format!("{value:.decimals$e}");
-            return match text.split_once('e') {
-                Some((mantissa, exponent)) => format!("{}e{exponent}", without_zeros(mantissa)),
-                None => text,
-            };
-        }
-        without_zeros(&format!("{value:.decimals$}")).to_owned()
-    }
-}
-
-fn without_zeros(number: &str) -> &str {
-    let short = if number.contains('.') {
-        number.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        number
-    };
-    if short == "-0" { "0" } else { short }
 }
 
 #[cfg(test)]
@@ -416,17 +368,6 @@ mod tests {
         let svg = chart(&many);
         let sample = |i: usize| polylines(&svg, PALETTE[i])[0][0];
         assert!(sample(6).1 > sample(0).1 && sample(0).1 == sample(1).1);
-    }
-
-    #[test]
-    fn tick_labels_tell_neighbours_apart_without_idle_zeros() {
-        let label = |range: std::ops::Range<f64>, value| Ticks::over(&range).label(value);
-        assert_eq!(label(0.0..100.0, 20.0), "20");
-        assert_eq!(label(0.0..1.0, 0.2), "0.2");
-        assert_eq!(label(101_000.0..101_001.0, 101_000.5), "101000.5");
-        assert_eq!(label(0.0..2e7, 5e6), "5e6");
-        assert_eq!(label(0.0..2e-7, 1.5e-7), "1.5e-7");
-        assert_ne!(label(101.0..101.1, 101.02), label(101.0..101.1, 101.04));
     }
 
     #[test]

@@ -75,11 +75,12 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Writes one of the result files (`PLAN_FILE`, ...) whole; returns its path.
+    /// Writes one of the result files (`PLAN_FILE`, ...) whole; returns its path. Panics on any other name.
     pub fn write_text(&self, name: &str, text: &str) -> Result<PathBuf, OutputError> {
-        debug_assert!(
+        // A programming error: the next run would take the file for the user's.
+        assert!(
             RESULT_FILES.contains(&name),
-            "{name} would be foreign to the next run"
+            "{name} is not in RESULT_FILES"
         );
         let path = self.path.join(name);
         write_atomically(&path, |out| out.write_all(text.as_bytes()))?;

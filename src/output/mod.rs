@@ -15,6 +15,7 @@ mod phases;
 mod progress;
 mod snapshot;
 mod table;
+mod ticks;
 mod vtk;
 
 pub use audit::{Audit, AuditLimits};
