@@ -66,11 +66,7 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
         return Err(errors.join("\n"));
     }
     let mut unused = wgsl_files(&folder.join("shared"))?;
-    unused.retain(|path| {
-        !kernels
-            .iter()
-            .any(|kernel| kernel.parts.iter().any(|part| part.path == *path))
-    });
+    unused.retain(|path| !kernels.iter().any(|kernel| kernel.parts.iter().any(|part| part.path == *path)));
     Ok((kernels, unused))
 }
 
@@ -90,11 +86,7 @@ pub fn table(kernels: &[Kernel]) -> String {
 
 impl Kernel {
     fn assemble(folder: &Path, path: &Path) -> Result<Kernel, String> {
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
@@ -108,15 +100,9 @@ impl Kernel {
     }
 
     /// Appends what `path` uses and is not there yet, then `path` itself. `visited` ends circles.
-    fn append(
-        &mut self,
-        folder: &Path,
-        path: &Path,
-        visited: &mut Vec<PathBuf>,
-    ) -> Result<(), String> {
+    fn append(&mut self, folder: &Path, path: &Path, visited: &mut Vec<PathBuf>) -> Result<(), String> {
         visited.push(path.to_path_buf());
-        let text =
-            fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         for (line, used) in uses(&text) {
             let shared = folder.join("shared").join(used);
             if visited.contains(&shared) {
@@ -131,10 +117,7 @@ impl Kernel {
             }
             self.append(folder, &shared, visited)?;
         }
-        self.parts.push(Part {
-            path: path.to_path_buf(),
-            start: self.source.len(),
-        });
+        self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
         self.source += &text;
         if !text.ends_with('\n') {
             self.source.push('\n');
@@ -144,10 +127,7 @@ impl Kernel {
 
     fn validate(&mut self) -> Result<(), String> {
         let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
-            let labels = error
-                .labels()
-                .map(|(span, label)| (span, label.to_owned()))
-                .collect();
+            let labels = error.labels().map(|(span, label)| (span, label.to_owned())).collect();
             let notes = error.notes().map(str::to_owned).collect();
             self.report(error.message(), labels, notes)
         })?;
@@ -187,24 +167,14 @@ impl Kernel {
     }
 
     /// naga's message with each place mapped from the joined source back to its file.
-    fn report(
-        &self,
-        message: &str,
-        labels: Vec<(naga::Span, String)>,
-        notes: Vec<String>,
-    ) -> String {
+    fn report(&self, message: &str, labels: Vec<(naga::Span, String)>, notes: Vec<String>) -> String {
         let kernel = self.parts.last().map_or(Path::new(""), |part| &part.path);
         let mut text = format!("error in kernel {}: {message}\n", kernel.display());
         for (span, label) in labels {
             let Some(range) = span.to_range() else {
                 continue;
             };
-            let Some(part) = self
-                .parts
-                .iter()
-                .rev()
-                .find(|part| part.start <= range.start)
-            else {
+            let Some(part) = self.parts.iter().rev().find(|part| part.start <= range.start) else {
                 continue;
             };
             let before = &self.source[part.start..range.start];
@@ -212,21 +182,10 @@ impl Kernel {
             let line_start = part.start + before.rfind('\n').map_or(0, |at| at + 1);
             let column = self.source[line_start..range.start].chars().count();
             let shown = self.source[line_start..].lines().next().unwrap_or_default();
-            let marked = self.source[range]
-                .lines()
-                .next()
-                .unwrap_or_default()
-                .chars()
-                .count()
-                .max(1);
+            let marked = self.source[range].lines().next().unwrap_or_default().chars().count().max(1);
             let (path, carets) = (part.path.display(), "^".repeat(marked));
             // Writing to a String cannot fail.
-            let _ = write!(
-                text,
-                "  {path}:{line}:{}: {label}\n    {shown}\n    {:column$}{carets}\n",
-                column + 1,
-                ""
-            );
+            let _ = write!(text, "  {path}:{line}:{}: {label}\n    {shown}\n    {:column$}{carets}\n", column + 1, "");
         }
         for note in notes {
             text += &format!("  note: {note}\n");
@@ -249,18 +208,9 @@ fn wgsl_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     if !folder.is_dir() {
         return Ok(Vec::new());
     }
-    let list = || -> std::io::Result<Vec<PathBuf>> {
-        fs::read_dir(folder)?
-            .map(|entry| Ok(entry?.path()))
-            .collect()
-    };
+    let list = || -> std::io::Result<Vec<PathBuf>> { fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect() };
     let mut paths = list().map_err(|error| format!("{}: {error}", folder.display()))?;
-    paths.retain(|path| {
-        path.is_file()
-            && path
-                .extension()
-                .is_some_and(|extension| extension == "wgsl")
-    });
+    paths.retain(|path| path.is_file() && path.extension().is_some_and(|extension| extension == "wgsl"));
     paths.sort();
     Ok(paths)
 }

@@ -41,7 +41,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         start = birth_time(slot.y);
     }
     sorted[place] = particle;
-    let flag = select(NEAR_WALL, 0u, class_of(cell) == CLASS_CLEAR);
+    let flag = select(0u, NEAR_WALL, may_part(cell));
     middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     cells[place] = cell;
     touched[place] = 0u;

@@ -22,10 +22,7 @@ impl Programs {
         }
         programs.add("cargo", "exit 0");
         programs.add("ldconfig", "exit 0");
-        programs.add(
-            "rustc",
-            &format!("echo 'rustc {version} (59807616e 2026-04-14)'"),
-        );
+        programs.add("rustc", &format!("echo 'rustc {version} (59807616e 2026-04-14)'"));
         programs
     }
 
@@ -41,10 +38,7 @@ impl Programs {
     }
 
     fn logs(&self, name: &str) {
-        self.add(
-            name,
-            &format!("echo {name} \"$@\" >> '{}'", self.log().display()),
-        );
+        self.add(name, &format!("echo {name} \"$@\" >> '{}'", self.log().display()));
     }
 
     fn run(&self, script: &str, arguments: &[&str]) -> Output {
@@ -71,18 +65,10 @@ fn a_missing_or_old_rust_is_told_and_a_new_one_is_not() {
     let programs = Programs::with_rust("1.70.0");
     let old = programs.run("scripts/setup.sh", &[]);
     assert!(!old.status.success());
-    assert!(
-        said(&old).contains("Rust 1.70.0 is too old"),
-        "{}",
-        said(&old)
-    );
+    assert!(said(&old).contains("Rust 1.70.0 is too old"), "{}", said(&old));
     fs::remove_file(programs.0.path().join("cargo")).unwrap();
     let none = programs.run("scripts/setup.sh", &[]);
-    assert!(
-        !none.status.success() && said(&none).contains("Rust is missing"),
-        "{}",
-        said(&none)
-    );
+    assert!(!none.status.success() && said(&none).contains("Rust is missing"), "{}", said(&none));
     for version in ["1.95.0", "1.100.1", "2.0.0-nightly"] {
         let new = Programs::with_rust(version).run("scripts/setup.sh", &[]);
         assert!(!said(&new).contains("Rust"), "{version}: {}", said(&new));
@@ -99,31 +85,18 @@ fn only_what_is_missing_is_installed_and_named() {
     programs.add("cc", "exit 1");
     let output = programs.run("scripts/setup.sh", &[]);
     assert!(output.status.success(), "{}", said(&output));
-    assert!(
-        said(&output).contains("installing libc6-dev libvulkan1"),
-        "{}",
-        said(&output)
-    );
+    assert!(said(&output).contains("installing libc6-dev libvulkan1"), "{}", said(&output));
     let noted = programs.noted();
     assert!(noted.contains("apt-get update"), "{noted}");
-    assert!(
-        noted.contains("apt-get install") && noted.contains("libc6-dev libvulkan1"),
-        "{noted}"
-    );
+    assert!(noted.contains("apt-get install") && noted.contains("libc6-dev libvulkan1"), "{noted}");
     assert!(!noted.contains("gcc") && !noted.contains("sudo"), "{noted}");
     // With compiler and library there, neither is named any more.
     programs.add("cc", "exit 0");
-    programs.add(
-        "ldconfig",
-        "echo 'libvulkan.so.1 (libc6,x86-64) => /usr/lib/libvulkan.so.1'",
-    );
+    programs.add("ldconfig", "echo 'libvulkan.so.1 (libc6,x86-64) => /usr/lib/libvulkan.so.1'");
     fs::remove_file(programs.log()).unwrap();
     assert!(programs.run("scripts/setup.sh", &[]).status.success());
     let noted = programs.noted();
-    assert!(
-        !noted.contains("libc6-dev") && !noted.contains("libvulkan1"),
-        "{noted}"
-    );
+    assert!(!noted.contains("libc6-dev") && !noted.contains("libvulkan1"), "{noted}");
 }
 
 #[test]
@@ -133,23 +106,11 @@ fn root_is_asked_for_through_sudo_and_its_absence_is_told() {
     programs.add("id", "echo 1000");
     let helpless = programs.run("scripts/setup.sh", &[]);
     assert!(!helpless.status.success());
-    assert!(
-        said(&helpless).contains("Neither root nor sudo"),
-        "{}",
-        said(&helpless)
-    );
-    assert_eq!(
-        programs.noted(),
-        "",
-        "nothing is tried without the right to"
-    );
+    assert!(said(&helpless).contains("Neither root nor sudo"), "{}", said(&helpless));
+    assert_eq!(programs.noted(), "", "nothing is tried without the right to");
     programs.logs("sudo");
     assert!(programs.run("scripts/setup.sh", &[]).status.success());
-    assert!(
-        programs
-            .noted()
-            .contains("sudo env DEBIAN_FRONTEND=noninteractive apt-get install")
-    );
+    assert!(programs.noted().contains("sudo env DEBIAN_FRONTEND=noninteractive apt-get install"));
 }
 
 #[test]
@@ -157,11 +118,7 @@ fn without_apt_the_missing_packages_are_told() {
     let output = Programs::with_rust("1.95.0").run("scripts/setup.sh", &[]);
     assert!(!output.status.success());
     assert!(said(&output).contains("gcc libc6-dev"), "{}", said(&output));
-    assert!(
-        said(&output).contains("no apt-get here"),
-        "{}",
-        said(&output)
-    );
+    assert!(said(&output).contains("no apt-get here"), "{}", said(&output));
 }
 
 #[test]
@@ -181,10 +138,7 @@ fn a_wrong_call_is_told_before_anything_is_built() {
 fn complete(status: u8) -> Programs {
     let programs = Programs::with_rust("1.95.0");
     programs.add("cc", "exit 0");
-    programs.add(
-        "ldconfig",
-        "echo 'libvulkan.so.1 (libc6) => /usr/lib/libvulkan.so.1'",
-    );
+    programs.add("ldconfig", "echo 'libvulkan.so.1 (libc6) => /usr/lib/libvulkan.so.1'");
     // The driver's manifest is looked up in fixed folders: where it is missing an installation is noted.
     programs.add("id", "echo 0");
     programs.add("apt-get", "exit 0");
@@ -202,40 +156,17 @@ fn complete(status: u8) -> Programs {
 #[test]
 fn a_run_builds_then_runs_and_ends_with_the_path_of_its_results() {
     let programs = complete(0);
-    let output = programs.run(
-        "scripts/run.sh",
-        &["scenes/tank.toml", "--particles", "20000"],
-    );
+    let output = programs.run("scripts/run.sh", &["scenes/tank.toml", "--particles", "20000"]);
     assert!(output.status.success(), "{}", said(&output));
     let noted = programs.noted();
     let mut lines = noted.lines();
-    assert!(
-        lines.next().unwrap().starts_with("cargo build --release"),
-        "{noted}"
-    );
-    assert!(
-        lines
-            .next()
-            .unwrap()
-            .ends_with("run scenes/tank.toml --particles 20000 --out results/tank"),
-        "{noted}"
-    );
-    let last = |output: &Output| {
-        String::from_utf8_lossy(&output.stdout)
-            .lines()
-            .last()
-            .unwrap_or_default()
-            .to_owned()
-    };
+    assert!(lines.next().unwrap().starts_with("cargo build --release"), "{noted}");
+    assert!(lines.next().unwrap().ends_with("run scenes/tank.toml --particles 20000 --out results/tank"), "{noted}");
+    let last = |output: &Output| String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_owned();
     assert!(last(&output).starts_with("Results: /") && last(&output).ends_with("/results/tank"));
     let chosen = programs.run("scripts/run.sh", &["scenes/tank.toml", "--out", "chosen"]);
     assert!(last(&chosen).ends_with("/chosen"));
-    assert!(
-        programs
-            .noted()
-            .trim_end()
-            .ends_with("run scenes/tank.toml --out chosen")
-    );
+    assert!(programs.noted().trim_end().ends_with("run scenes/tank.toml --out chosen"));
 }
 
 #[test]
@@ -243,38 +174,18 @@ fn a_run_passes_on_its_exit_status() {
     for (status, with_results) in [(2, false), (3, false), (4, true)] {
         let output = complete(status).run("scripts/run.sh", &["scenes/tank.toml"]);
         assert_eq!(output.status.code(), Some(i32::from(status)));
-        assert_eq!(
-            String::from_utf8_lossy(&output.stdout).contains("Results:"),
-            with_results
-        );
+        assert_eq!(String::from_utf8_lossy(&output.stdout).contains("Results:"), with_results);
     }
 }
 
 #[test]
 fn every_script_parses_and_may_be_executed() {
-    let parses = |path: &Path| {
-        Command::new("bash")
-            .arg("-n")
-            .arg(path)
-            .output()
-            .unwrap()
-            .status
-            .success()
-    };
+    let parses = |path: &Path| Command::new("bash").arg("-n").arg(path).output().unwrap().status.success();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for script in [
-        "scripts/setup.sh",
-        "scripts/run.sh",
-        "scripts/test.sh",
-        ".ci/run",
-    ] {
+    for script in ["scripts/setup.sh", "scripts/run.sh", "scripts/test.sh", ".ci/run"] {
         let path = root.join(script);
         assert!(parses(&path), "{script}");
-        assert_ne!(
-            fs::metadata(&path).unwrap().permissions().mode() & 0o111,
-            0,
-            "{script}"
-        );
+        assert_ne!(fs::metadata(&path).unwrap().permissions().mode() & 0o111, 0, "{script}");
     }
     let dir = tempfile::tempdir().unwrap();
     let broken = dir.path().join("broken.sh");

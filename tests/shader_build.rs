@@ -34,10 +34,7 @@ fn error(files: &[(&str, &str)]) -> String {
 #[test]
 fn a_kernel_holds_what_it_uses_once_and_before_it() {
     let dir = folder(&[
-        (
-            "advect.wgsl",
-            &KERNEL.replace("double.wgsl", "double.wgsl two.wgsl"),
-        ),
+        ("advect.wgsl", &KERNEL.replace("double.wgsl", "double.wgsl two.wgsl")),
         ("shared/double.wgsl", DOUBLE),
         ("shared/two.wgsl", TWO),
         ("shared/idle.wgsl", TWO),
@@ -48,16 +45,11 @@ fn a_kernel_holds_what_it_uses_once_and_before_it() {
     assert_eq!(kernels[0].name, "advect");
     let source = &kernels[0].source;
     assert_eq!(source.matches(TWO).count(), 1);
-    assert!(
-        source.find(TWO) < source.find("fn double")
-            && source.find("fn double") < source.find("fn main")
-    );
+    assert!(source.find(TWO) < source.find("fn double") && source.find("fn double") < source.find("fn main"));
     assert_eq!(unused, [dir.path().join("shared/idle.wgsl")]);
     let table = build::table(&kernels);
     assert!(
-        table.starts_with(
-            "pub const KERNELS: &[(&str, &str)] = &[\n    (\"advect\", \"const TWO = 2u;\\n"
-        ),
+        table.starts_with("pub const KERNELS: &[(&str, &str)] = &[\n    (\"advect\", \"const TWO = 2u;\\n"),
         "{table}"
     );
 }
@@ -66,41 +58,25 @@ fn a_kernel_holds_what_it_uses_once_and_before_it() {
 fn without_shaders_the_table_is_empty() {
     let (kernels, unused) = build::kernels(Path::new("no/such/folder")).unwrap();
     assert!(unused.is_empty());
-    assert_eq!(
-        build::table(&kernels),
-        "pub const KERNELS: &[(&str, &str)] = &[\n];\n"
-    );
+    assert_eq!(build::table(&kernels), "pub const KERNELS: &[(&str, &str)] = &[\n];\n");
 }
 
 #[test]
 fn a_fault_is_reported_with_its_own_file_and_line() {
     let in_shared = error(&[
         ("advect.wgsl", KERNEL),
-        (
-            "shared/double.wgsl",
-            &DOUBLE.replace("TWO * x", "THREE * x"),
-        ),
+        ("shared/double.wgsl", &DOUBLE.replace("TWO * x", "THREE * x")),
         ("shared/two.wgsl", TWO),
     ]);
     assert!(
-        in_shared
-            .contains("kernel shaders/advect.wgsl: no definition in scope for identifier: `THREE`"),
+        in_shared.contains("kernel shaders/advect.wgsl: no definition in scope for identifier: `THREE`"),
         "{in_shared}"
     );
-    assert!(
-        in_shared.contains("shaders/shared/double.wgsl:4:12"),
-        "{in_shared}"
-    );
-    assert!(
-        in_shared.contains("    return THREE * x;\n               ^^^^^\n"),
-        "{in_shared}"
-    );
+    assert!(in_shared.contains("shaders/shared/double.wgsl:4:12"), "{in_shared}");
+    assert!(in_shared.contains("    return THREE * x;\n               ^^^^^\n"), "{in_shared}");
 
     let in_kernel = error(&[
-        (
-            "advect.wgsl",
-            &KERNEL.replace("double(values", "double(f32(1) + values"),
-        ),
+        ("advect.wgsl", &KERNEL.replace("double(values", "double(f32(1) + values")),
         ("shared/double.wgsl", DOUBLE),
         ("shared/two.wgsl", TWO),
     ]);
@@ -110,23 +86,17 @@ fn a_fault_is_reported_with_its_own_file_and_line() {
 #[test]
 fn what_parses_but_is_not_valid_is_refused() {
     let message = error(&[
-        (
-            "advect.wgsl",
-            &KERNEL.replace("@workgroup_size(64)", "@workgroup_size(0)"),
-        ),
+        ("advect.wgsl", &KERNEL.replace("@workgroup_size(64)", "@workgroup_size(0)")),
         ("shared/double.wgsl", DOUBLE),
         ("shared/two.wgsl", TWO),
     ]);
     assert!(
-        message.contains("error in kernel shaders/advect.wgsl")
-            && message.to_lowercase().contains("workgroup"),
+        message.contains("error in kernel shaders/advect.wgsl") && message.to_lowercase().contains("workgroup"),
         "{message}"
     );
     // A capability that no adapter need have.
-    let wide = error(&[(
-        "wide.wgsl",
-        "@compute @workgroup_size(1)\nfn main() {\n    var x = 1.0lf;\n    x = x + x;\n}\n",
-    )]);
+    let wide =
+        error(&[("wide.wgsl", "@compute @workgroup_size(1)\nfn main() {\n    var x = 1.0lf;\n    x = x + x;\n}\n")]);
     assert!(wide.contains("shaders/wide.wgsl"), "{wide}");
     assert!(error(&[("empty.wgsl", "const A = 1;\n")]).contains("needs an entry point"));
 }
@@ -134,10 +104,7 @@ fn what_parses_but_is_not_valid_is_refused() {
 #[test]
 fn a_missing_shared_file_and_every_broken_kernel_are_named() {
     let message = error(&[("a.wgsl", KERNEL), ("b.wgsl", "fn main( {}\n")]);
-    assert!(
-        message.contains("shaders/a.wgsl:2: error: uses double.wgsl"),
-        "{message}"
-    );
+    assert!(message.contains("shaders/a.wgsl:2: error: uses double.wgsl"), "{message}");
     assert!(message.contains("kernel shaders/b.wgsl"), "{message}");
 }
 

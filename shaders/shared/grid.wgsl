@@ -33,7 +33,7 @@ fn between(a: vec3<u32>, b: vec3<u32>) -> vec3<f32> {
 }
 
 // A position packed into one word for the search of neighbours: 10 bits per axis, in 1/128 of a cell,
-// modulo 8 cells; the top bit marks a cell that is not clear of walls.
+// modulo 8 cells; the top bit marks a cell near a wall that can part two particles.
 const NEAR_WALL: u32 = 0x80000000;
 
 fn packed(p: vec3<u32>) -> u32 {

@@ -35,6 +35,14 @@ override TOLERANCE: f32;
 @group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(23) var<storage, read> cell_class: array<u32>;
 
+// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
+// (The surface of a convex cavity cannot.)
+@group(0) @binding(31) var<storage, read> parting: array<u32>;
+
+fn may_part(cell: u32) -> bool {
+    return ((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u;
+}
+
 fn class_of(cell: u32) -> u32 {
     return (cell_class[cell >> 4u] >> ((cell & 15u) * 2u)) & 3u;
 }

@@ -20,36 +20,23 @@ pub fn block_volumes(vessel: &Vessel, grid: &Grid, log2_cells: u32) -> Vec<f64> 
         let corner = [(row % ny) as f64, (row / ny) as f64];
         let mut lengths = vec![0.0; nx];
         for i in 0..LINES {
-            let offset =
-                [i, i * GENERATOR % LINES].map(|k| (f64::from(k) + 0.5) / f64::from(LINES));
-            let [y, z] =
-                std::array::from_fn(|a| grid.origin[a + 1] + (corner[a] + offset[a]) * edge);
+            let offset = [i, i * GENERATOR % LINES].map(|k| (f64::from(k) + 0.5) / f64::from(LINES));
+            let [y, z] = std::array::from_fn(|a| grid.origin[a + 1] + (corner[a] + offset[a]) * edge);
             vessel.gas_along(y, z, line);
             for &(from, to) in &line.gas {
-                share(
-                    &mut lengths,
-                    (from - grid.origin[0]) / edge,
-                    (to - grid.origin[0]) / edge,
-                );
+                share(&mut lengths, (from - grid.origin[0]) / edge, (to - grid.origin[0]) / edge);
             }
         }
         lengths
     });
     let whole = edge * edge * edge;
-    let mut volumes: Vec<f64> = rows
-        .concat()
-        .iter()
-        .map(|length| whole * length / f64::from(LINES))
-        .collect();
+    let mut volumes: Vec<f64> = rows.concat().iter().map(|length| whole * length / f64::from(LINES)).collect();
     let is_full = |v: f64| v > whole * (1.0 - 1e-9);
     let full: f64 = volumes.iter().filter(|v| is_full(**v)).sum();
     let cut: f64 = volumes.iter().filter(|v| !is_full(**v)).sum();
     if cut > 0.0 {
         let correction = (vessel.gas_volume() - full) / cut;
-        volumes
-            .iter_mut()
-            .filter(|v| !is_full(**v))
-            .for_each(|v| *v *= correction);
+        volumes.iter_mut().filter(|v| !is_full(**v)).for_each(|v| *v *= correction);
     }
     volumes
 }
@@ -57,10 +44,7 @@ pub fn block_volumes(vessel: &Vessel, grid: &Grid, log2_cells: u32) -> Vec<f64> 
 /// Adds the length of from..to (in blocks) within each block.
 fn share(lengths: &mut [f64], from: f64, to: f64) {
     let last = lengths.len() - 1;
-    let (first, end) = (
-        (from.max(0.0) as usize).min(last),
-        (to.max(0.0) as usize).min(last),
-    );
+    let (first, end) = ((from.max(0.0) as usize).min(last), (to.max(0.0) as usize).min(last));
     for (block, length) in lengths.iter_mut().enumerate().take(end + 1).skip(first) {
         *length += (to.min((block + 1) as f64) - from.max(block as f64)).max(0.0);
     }
@@ -73,11 +57,7 @@ mod tests {
 
     #[test]
     fn blocks_add_up_to_the_vessel_and_each_is_right() {
-        let vessel = Vessel::build(&[
-            tank([0.4, 0.3, 0.2]),
-            hollow_box([0.1; 3], [0.2, 0.15, 0.15], 0.01),
-        ])
-        .unwrap();
+        let vessel = Vessel::build(&[tank([0.4, 0.3, 0.2]), hollow_box([0.1; 3], [0.2, 0.15, 0.15], 0.01)]).unwrap();
         let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.0071).unwrap();
         let volumes = block_volumes(&vessel, &grid, 2);
         let blocks = grid.blocks(2);
@@ -87,17 +67,14 @@ mod tests {
         // Every block against the product of intervals, minus the shell.
         let edge = 4.0 * grid.cell;
         let overlap = |min: [f64; 3], low: [f64; 3], high: [f64; 3]| -> f64 {
-            (0..3)
-                .map(|a| (high[a].min(min[a] + edge) - low[a].max(min[a])).max(0.0))
-                .product()
+            (0..3).map(|a| (high[a].min(min[a] + edge) - low[a].max(min[a])).max(0.0)).product()
         };
         let mut worst = 0.0f64;
         for (k, &volume) in volumes.iter().enumerate() {
             let (nx, ny) = (blocks[0] as usize, blocks[1] as usize);
             let index = [k % nx, k / nx % ny, k / nx / ny];
             let min = std::array::from_fn(|a| grid.origin[a] + index[a] as f64 * edge);
-            let right = overlap(min, [0.0; 3], [0.4, 0.3, 0.2])
-                - overlap(min, [0.09; 3], [0.21, 0.16, 0.16])
+            let right = overlap(min, [0.0; 3], [0.4, 0.3, 0.2]) - overlap(min, [0.09; 3], [0.21, 0.16, 0.16])
                 + overlap(min, [0.1; 3], [0.2, 0.15, 0.15]);
             worst = worst.max((volume - right).abs() / edge.powi(3));
         }

@@ -14,49 +14,26 @@ const FLAT: f64 = 1e-12;
 
 /// Checks that `triangles` (indices into `vertices`, m) form closed, consistently oriented surfaces.
 /// `wall` names the wall in the error.
-pub fn check_closed(
-    wall: &str,
-    vertices: &[DVec3],
-    triangles: &[[u32; 3]],
-) -> Result<(), GeometryError> {
+pub fn check_closed(wall: &str, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
     let wall = wall.to_string();
     if triangles.is_empty() {
         return Err(GeometryError::Empty { wall });
     }
-    let bad: Vec<usize> = (0..vertices.len())
-        .filter(|&v| !vertices[v].is_finite())
-        .collect();
+    let bad: Vec<usize> = (0..vertices.len()).filter(|&v| !vertices[v].is_finite()).collect();
     if !bad.is_empty() {
         let first = list(&bad, |&v| point(vertices[v]));
-        return Err(GeometryError::NotFinite {
-            wall,
-            count: bad.len(),
-            first,
-        });
+        return Err(GeometryError::NotFinite { wall, count: bad.len(), first });
     }
-    let flat: Vec<[DVec3; 3]> = triangles
-        .iter()
-        .map(|t| t.map(|v| vertices[v as usize]))
-        .filter(|corners| is_flat(*corners))
-        .collect();
+    let flat: Vec<[DVec3; 3]> =
+        triangles.iter().map(|t| t.map(|v| vertices[v as usize])).filter(|corners| is_flat(*corners)).collect();
     if !flat.is_empty() {
-        let first = list(&flat, |c| {
-            format!("{} {} {}", point(c[0]), point(c[1]), point(c[2]))
-        });
-        return Err(GeometryError::Degenerate {
-            wall,
-            count: flat.len(),
-            first,
-        });
+        let first = list(&flat, |c| format!("{} {} {}", point(c[0]), point(c[1]), point(c[2])));
+        return Err(GeometryError::Degenerate { wall, count: flat.len(), first });
     }
     check_edges(wall, vertices, triangles)
 }
 
-fn check_edges(
-    wall: String,
-    vertices: &[DVec3],
-    triangles: &[[u32; 3]],
-) -> Result<(), GeometryError> {
+fn check_edges(wall: String, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
     // (lower vertex, higher vertex, runs upwards), sorted: triangles that share an edge become neighbours.
     let mut edges: Vec<(u32, u32, bool)> = triangles
         .iter()
@@ -75,43 +52,22 @@ fn check_edges(
         }
     }
     let name = |edges: &[(u32, u32)]| {
-        list(edges, |&(a, b)| {
-            format!(
-                "{} to {}",
-                point(vertices[a as usize]),
-                point(vertices[b as usize])
-            )
-        })
+        list(edges, |&(a, b)| format!("{} to {}", point(vertices[a as usize]), point(vertices[b as usize])))
     };
     if !open.is_empty() {
-        return Err(GeometryError::OpenEdges {
-            wall,
-            count: open.len(),
-            first: name(&open),
-        });
+        return Err(GeometryError::OpenEdges { wall, count: open.len(), first: name(&open) });
     }
     if !crowded.is_empty() {
-        return Err(GeometryError::CrowdedEdges {
-            wall,
-            count: crowded.len(),
-            first: name(&crowded),
-        });
+        return Err(GeometryError::CrowdedEdges { wall, count: crowded.len(), first: name(&crowded) });
     }
     if !turned.is_empty() {
-        return Err(GeometryError::Orientation {
-            wall,
-            count: turned.len(),
-            first: name(&turned),
-        });
+        return Err(GeometryError::Orientation { wall, count: turned.len(), first: name(&turned) });
     }
     Ok(())
 }
 
 fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
-    let longest = (b - a)
-        .length_squared()
-        .max((c - b).length_squared())
-        .max((a - c).length_squared());
+    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let doubled = (b - a).cross(c - a).length();
     // An overflow to NaN counts as degenerate too.
     doubled.is_nan() || doubled <= FLAT * longest
@@ -126,24 +82,13 @@ pub fn signed_volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     // Relative to a vertex of the mesh, so that a mesh far from the origin loses no digits.
     let origin = vertices[first[0] as usize];
     let corner = |v: u32| vertices[v as usize] - origin;
-    triangles
-        .iter()
-        .map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2]))))
-        .sum::<f64>()
-        / 6.0
+    triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>() / 6.0
 }
 
 /// m2.
 pub fn area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     let corner = |v: u32| vertices[v as usize];
-    triangles
-        .iter()
-        .map(|t| {
-            (corner(t[1]) - corner(t[0]))
-                .cross(corner(t[2]) - corner(t[0]))
-                .length()
-        })
-        .sum::<f64>()
+    triangles.iter().map(|t| (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length()).sum::<f64>()
         / 2.0
 }
 
@@ -152,12 +97,7 @@ pub(super) fn point(p: DVec3) -> String {
 }
 
 fn list<T>(items: &[T], name: impl Fn(&T) -> String) -> String {
-    items
-        .iter()
-        .take(LISTED)
-        .map(name)
-        .collect::<Vec<_>>()
-        .join("; ")
+    items.iter().take(LISTED).map(name).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]
@@ -165,10 +105,7 @@ mod tests {
     use super::*;
 
     fn tetrahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        (
-            vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
-            vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
-        )
+        (vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     }
 
     #[test]
@@ -184,9 +121,7 @@ mod tests {
     #[test]
     fn the_volume_does_not_depend_on_the_distance_from_the_origin() {
         let (mut vertices, triangles) = tetrahedron();
-        vertices
-            .iter_mut()
-            .for_each(|v| *v += DVec3::new(4096.0, -8192.0, 1024.0));
+        vertices.iter_mut().for_each(|v| *v += DVec3::new(4096.0, -8192.0, 1024.0));
         assert!((signed_volume(&vertices, &triangles) - 1.0 / 6.0).abs() < 1e-12);
     }
 
@@ -194,46 +129,23 @@ mod tests {
     fn each_defect_has_its_error() {
         let (vertices, triangles) = tetrahedron();
         let open = check_closed("t", &vertices, &triangles[1..]).unwrap_err();
-        let GeometryError::OpenEdges {
-            count: 3, first, ..
-        } = open
-        else {
-            panic!("{open}")
-        };
-        assert_eq!(
-            first,
-            "(0, 0, 0) to (1, 0, 0); (0, 0, 0) to (0, 1, 0); (1, 0, 0) to (0, 1, 0)"
-        );
+        let GeometryError::OpenEdges { count: 3, first, .. } = open else { panic!("{open}") };
+        assert_eq!(first, "(0, 0, 0) to (1, 0, 0); (0, 0, 0) to (0, 1, 0); (1, 0, 0) to (0, 1, 0)");
 
         let mut turned = triangles.clone();
         turned[3].swap(0, 1);
-        assert!(matches!(
-            check_closed("t", &vertices, &turned),
-            Err(GeometryError::Orientation { count: 3, .. })
-        ));
+        assert!(matches!(check_closed("t", &vertices, &turned), Err(GeometryError::Orientation { count: 3, .. })));
 
         let doubled = [triangles.clone(), triangles.clone()].concat();
-        assert!(matches!(
-            check_closed("t", &vertices, &doubled),
-            Err(GeometryError::CrowdedEdges { count: 6, .. })
-        ));
+        assert!(matches!(check_closed("t", &vertices, &doubled), Err(GeometryError::CrowdedEdges { count: 6, .. })));
 
         let mut flat = triangles.clone();
         flat.push([0, 1, 1]);
-        assert!(matches!(
-            check_closed("t", &vertices, &flat),
-            Err(GeometryError::Degenerate { count: 1, .. })
-        ));
+        assert!(matches!(check_closed("t", &vertices, &flat), Err(GeometryError::Degenerate { count: 1, .. })));
 
         let mut broken = vertices.clone();
         broken[2].y = f64::NAN;
-        assert!(matches!(
-            check_closed("t", &broken, &triangles),
-            Err(GeometryError::NotFinite { count: 1, .. })
-        ));
-        assert!(matches!(
-            check_closed("t", &vertices, &[]),
-            Err(GeometryError::Empty { .. })
-        ));
+        assert!(matches!(check_closed("t", &broken, &triangles), Err(GeometryError::NotFinite { count: 1, .. })));
+        assert!(matches!(check_closed("t", &vertices, &[]), Err(GeometryError::Empty { .. })));
     }
 }

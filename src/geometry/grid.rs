@@ -42,23 +42,14 @@ impl Grid {
             // Gas may touch the faces of the box: half a cell of slack on either side keeps it off the border layer.
             let inner = (extent / cell).floor() + 1.0;
             if !(inner.is_finite() && inner + 2.0 <= f64::from(Self::MAX_CELLS)) {
-                return Err(GridError::TooManyCells {
-                    cells: inner,
-                    cell,
-                    limit: Self::MAX_CELLS - 2,
-                });
+                return Err(GridError::TooManyCells { cells: inner, cell, limit: Self::MAX_CELLS - 2 });
             }
             cells[axis] = inner as u32 + 2;
             origin[axis] = min[axis] - 0.5 * (f64::from(cells[axis]) * cell - extent);
         }
         let most = cells.iter().copied().max().unwrap_or(3);
         let index_bits = 32 - (most - 1).leading_zeros();
-        Ok(Grid {
-            origin,
-            cell,
-            cells,
-            cell_bits: 31 - index_bits,
-        })
+        Ok(Grid { origin, cell, cells, cell_bits: 31 - index_bits })
     }
 
     /// Metres per quantum.
@@ -91,8 +82,7 @@ impl Grid {
 
     /// x fastest: the three cells of an x-row are neighbours in memory.
     pub fn cell_index(&self, cell: [u32; 3]) -> usize {
-        (cell[2] as usize * self.cells[1] as usize + cell[1] as usize) * self.cells[0] as usize
-            + cell[0] as usize
+        (cell[2] as usize * self.cells[1] as usize + cell[1] as usize) * self.cells[0] as usize + cell[0] as usize
     }
 
     /// Blocks of 2^`log2_cells` cells per axis; the last of an axis may reach beyond the grid.
@@ -137,13 +127,7 @@ mod tests {
 
     #[test]
     fn cells_that_cannot_be_are_refused() {
-        assert_eq!(
-            Grid::around([0.0; 3], [1.0; 3], 0.0),
-            Err(GridError::CellSize(0.0))
-        );
-        assert!(matches!(
-            Grid::around([0.0; 3], [1.0; 3], 1e-5),
-            Err(GridError::TooManyCells { .. })
-        ));
+        assert_eq!(Grid::around([0.0; 3], [1.0; 3], 0.0), Err(GridError::CellSize(0.0)));
+        assert!(matches!(Grid::around([0.0; 3], [1.0; 3], 1e-5), Err(GridError::TooManyCells { .. })));
     }
 }

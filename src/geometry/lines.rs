@@ -55,11 +55,7 @@ impl LineIndex {
         let triangles: Vec<Projected> = triangles
             .map(|(t, wall)| {
                 let corners = t.map(|v| vertices[v as usize]);
-                Projected {
-                    x: corners.map(|p| p.x),
-                    corners: corners.map(fixed),
-                    wall,
-                }
+                Projected { x: corners.map(|p| p.x), corners: corners.map(fixed), wall }
             })
             // A triangle seen edge-on is never crossed.
             .filter(|t| t.area() != 0)
@@ -68,15 +64,7 @@ impl LineIndex {
         let shift = BITS - wanted.clamp(1, 1024).next_power_of_two().trailing_zeros();
         let top = fixed(max);
         let buckets = [(top[0] >> shift) + 1, (top[1] >> shift) + 1];
-        let mut index = LineIndex {
-            origin,
-            scale,
-            shift,
-            buckets,
-            start: Vec::new(),
-            list: Vec::new(),
-            triangles,
-        };
+        let mut index = LineIndex { origin, scale, shift, buckets, start: Vec::new(), list: Vec::new(), triangles };
         index.fill();
         index
     }
@@ -115,10 +103,7 @@ impl LineIndex {
 
     /// Calls `found` for every crossing of the line through (y, z), m, in no particular order in x.
     pub fn cross(&self, y: f64, z: f64, mut found: impl FnMut(Crossing)) {
-        let q = [
-            quanta(y, self.origin[0], self.scale),
-            quanta(z, self.origin[1], self.scale),
-        ];
+        let q = [quanta(y, self.origin[0], self.scale), quanta(z, self.origin[1], self.scale)];
         let bucket = q.map(|c| c >> self.shift);
         if (0..2).any(|axis| bucket[axis] < 0 || bucket[axis] >= self.buckets[axis]) {
             return;
@@ -135,16 +120,11 @@ impl LineIndex {
 /// Not a number becomes a place outside.
 fn quanta(value: f64, origin: f64, scale: f64) -> i64 {
     let quanta = ((value - origin) * scale).round();
-    if quanta.abs() < 2.0 * (1u64 << BITS) as f64 {
-        quanta as i64
-    } else {
-        -1
-    }
+    if quanta.abs() < 2.0 * (1u64 << BITS) as f64 { quanta as i64 } else { -1 }
 }
 
 fn cross_product(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i128 {
-    i128::from(b[0] - a[0]) * i128::from(c[1] - a[1])
-        - i128::from(b[1] - a[1]) * i128::from(c[0] - a[0])
+    i128::from(b[0] - a[0]) * i128::from(c[1] - a[1]) - i128::from(b[1] - a[1]) * i128::from(c[0] - a[0])
 }
 
 impl Projected {
@@ -155,9 +135,8 @@ impl Projected {
 
     fn cross(&self, q: [i64; 2]) -> Option<Crossing> {
         let area = self.area();
-        let weights: [i128; 3] = std::array::from_fn(|k| {
-            cross_product(self.corners[(k + 1) % 3], self.corners[(k + 2) % 3], q)
-        });
+        let weights: [i128; 3] =
+            std::array::from_fn(|k| cross_product(self.corners[(k + 1) % 3], self.corners[(k + 2) % 3], q));
         for (k, &weight) in weights.iter().enumerate() {
             let (a, b) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
             // On the edge: the sign after moving q by (e, e^2).
@@ -173,22 +152,13 @@ impl Projected {
         // From one corner, so that a triangle across x has its x exactly.
         let [_, u, v] = weights.map(|w| w as f64 / area as f64);
         let x = self.x[0] + (u * (self.x[1] - self.x[0]) + v * (self.x[2] - self.x[0]));
-        Some(Crossing {
-            x,
-            sign: area.signum() as i32,
-            wall: self.wall,
-        })
+        Some(Crossing { x, sign: area.signum() as i32, wall: self.wall })
     }
 }
 
 /// Where along sorted crossings the number of solids satisfies `wanted`: x-intervals of positive length, in
 /// order, touching ones merged. `outside` is the number at both far ends.
-pub(super) fn intervals(
-    crossings: &[Crossing],
-    outside: i32,
-    wanted: impl Fn(i32) -> bool,
-    out: &mut Vec<(f64, f64)>,
-) {
+pub(super) fn intervals(crossings: &[Crossing], outside: i32, wanted: impl Fn(i32) -> bool, out: &mut Vec<(f64, f64)>) {
     out.clear();
     let mut depth = outside;
     for pair in crossings.windows(2) {
@@ -210,8 +180,7 @@ mod tests {
 
     /// A closed fan: a pyramid whose apex is hit by a line, as are many edges.
     fn pyramid(rim: &[(i32, i32)], apex: (i32, i32)) -> LineIndex {
-        let place =
-            |x: f64, (y, z): (i32, i32)| DVec3::new(x, f64::from(y) / 8.0, f64::from(z) / 8.0);
+        let place = |x: f64, (y, z): (i32, i32)| DVec3::new(x, f64::from(y) / 8.0, f64::from(z) / 8.0);
         let mut vertices: Vec<DVec3> = rim.iter().map(|&c| place(0.0, c)).collect();
         vertices.extend([place(1.0, apex), place(-1.0, apex)]);
         let n = rim.len() as u32;
@@ -219,12 +188,7 @@ mod tests {
             let next = (i + 1) % n;
             [([i, next, n], 0), ([next, i, n + 1], 0)]
         });
-        LineIndex::new(
-            &vertices,
-            triangles,
-            DVec3::new(-1.0, -1.0, -1.0),
-            DVec3::ONE,
-        )
+        LineIndex::new(&vertices, triangles, DVec3::new(-1.0, -1.0, -1.0), DVec3::ONE)
     }
 
     fn crossings(index: &LineIndex, y: f64, z: f64) -> Vec<Crossing> {
@@ -235,31 +199,11 @@ mod tests {
 
     #[test]
     fn a_line_through_edges_and_the_apex_crosses_once_each_way() {
-        let index = pyramid(
-            &[
-                (-8, -8),
-                (0, -8),
-                (8, -8),
-                (8, 0),
-                (8, 8),
-                (0, 8),
-                (-8, 8),
-                (-8, 0),
-            ],
-            (0, 0),
-        );
-        for (y, z, x) in [
-            (0.0, 0.0, 1.0),
-            (0.5, 0.5, 0.5),
-            (0.0, 0.25, 0.75),
-            (-0.25, 0.0, 0.75),
-        ] {
+        let index = pyramid(&[(-8, -8), (0, -8), (8, -8), (8, 0), (8, 8), (0, 8), (-8, 8), (-8, 0)], (0, 0));
+        for (y, z, x) in [(0.0, 0.0, 1.0), (0.5, 0.5, 0.5), (0.0, 0.25, 0.75), (-0.25, 0.0, 0.75)] {
             let mut found = crossings(&index, y, z);
             found.sort_by(|a, b| a.x.total_cmp(&b.x));
-            assert_eq!(
-                found.iter().map(|c| (c.x, c.sign)).collect::<Vec<_>>(),
-                [(-x, -1), (x, 1)]
-            );
+            assert_eq!(found.iter().map(|c| (c.x, c.sign)).collect::<Vec<_>>(), [(-x, -1), (x, 1)]);
         }
         assert_eq!(crossings(&index, f64::NAN, 0.0), []);
     }
@@ -281,12 +225,7 @@ mod tests {
     #[test]
     fn an_open_surface_does_not_cancel() {
         let vertices = [DVec3::ZERO, DVec3::Y, DVec3::Z];
-        let index = LineIndex::new(
-            &vertices,
-            [([0, 1, 2], 0)].into_iter(),
-            DVec3::ZERO,
-            DVec3::ONE,
-        );
+        let index = LineIndex::new(&vertices, [([0, 1, 2], 0)].into_iter(), DVec3::ZERO, DVec3::ONE);
         assert_eq!(crossings(&index, 0.25, 0.25).len(), 1);
         // The half-open rule: of the right angle's corner, yes; of the far corners, no.
         assert_eq!(crossings(&index, 0.0, 0.0).len(), 1);

@@ -12,20 +12,14 @@ const STL_TRIANGLE: usize = 50;
 
 /// The triangles of a file, in file units x `scale`, as they are: closedness and orientation are not looked at.
 pub(super) fn read(path: &Path, scale: f64, subject: &str) -> Result<WallMesh, GeometryError> {
-    let unreadable = |reason: String| GeometryError::Unreadable {
-        wall: subject.into(),
-        reason,
-    };
+    let unreadable = |reason: String| GeometryError::Unreadable { wall: subject.into(), reason };
     let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let corners = match extension.as_deref() {
         Some("stl") => read_stl(bytes).map_err(|e| unreadable(e.to_string()))?,
         Some("obj") => read_obj(&bytes).map_err(unreadable)?,
         other => {
-            return Err(unreadable(format!(
-                "`{}` is neither `stl` nor `obj`",
-                other.unwrap_or("")
-            )));
+            return Err(unreadable(format!("`{}` is neither `stl` nor `obj`", other.unwrap_or(""))));
         }
     };
     Ok(weld(&corners, scale))
@@ -40,9 +34,7 @@ fn weld(corners: &[[f32; 3]], scale: f64) -> WallMesh {
         .map(|corner| {
             // Adding zero makes -0 and +0 the same bits.
             let key = corner.map(|x| (x + 0.0).to_bits());
-            *known
-                .entry(key)
-                .or_insert_with(|| mesh.vertex(DVec3::from(corner.map(f64::from)) * scale))
+            *known.entry(key).or_insert_with(|| mesh.vertex(DVec3::from(corner.map(f64::from)) * scale))
         })
         .collect();
     for t in ids.chunks_exact(3) {
@@ -56,11 +48,7 @@ fn read_stl(mut bytes: Vec<u8>) -> std::io::Result<Vec<[f32; 3]>> {
     if is_binary(&bytes) {
         // Many programs begin a binary header with "solid", which the reader takes for ASCII.
         bytes[..5].fill(b' ');
-    } else if bytes.starts_with(b"solid")
-        && bytes
-            .get(5)
-            .is_some_and(|b| matches!(b, b'\n' | b'\r' | b'\t'))
-    {
+    } else if bytes.starts_with(b"solid") && bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r' | b'\t')) {
         // A name is optional, but the reader wants a space.
         bytes.insert(5, b' ');
     }
@@ -77,10 +65,7 @@ fn is_binary(bytes: &[u8]) -> bool {
         return false;
     };
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize;
-    count
-        .checked_mul(STL_TRIANGLE)
-        .and_then(|n| n.checked_add(STL_HEADER))
-        == Some(bytes.len())
+    count.checked_mul(STL_TRIANGLE).and_then(|n| n.checked_add(STL_HEADER)) == Some(bytes.len())
 }
 
 fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
@@ -91,25 +76,16 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
         .filter(|line| matches!(line.split_whitespace().next(), Some("v" | "f")))
         .flat_map(|line| [line, "\n"])
         .collect();
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..Default::default()
-    };
-    let (models, _) = tobj::load_obj_buf(&mut kept.as_bytes(), &options, |_| {
-        Err(tobj::LoadError::OpenFileFailed)
-    })
-    .map_err(|e| e.to_string())?;
+    let options =
+        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
+    let (models, _) = tobj::load_obj_buf(&mut kept.as_bytes(), &options, |_| Err(tobj::LoadError::OpenFileFailed))
+        .map_err(|e| e.to_string())?;
     let mut corners = Vec::new();
     for model in &models {
         for &index in &model.mesh.indices {
             let first = 3 * index as usize;
-            let position = model
-                .mesh
-                .positions
-                .get(first..first + 3)
-                .ok_or("a face names a vertex that is not there")?;
+            let position =
+                model.mesh.positions.get(first..first + 3).ok_or("a face names a vertex that is not there")?;
             corners.push([position[0], position[1], position[2]]);
         }
     }

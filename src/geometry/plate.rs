@@ -18,36 +18,19 @@ pub(super) struct HoleOutline {
 impl HoleOutline {
     /// The same hole with the two axes exchanged, again counter-clockwise.
     pub fn transposed(&self) -> HoleOutline {
-        let points = self
-            .points
-            .iter()
-            .rev()
-            .map(|p| DVec2::new(p.y, p.x))
-            .collect();
-        HoleOutline {
-            center: DVec2::new(self.center.y, self.center.x),
-            points,
-            ..self.clone()
-        }
+        let points = self.points.iter().rev().map(|p| DVec2::new(p.y, p.x)).collect();
+        HoleOutline { center: DVec2::new(self.center.y, self.center.x), points, ..self.clone() }
     }
 
     pub fn misplaced(&self, subject: &str, what: &str) -> GeometryError {
-        GeometryError::Hole {
-            wall: subject.into(),
-            hole: self.name.clone(),
-            what: what.into(),
-        }
+        GeometryError::Hole { wall: subject.into(), hole: self.name.clone(), what: what.into() }
     }
 }
 
 /// The polygons of the holes of a wall.
 pub(super) fn outlines(holes: &[Hole], subject: &str) -> Result<Vec<HoleOutline>, GeometryError> {
     let outline = |hole: &Hole| {
-        let wrong = |what: String| GeometryError::Hole {
-            wall: subject.into(),
-            hole: hole.name.clone(),
-            what,
-        };
+        let wrong = |what: String| GeometryError::Hole { wall: subject.into(), hole: hole.name.clone(), what };
         let center = DVec2::from(hole.center);
         let points = match hole.outline {
             Outline::Rectangle { size } => {
@@ -78,12 +61,7 @@ pub(super) fn outlines(holes: &[Hole], subject: &str) -> Result<Vec<HoleOutline>
         if !center.is_finite() {
             return Err(wrong("needs a finite centre".into()));
         }
-        Ok(HoleOutline {
-            name: hole.name.clone(),
-            face: hole.face,
-            center,
-            points,
-        })
+        Ok(HoleOutline { name: hole.name.clone(), face: hole.face, center, points })
     };
     holes.iter().map(outline).collect()
 }
@@ -106,12 +84,7 @@ impl Frame {
             return None;
         }
         let v = v.normalize();
-        Some(Frame {
-            origin,
-            u: v.cross(n),
-            v,
-            n,
-        })
+        Some(Frame { origin, u: v.cross(n), v, n })
     }
 
     pub fn point(&self, plane: DVec2, level: f64) -> DVec3 {
@@ -119,10 +92,7 @@ impl Frame {
     }
 
     fn plane(&self, point: DVec3) -> DVec2 {
-        DVec2::new(
-            (point - self.origin).dot(self.u),
-            (point - self.origin).dot(self.v),
-        )
+        DVec2::new((point - self.origin).dot(self.u), (point - self.origin).dot(self.v))
     }
 }
 
@@ -148,10 +118,7 @@ impl Plate {
         subject: &str,
     ) -> Result<(), GeometryError> {
         // The lower rectangle is the smaller one where they differ: a hole must end in the cavity.
-        let rectangle = self
-            .lower
-            .1
-            .map(|k| self.frame.plane(mesh.vertices[k as usize]));
+        let rectangle = self.lower.1.map(|k| self.frame.plane(mesh.vertices[k as usize]));
         check_apart(&rectangle, holes, subject)?;
         let rings: Vec<Vec<DVec2>> = holes.iter().map(|h| h.points.clone()).collect();
         let low = self.sheet(mesh, self.lower, &rings, self.lower_face, true, subject)?;
@@ -167,10 +134,7 @@ impl Plate {
             mesh.holes.push(FoundHole {
                 name: hole.name.clone(),
                 wall,
-                center: self
-                    .frame
-                    .point(hole.center, (self.lower.0 + self.upper.0) / 2.0)
-                    .to_array(),
+                center: self.frame.point(hole.center, (self.lower.0 + self.upper.0) / 2.0).to_array(),
                 normal: self.frame.n.to_array(),
                 thickness: self.upper.0 - self.lower.0,
                 area: area(&hole.points),
@@ -195,17 +159,8 @@ impl Plate {
             wall: subject.into(),
             what: "the holes of a face lie too close together".into(),
         })?;
-        let rim: Vec<u32> = rings
-            .iter()
-            .flatten()
-            .map(|p| mesh.vertex(self.frame.point(*p, level)))
-            .collect();
-        let vertex = |k: u32| {
-            corners
-                .get(k as usize)
-                .copied()
-                .unwrap_or_else(|| rim[k as usize - corners.len()])
-        };
+        let rim: Vec<u32> = rings.iter().flatten().map(|p| mesh.vertex(self.frame.point(*p, level))).collect();
+        let vertex = |k: u32| corners.get(k as usize).copied().unwrap_or_else(|| rim[k as usize - corners.len()]);
         for t in triangles {
             let [a, b, c] = t.map(vertex);
             mesh.triangle(if downwards { [a, c, b] } else { [a, b, c] }, face);
@@ -215,11 +170,7 @@ impl Plate {
 }
 
 /// Every hole strictly within the rectangle and clear of every other.
-fn check_apart(
-    rectangle: &[DVec2; 4],
-    holes: &[HoleOutline],
-    subject: &str,
-) -> Result<(), GeometryError> {
+fn check_apart(rectangle: &[DVec2; 4], holes: &[HoleOutline], subject: &str) -> Result<(), GeometryError> {
     let extent = rectangle[0].distance(rectangle[2]);
     for (i, hole) in holes.iter().enumerate() {
         let inside = |p: &DVec2| {
@@ -231,10 +182,7 @@ fn check_apart(
         if !hole.points.iter().all(inside) {
             return Err(hole.misplaced(subject, "does not lie within its face"));
         }
-        if let Some(other) = holes[..i]
-            .iter()
-            .find(|other| convex_overlap(&hole.points, &other.points))
-        {
+        if let Some(other) = holes[..i].iter().find(|other| convex_overlap(&hole.points, &other.points)) {
             return Err(hole.misplaced(subject, &format!("overlaps hole `{}`", other.name)));
         }
     }

@@ -21,14 +21,8 @@ pub(super) fn triangulate(outer: &[DVec2], holes: &[Vec<DVec2>]) -> Option<Vec<[
         // Holes run clockwise, so that the material is to the left everywhere.
         rings.push((first..points.len()).rev().collect::<Vec<usize>>());
     }
-    let extent = outer
-        .iter()
-        .map(|p| (*p - outer[0]).abs().max_element())
-        .fold(0.0, f64::max);
-    let plane = Plane {
-        points: &points,
-        tolerance: FLAT * extent,
-    };
+    let extent = outer.iter().map(|p| (*p - outer[0]).abs().max_element()).fold(0.0, f64::max);
+    let plane = Plane { points: &points, tolerance: FLAT * extent };
     let mut ring: Vec<usize> = (0..outer.len()).collect();
     while !rings.is_empty() {
         let bridge = plane.shortest_bridge(&ring, &rings)?;
@@ -96,26 +90,16 @@ impl Plane<'_> {
         for (from, &a) in ring.iter().enumerate() {
             for (hole, vertices) in holes.iter().enumerate() {
                 for (to, &b) in vertices.iter().enumerate() {
-                    pairs.push((
-                        self.points[a].distance_squared(self.points[b]),
-                        from,
-                        hole,
-                        to,
-                    ));
+                    pairs.push((self.points[a].distance_squared(self.points[b]), from, hole, to));
                 }
             }
         }
-        pairs.sort_by(|p, q| {
-            p.0.total_cmp(&q.0)
-                .then((p.1, p.2, p.3).cmp(&(q.1, q.2, q.3)))
-        });
+        pairs.sort_by(|p, q| p.0.total_cmp(&q.0).then((p.1, p.2, p.3).cmp(&(q.1, q.2, q.3))));
         let n = ring.len();
         let found = pairs.into_iter().find(|&(_, from, hole, to)| {
             let (a, b) = (ring[from], holes[hole][to]);
             self.in_cone(ring[(from + n - 1) % n], a, ring[(from + 1) % n], b)
-                && std::iter::once(ring)
-                    .chain(holes.iter().map(Vec::as_slice))
-                    .all(|outline| self.sees(a, b, outline))
+                && std::iter::once(ring).chain(holes.iter().map(Vec::as_slice)).all(|outline| self.sees(a, b, outline))
         });
         found.map(|(_, from, hole, to)| Bridge { from, hole, to })
     }
@@ -131,10 +115,8 @@ impl Plane<'_> {
             if ends.contains(&c) || ends.contains(&d) {
                 return true;
             }
-            let apart = self.left(a, b, c) == self.left(a, b, d)
-                && self.left(b, a, c) == self.left(b, a, d);
-            let clear = self.left(c, d, a) == self.left(c, d, b)
-                && self.left(d, c, a) == self.left(d, c, b);
+            let apart = self.left(a, b, c) == self.left(a, b, d) && self.left(b, a, c) == self.left(b, a, d);
+            let clear = self.left(c, d, a) == self.left(c, d, b) && self.left(d, c, a) == self.left(d, c, b);
             apart || clear
         })
     }
@@ -153,18 +135,13 @@ impl Plane<'_> {
             .filter_map(|i| {
                 let (a, b, c) = (ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]);
                 let points = [a, b, c].map(|v| self.points[v]);
-                let longest = (0..3)
-                    .map(|k| points[k].distance_squared(points[(k + 1) % 3]))
-                    .fold(0.0, f64::max);
+                let longest = (0..3).map(|k| points[k].distance_squared(points[(k + 1) % 3])).fold(0.0, f64::max);
                 let doubled = (points[1] - points[0]).perp_dot(points[2] - points[0]);
                 (doubled > self.tolerance * longest.sqrt()).then_some((doubled / longest, i))
             })
             .collect();
         corners.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
-        corners
-            .into_iter()
-            .map(|(_, i)| i)
-            .find(|&i| n == 3 || self.is_ear(ring, i))
+        corners.into_iter().map(|(_, i)| i).find(|&i| n == 3 || self.is_ear(ring, i))
     }
 
     fn is_ear(&self, ring: &[usize], i: usize) -> bool {
@@ -175,9 +152,7 @@ impl Plane<'_> {
             p == a
                 || p == b
                 || p == c
-                || !(self.left_or_on(a, b, p)
-                    && self.left_or_on(b, c, p)
-                    && self.left_or_on(c, a, p))
+                || !(self.left_or_on(a, b, p) && self.left_or_on(b, c, p) && self.left_or_on(c, a, p))
         });
         empty && self.in_cone(at(n - 2), a, b, c) && self.in_cone(b, c, at(2), a)
     }
@@ -192,9 +167,7 @@ pub(super) fn area(outline: &[DVec2]) -> f64 {
 }
 
 pub(super) fn perimeter(outline: &[DVec2]) -> f64 {
-    (0..outline.len())
-        .map(|i| outline[i].distance(outline[(i + 1) % outline.len()]))
-        .sum()
+    (0..outline.len()).map(|i| outline[i].distance(outline[(i + 1) % outline.len()])).sum()
 }
 
 /// Do two convex counter-clockwise outlines overlap or touch? By separating edges.
@@ -202,8 +175,7 @@ pub(super) fn convex_overlap(a: &[DVec2], b: &[DVec2]) -> bool {
     let separates = |p: &[DVec2], q: &[DVec2]| {
         (0..p.len()).any(|i| {
             let (start, end) = (p[i], p[(i + 1) % p.len()]);
-            q.iter()
-                .all(|point| (end - start).perp_dot(*point - start) < 0.0)
+            q.iter().all(|point| (end - start).perp_dot(*point - start) < 0.0)
         })
     };
     !separates(a, b) && !separates(b, a)
@@ -215,32 +187,17 @@ mod tests {
     use proptest::prelude::*;
 
     fn rectangle(x: f64, y: f64, w: f64, h: f64) -> Vec<DVec2> {
-        vec![
-            DVec2::new(x, y),
-            DVec2::new(x + w, y),
-            DVec2::new(x + w, y + h),
-            DVec2::new(x, y + h),
-        ]
+        vec![DVec2::new(x, y), DVec2::new(x + w, y), DVec2::new(x + w, y + h), DVec2::new(x, y + h)]
     }
 
     fn check(outer: &[DVec2], holes: &[Vec<DVec2>]) {
         let triangles = triangulate(outer, holes).expect("a triangulation");
-        let points: Vec<DVec2> = outer
-            .iter()
-            .chain(holes.iter().flatten())
-            .copied()
-            .collect();
+        let points: Vec<DVec2> = outer.iter().chain(holes.iter().flatten()).copied().collect();
         // Euler: v + 2 (holes - 1) triangles, whatever the diagonals.
         assert_eq!(triangles.len(), points.len() + 2 * holes.len() - 2);
-        let parts: Vec<f64> = triangles
-            .iter()
-            .map(|t| area(&t.map(|v| points[v as usize])))
-            .collect();
+        let parts: Vec<f64> = triangles.iter().map(|t| area(&t.map(|v| points[v as usize]))).collect();
         let whole = area(outer) - holes.iter().map(|h| area(h)).sum::<f64>();
-        assert!(
-            parts.iter().all(|&a| a > 1e-10 * whole),
-            "sliver: {parts:?}"
-        );
+        assert!(parts.iter().all(|&a| a > 1e-10 * whole), "sliver: {parts:?}");
         assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-12 * area(outer));
     }
 
@@ -248,28 +205,14 @@ mod tests {
     fn triangles_add_up_to_the_polygon_also_where_corners_are_collinear() {
         check(&rectangle(0.0, 0.0, 2.0, 1.0), &[]);
         // Edges of the holes on common lines, diagonals through corners of others.
-        let grid: Vec<Vec<DVec2>> = (0..16)
-            .map(|k| {
-                rectangle(
-                    0.1 + f64::from(k % 4) * 0.2,
-                    0.1 + f64::from(k / 4) * 0.2,
-                    0.1,
-                    0.1,
-                )
-            })
-            .collect();
+        let grid: Vec<Vec<DVec2>> =
+            (0..16).map(|k| rectangle(0.1 + f64::from(k % 4) * 0.2, 0.1 + f64::from(k / 4) * 0.2, 0.1, 0.1)).collect();
         check(&rectangle(0.0, 0.0, 0.9, 0.9), &grid);
     }
 
     #[test]
     fn a_hole_outside_the_polygon_is_refused() {
-        assert_eq!(
-            triangulate(
-                &rectangle(0.0, 0.0, 1.0, 1.0),
-                &[rectangle(2.0, 0.2, 0.1, 0.1)]
-            ),
-            None
-        );
+        assert_eq!(triangulate(&rectangle(0.0, 0.0, 1.0, 1.0), &[rectangle(2.0, 0.2, 0.1, 0.1)]), None);
     }
 
     proptest! {

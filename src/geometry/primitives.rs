@@ -70,17 +70,9 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
         })
     };
     match shape {
-        Shape::Box {
-            min,
-            max,
-            thickness,
-            holes,
-        } => {
+        Shape::Box { min, max, thickness, holes } => {
             for axis in 0..3 {
-                positive(
-                    ["x extent", "y extent", "z extent"][axis],
-                    max[axis] - min[axis],
-                )?;
+                positive(["x extent", "y extent", "z extent"][axis], max[axis] - min[axis])?;
             }
             match thickness {
                 None if holes.is_empty() => Ok(plain_box(*min, *max)),
@@ -96,68 +88,35 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
                 }
             }
         }
-        Shape::Cylinder {
-            base,
-            axis,
-            radius,
-            height,
-            segments,
-        } => {
+        Shape::Cylinder { base, axis, radius, height, segments } => {
             positive("radius", *radius)?;
             positive("height", *height)?;
-            let axis = DVec3::from(*axis)
-                .try_normalize()
-                .ok_or_else(|| GeometryError::Shape {
-                    wall: subject.into(),
-                    what: "the axis has no direction".into(),
-                })?;
+            let axis = DVec3::from(*axis).try_normalize().ok_or_else(|| GeometryError::Shape {
+                wall: subject.into(),
+                what: "the axis has no direction".into(),
+            })?;
             if !(3..=4096).contains(segments) {
                 let what = format!("3 to 4096 segments make a cylinder, found {segments}");
-                return Err(GeometryError::Shape {
-                    wall: subject.into(),
-                    what,
-                });
+                return Err(GeometryError::Shape { wall: subject.into(), what });
             }
-            Ok(cylinder(
-                DVec3::from(*base),
-                axis,
-                *radius,
-                *height,
-                *segments,
-            ))
+            Ok(cylinder(DVec3::from(*base), axis, *radius, *height, *segments))
         }
-        Shape::Sphere {
-            center,
-            radius,
-            subdivisions,
-        } => {
+        Shape::Sphere { center, radius, subdivisions } => {
             positive("radius", *radius)?;
             if *subdivisions > 7 {
                 let what = format!("at most 7 subdivisions make a sphere, found {subdivisions}");
-                return Err(GeometryError::Shape {
-                    wall: subject.into(),
-                    what,
-                });
+                return Err(GeometryError::Shape { wall: subject.into(), what });
             }
             Ok(sphere(DVec3::from(*center), *radius, *subdivisions))
         }
-        Shape::Plane {
-            center,
-            normal,
-            u,
-            size,
-            thickness,
-            holes,
-        } => {
+        Shape::Plane { center, normal, u, size, thickness, holes } => {
             positive("thickness", *thickness)?;
             positive("size along u", size[0])?;
             positive("size across u", size[1])?;
             let cut = outlines(holes, subject)?;
-            let frame = Frame::new(DVec3::from(*center), DVec3::from(*normal), DVec3::from(*u))
-                .ok_or_else(|| GeometryError::Shape {
-                    wall: subject.into(),
-                    what: "u must not be along the normal".into(),
-                })?;
+            let frame = Frame::new(DVec3::from(*center), DVec3::from(*normal), DVec3::from(*u)).ok_or_else(|| {
+                GeometryError::Shape { wall: subject.into(), what: "u must not be along the normal".into() }
+            })?;
             plate(frame, *size, *thickness, &cut, wall, subject)
         }
         Shape::Mesh { path, scale } => {
@@ -171,11 +130,7 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
 fn box_corners(mesh: &mut WallMesh, min: [f64; 3], max: [f64; 3]) -> [u32; 8] {
     std::array::from_fn(|k| {
         let corner = |axis: usize| {
-            if k >> axis & 1 == 1 {
-                max[axis]
-            } else {
-                min[axis]
-            }
+            if k >> axis & 1 == 1 { max[axis] } else { min[axis] }
         };
         mesh.vertex(DVec3::new(corner(0), corner(1), corner(2)))
     })
@@ -189,10 +144,7 @@ fn face_corners(axis: usize, positive: bool) -> ([usize; 4], [usize; 2]) {
         std::mem::swap(&mut u, &mut v);
     }
     let base = usize::from(positive) << axis;
-    (
-        [base, base | 1 << u, base | 1 << u | 1 << v, base | 1 << v],
-        [u, v],
-    )
+    ([base, base | 1 << u, base | 1 << u | 1 << v, base | 1 << v], [u, v])
 }
 
 fn plain_box(min: [f64; 3], max: [f64; 3]) -> WallMesh {
@@ -219,22 +171,14 @@ fn hollow_box(
 ) -> Result<WallMesh, GeometryError> {
     let mut mesh = WallMesh::default();
     let cavity = box_corners(&mut mesh, min, max);
-    let outside = box_corners(
-        &mut mesh,
-        min.map(|x| x - thickness),
-        max.map(|x| x + thickness),
-    );
+    let outside = box_corners(&mut mesh, min.map(|x| x - thickness), max.map(|x| x + thickness));
     for axis in 0..3 {
         for positive in [false, true] {
             let face = Face::Box { axis, positive };
             let (corners, [u, v]) = face_corners(axis, positive);
             let sign = if positive { 1.0 } else { -1.0 };
-            let frame = Frame {
-                origin: DVec3::ZERO,
-                u: DVec3::AXES[u],
-                v: DVec3::AXES[v],
-                n: DVec3::AXES[axis] * sign,
-            };
+            let frame =
+                Frame { origin: DVec3::ZERO, u: DVec3::AXES[u], v: DVec3::AXES[v], n: DVec3::AXES[axis] * sign };
             let level = sign * if positive { max[axis] } else { min[axis] };
             // A hole's two axes are in x, y, z order, the frame's may be the other way round.
             let holes: Vec<HoleOutline> = holes
@@ -253,10 +197,7 @@ fn hollow_box(
             .add_to(&mut mesh, &holes, wall, subject)?;
         }
     }
-    match holes
-        .iter()
-        .find(|h| !matches!(h.face, Face::Box { axis, .. } if axis < 3))
-    {
+    match holes.iter().find(|h| !matches!(h.face, Face::Box { axis, .. } if axis < 3)) {
         Some(hole) => Err(hole.misplaced(subject, "names no face of a box")),
         None => Ok(mesh),
     }
@@ -299,9 +240,7 @@ fn plate(
 fn cylinder(base: DVec3, axis: DVec3, radius: f64, height: f64, segments: u32) -> WallMesh {
     let mut mesh = WallMesh::default();
     // The coordinate axis furthest from the cylinder's: exact rims for a cylinder along x, y or z.
-    let least = (0..3)
-        .min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs()))
-        .unwrap_or(0);
+    let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
     let u = (DVec3::AXES[least] - axis * axis[least]).normalize();
     let v = axis.cross(u);
     let mut rim = |level: f64| -> Vec<u32> {
@@ -329,12 +268,7 @@ fn sphere(center: DVec3, radius: f64, subdivisions: u32) -> WallMesh {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut directions: Vec<DVec3> = Vec::new();
     for axis in 0..3 {
-        for (a, b) in [
-            (-1.0, -golden),
-            (1.0, -golden),
-            (-1.0, golden),
-            (1.0, golden),
-        ] {
+        for (a, b) in [(-1.0, -golden), (1.0, -golden), (-1.0, golden), (1.0, golden)] {
             let mut p = DVec3::ZERO;
             p[(axis + 1) % 3] = a;
             p[(axis + 2) % 3] = b;

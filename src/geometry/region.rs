@@ -15,19 +15,11 @@ use std::f64::consts::PI;
 pub fn region_contains(region: &Region, p: [f64; 3]) -> bool {
     match region {
         Region::Box { min, max } => (0..3).all(|axis| min[axis] <= p[axis] && p[axis] <= max[axis]),
-        Region::Sphere { center, radius } => {
-            DVec3::from(p).distance_squared(DVec3::from(*center)) <= radius * radius
-        }
-        Region::Cylinder {
-            base,
-            axis,
-            radius,
-            height,
-        } => {
+        Region::Sphere { center, radius } => DVec3::from(p).distance_squared(DVec3::from(*center)) <= radius * radius,
+        Region::Cylinder { base, axis, radius, height } => {
             let (offset, axis) = (DVec3::from(p) - DVec3::from(*base), DVec3::from(*axis));
             let level = offset.dot(axis);
-            (0.0..=*height).contains(&level)
-                && (offset - axis * level).length_squared() <= radius * radius
+            (0.0..=*height).contains(&level) && (offset - axis * level).length_squared() <= radius * radius
         }
     }
 }
@@ -35,9 +27,7 @@ pub fn region_contains(region: &Region, p: [f64; 3]) -> bool {
 /// m3, gas or not.
 pub fn region_volume(region: &Region) -> f64 {
     match region {
-        Region::Box { min, max } => (0..3)
-            .map(|axis| (max[axis] - min[axis]).max(0.0))
-            .product(),
+        Region::Box { min, max } => (0..3).map(|axis| (max[axis] - min[axis]).max(0.0)).product(),
         Region::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius * radius * radius,
         Region::Cylinder { radius, height, .. } => PI * radius * radius * height,
     }
@@ -47,15 +37,8 @@ pub fn region_volume(region: &Region) -> f64 {
 pub fn region_bounds(region: &Region) -> ([f64; 3], [f64; 3]) {
     match region {
         Region::Box { min, max } => (*min, *max),
-        Region::Sphere { center, radius } => {
-            (center.map(|c| c - radius), center.map(|c| c + radius))
-        }
-        Region::Cylinder {
-            base,
-            axis,
-            radius,
-            height,
-        } => {
+        Region::Sphere { center, radius } => (center.map(|c| c - radius), center.map(|c| c + radius)),
+        Region::Cylinder { base, axis, radius, height } => {
             let reach = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
             let end = |k: usize| base[k] + axis[k] * height;
             (
@@ -77,12 +60,7 @@ fn interval(region: &Region, y: f64, z: f64) -> Option<(f64, f64)> {
             let rest = radius * radius - DVec2::new(y - center[1], z - center[2]).length_squared();
             (rest > 0.0).then(|| (center[0] - rest.sqrt(), center[0] + rest.sqrt()))?
         }
-        Region::Cylinder {
-            base,
-            axis,
-            radius,
-            height,
-        } => {
+        Region::Cylinder { base, axis, radius, height } => {
             let axis = DVec3::from(*axis);
             // Of the point of the line level with the base.
             let offset = DVec3::new(0.0, y - base[1], z - base[2]);
@@ -145,11 +123,9 @@ impl Vessel {
             },
             other => other.clone(),
         };
-        let whole = matches!(clipped, Region::Box { .. })
-            || (1..3).all(|k| low[k] >= from[k] && high[k] <= to[k]);
+        let whole = matches!(clipped, Region::Box { .. }) || (1..3).all(|k| low[k] >= from[k] && high[k] <= to[k]);
         let min: [f64; 2] = std::array::from_fn(|k| low[k + 1].max(from[k + 1]));
-        let size: [f64; 2] =
-            std::array::from_fn(|k| (high[k + 1].min(to[k + 1]) - min[k]).max(0.0));
+        let size: [f64; 2] = std::array::from_fn(|k| (high[k + 1].min(to[k + 1]) - min[k]).max(0.0));
         let [gas, all] = sum(VOLUME_LINES, |i, line| {
             let [u, v] = r2(i);
             let (y, z) = (min[0] + u * size[0], min[1] + v * size[1]);
@@ -161,37 +137,20 @@ impl Vessel {
         if all <= 0.0 || gas <= 0.0 {
             return 0.0;
         }
-        if whole {
-            region_volume(&clipped) * (gas / all)
-        } else {
-            size[0] * size[1] * gas / VOLUME_LINES as f64
-        }
+        if whole { region_volume(&clipped) * (gas / all) } else { size[0] * size[1] * gas / VOLUME_LINES as f64 }
     }
 
     /// Length of gas along a line within `part`, outside `others`.
-    fn gas_length(
-        &self,
-        y: f64,
-        z: f64,
-        part: (f64, f64),
-        others: &[&Region],
-        line: &mut Line,
-    ) -> f64 {
+    fn gas_length(&self, y: f64, z: f64, part: (f64, f64), others: &[&Region], line: &mut Line) -> f64 {
         self.gas_along(y, z, line);
         let Line { gas, spare, .. } = line;
         for other in others {
             if let Some((low, high)) = interval(other, y, z) {
                 spare.clear();
-                spare.extend(
-                    gas.iter()
-                        .flat_map(|&(a, b)| [(a, b.min(low)), (a.max(high), b)])
-                        .filter(|(a, b)| b > a),
-                );
+                spare.extend(gas.iter().flat_map(|&(a, b)| [(a, b.min(low)), (a.max(high), b)]).filter(|(a, b)| b > a));
                 std::mem::swap(gas, spare);
             }
         }
-        gas.iter()
-            .map(|&(a, b)| (b.min(part.1) - a.max(part.0)).max(0.0))
-            .sum()
+        gas.iter().map(|&(a, b)| (b.min(part.1) - a.max(part.0)).max(0.0)).sum()
     }
 }

@@ -27,10 +27,7 @@ pub(super) fn r2(i: u64) -> [f64; 2] {
 }
 
 /// Sum of `f` over 0..count.
-pub(super) fn sum<const K: usize>(
-    count: u64,
-    f: impl Fn(u64, &mut Line) -> [f64; K] + Sync,
-) -> [f64; K] {
+pub(super) fn sum<const K: usize>(count: u64, f: impl Fn(u64, &mut Line) -> [f64; K] + Sync) -> [f64; K] {
     let partial = map(count.div_ceil(CHUNK) as usize, |chunk, line| {
         let first = chunk as u64 * CHUNK;
         let mut sum = [0.0; K];
@@ -52,37 +49,23 @@ fn add<const K: usize>(sum: &mut [f64; K], more: [f64; K]) {
 
 /// `f` of 0..count in order, shared out among threads.
 pub(super) fn map<T: Send>(count: usize, f: impl Fn(usize, &mut Line) -> T + Sync) -> Vec<T> {
-    let threads = std::thread::available_parallelism()
-        .map_or(1, |n| n.get())
-        .min(count)
-        .max(1);
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get()).min(count).max(1);
     let share = |thread: usize| {
         let mut line = Line::default();
-        (thread..count)
-            .step_by(threads)
-            .map(|i| f(i, &mut line))
-            .collect::<Vec<T>>()
+        (thread..count).step_by(threads).map(|i| f(i, &mut line)).collect::<Vec<T>>()
     };
     if threads == 1 {
         return share(0);
     }
     let shares: Vec<Vec<T>> = std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..threads)
-            .map(|t| scope.spawn(move || share(t)))
-            .collect();
+        let handles: Vec<_> = (0..threads).map(|t| scope.spawn(move || share(t))).collect();
         handles
             .into_iter()
-            .map(|handle| {
-                handle
-                    .join()
-                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-            })
+            .map(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
             .collect()
     });
     let mut shares: Vec<_> = shares.into_iter().map(Vec::into_iter).collect();
-    (0..count)
-        .filter_map(|i| shares[i % threads].next())
-        .collect()
+    (0..count).filter_map(|i| shares[i % threads].next()).collect()
 }
 
 #[cfg(test)]

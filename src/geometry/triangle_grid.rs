@@ -57,19 +57,14 @@ impl TriangleGrid {
         let triangles = (0..vessel.triangles.len())
             .map(|source| fix(vessel, grid, source))
             .collect::<Result<Vec<FixedTriangle>, GeometryError>>()?;
-        let footprints: Vec<Footprint> = triangles
-            .iter()
-            .map(|t| Footprint::new(t, grid, margin))
-            .collect();
+        let footprints: Vec<Footprint> = triangles.iter().map(|t| Footprint::new(t, grid, margin)).collect();
         let mut sizes = vec![0u64; grid.cell_count()];
         for footprint in &footprints {
             footprint.rows(grid, |row| sizes[row].iter_mut().for_each(|n| *n += 1));
         }
         let entries: u64 = sizes.iter().sum();
         if u32::try_from(entries).is_err() {
-            return Err(GeometryError::TooMany {
-                count: entries as usize,
-            });
+            return Err(GeometryError::TooMany { count: entries as usize });
         }
         let mut start = Vec::with_capacity(sizes.len() + 1);
         let mut total = 0u32;
@@ -89,12 +84,7 @@ impl TriangleGrid {
             });
         }
         let class = classify(vessel, grid, &start);
-        Ok(TriangleGrid {
-            triangles,
-            start,
-            list,
-            class,
-        })
+        Ok(TriangleGrid { triangles, start, list, class })
     }
 
     /// Triangles (indices) listed in a cell.
@@ -119,33 +109,19 @@ fn fix(vessel: &Vessel, grid: &Grid, source: usize) -> Result<FixedTriangle, Geo
         // Below 2^31 by the grid's invariant.
         *corner = fixed.map(|q| q as i32);
     }
-    let edge = |k: usize| -> [i128; 3] {
-        std::array::from_fn(|a| i128::from(corners[k][a]) - i128::from(corners[0][a]))
-    };
+    let edge =
+        |k: usize| -> [i128; 3] { std::array::from_fn(|a| i128::from(corners[k][a]) - i128::from(corners[0][a])) };
     let (u, v) = (edge(1), edge(2));
-    let cross = [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ];
+    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
     let normal = DVec3::from(cross.map(|c| c as f64));
     let [a, b, c] = metres.map(DVec3::from);
     // Zero, or turned over.
     if normal.dot((b - a).cross(c - a)) <= 0.0 {
         let (wall, place) = name();
-        return Err(GeometryError::DegenerateOnGrid {
-            wall,
-            place,
-            quantum: grid.quantum(),
-        });
+        return Err(GeometryError::DegenerateOnGrid { wall, place, quantum: grid.quantum() });
     }
     let normal = normal.normalize().to_array().map(|n| n as f32);
-    Ok(FixedTriangle {
-        corners,
-        ids: triangle.vertices,
-        normal,
-        source: source as u32,
-    })
+    Ok(FixedTriangle { corners, ids: triangle.vertices, normal, source: source as u32 })
 }
 
 /// The cells a triangle touches, as limits on their centres, in units of cells.
@@ -159,26 +135,17 @@ struct Footprint {
 impl Footprint {
     fn new(triangle: &FixedTriangle, grid: &Grid, margin: f64) -> Footprint {
         let per_cell = f64::from(1u32 << grid.cell_bits);
-        let corners = triangle
-            .corners
-            .map(|c| DVec3::from(c.map(|q| f64::from(q) / per_cell)));
+        let corners = triangle.corners.map(|c| DVec3::from(c.map(|q| f64::from(q) / per_cell)));
         let half = 0.5 + margin.max(0.0) / grid.cell + SLACK;
         let range = std::array::from_fn(|axis| {
             let (low, high) = extent(&corners, DVec3::AXES[axis]);
             let last = f64::from(grid.cells[axis] - 1);
             // Cell i has its centre at i + 1/2.
-            [(low - half - 0.5).ceil(), (high + half - 0.5).floor()]
-                .map(|i| i.clamp(0.0, last) as u32)
+            [(low - half - 0.5).ceil(), (high + half - 0.5).floor()].map(|i| i.clamp(0.0, last) as u32)
         });
-        let edges = [
-            corners[1] - corners[0],
-            corners[2] - corners[1],
-            corners[0] - corners[2],
-        ];
+        let edges = [corners[1] - corners[0], corners[2] - corners[1], corners[0] - corners[2]];
         let mut limits = Vec::with_capacity(10);
-        let crossed = edges
-            .iter()
-            .flat_map(|edge| DVec3::AXES.map(|axis| axis.cross(*edge)));
+        let crossed = edges.iter().flat_map(|edge| DVec3::AXES.map(|axis| axis.cross(*edge)));
         for axis in std::iter::once(edges[0].cross(edges[1])).chain(crossed) {
             // An edge along a coordinate axis gives no third direction.
             if let Some(axis) = axis.try_normalize() {
@@ -235,20 +202,12 @@ fn classify(vessel: &Vessel, grid: &Grid, start: &[u32]) -> Vec<CellClass> {
                     continue;
                 }
                 // Two empty neighbours lie on the same side of every wall, so only one in each patch is asked.
-                let behind = [x, y, z]
-                    .into_iter()
-                    .zip(strides)
-                    .filter(|&(i, _)| i > 0)
-                    .map(|(_, s)| class[cell - s]);
+                let behind = [x, y, z].into_iter().zip(strides).filter(|&(i, _)| i > 0).map(|(_, s)| class[cell - s]);
                 let known = behind.into_iter().find(|&c| c != CellClass::Cut);
                 class[cell] = known.unwrap_or_else(|| {
                     let centre = [x, y, z].map(|i| f64::from(i) + 0.5);
                     let at = std::array::from_fn(|a| grid.origin[a] + centre[a] * grid.cell);
-                    if vessel.is_gas(at) {
-                        CellClass::Gas
-                    } else {
-                        CellClass::Solid
-                    }
+                    if vessel.is_gas(at) { CellClass::Gas } else { CellClass::Solid }
                 });
             }
         }
@@ -265,11 +224,7 @@ fn classify(vessel: &Vessel, grid: &Grid, start: &[u32]) -> Vec<CellClass> {
 /// Does the cell or one of the 26 around it have triangles (or lie outside the grid)? One axis at a time.
 fn near_cut(grid: &Grid, class: &[CellClass]) -> Vec<bool> {
     let mut near: Vec<bool> = class.iter().map(|&c| c == CellClass::Cut).collect();
-    let strides = [
-        1,
-        grid.cells[0] as usize,
-        grid.cells[0] as usize * grid.cells[1] as usize,
-    ];
+    let strides = [1, grid.cells[0] as usize, grid.cells[0] as usize * grid.cells[1] as usize];
     for (stride, n) in strides.into_iter().zip(grid.cells.map(|n| n as usize)) {
         near = (0..near.len())
             .map(|cell| {

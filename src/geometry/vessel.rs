@@ -92,34 +92,23 @@ impl Vessel {
                 cavity,
             });
             let first = vertices.len() as u32;
-            let count =
-                triangles.len() + mesh.triangles.len() + vertices.len() + mesh.vertices.len();
+            let count = triangles.len() + mesh.triangles.len() + vertices.len() + mesh.vertices.len();
             if u32::try_from(count).is_err() {
                 return Err(GeometryError::TooMany { count });
             }
             vertices.extend(&mesh.vertices);
-            triangles.extend(
-                mesh.triangles
-                    .iter()
-                    .zip(&mesh.faces)
-                    .map(|(t, &face)| Triangle {
-                        vertices: t.map(|v| v + first),
-                        wall: index as u32,
-                        face,
-                    }),
-            );
+            triangles.extend(mesh.triangles.iter().zip(&mesh.faces).map(|(t, &face)| Triangle {
+                vertices: t.map(|v| v + first),
+                wall: index as u32,
+                face,
+            }));
             holes.append(&mut mesh.holes);
         }
         if !infos.iter().any(|w| w.cavity) {
             return Err(GeometryError::Unbounded);
         }
         let (min, max) = bounds_of(&vertices);
-        let lines = LineIndex::new(
-            &vertices,
-            triangles.iter().map(|t| (t.vertices, t.wall)),
-            min,
-            max,
-        );
+        let lines = LineIndex::new(&vertices, triangles.iter().map(|t| (t.vertices, t.wall)), min, max);
         let mut vessel = Vessel {
             vertices: vertices.iter().map(|v| v.to_array()).collect(),
             triangles,
@@ -161,22 +150,14 @@ impl Vessel {
     /// The same into `line.gas`.
     pub(super) fn gas_along(&self, y: f64, z: f64, line: &mut Line) {
         self.crossings(y, z, &mut line.crossings);
-        intervals(
-            &line.crossings,
-            self.cavities,
-            |depth| depth == 0,
-            &mut line.gas,
-        );
+        intervals(&line.crossings, self.cavities, |depth| depth == 0, &mut line.gas);
     }
 
     /// All crossings of a line, sorted by x.
     fn crossings(&self, y: f64, z: f64, out: &mut Vec<Crossing>) {
         out.clear();
         self.lines.cross(y, z, |c| out.push(c));
-        out.sort_by(|a, b| {
-            a.x.total_cmp(&b.x)
-                .then((a.wall, a.sign).cmp(&(b.wall, b.sign)))
-        });
+        out.sort_by(|a, b| a.x.total_cmp(&b.x).then((a.wall, a.sign).cmp(&(b.wall, b.sign))));
     }
 
     /// m3; exact unless walls overlap (see the head of this module).
@@ -202,17 +183,12 @@ impl Vessel {
             let mut depth = outside.clone();
             line.crossings.windows(2).find_map(|pair| {
                 depth[pair[0].wall as usize] -= pair[0].sign;
-                let wall = (0..depth.len())
-                    .find(|&w| depth[w] < 0 || depth[w] > 1 && self.walls[w].cavity)?;
-                (pair[1].x - pair[0].x > tolerance)
-                    .then(|| (wall, DVec3::new((pair[0].x + pair[1].x) / 2.0, y, z)))
+                let wall = (0..depth.len()).find(|&w| depth[w] < 0 || depth[w] > 1 && self.walls[w].cavity)?;
+                (pair[1].x - pair[0].x > tolerance).then(|| (wall, DVec3::new((pair[0].x + pair[1].x) / 2.0, y, z)))
             })
         });
         match found.into_iter().flatten().next() {
-            Some((wall, place)) => Err(GeometryError::InsideOut {
-                wall: subject(&walls[wall]),
-                place: point(place),
-            }),
+            Some((wall, place)) => Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: point(place) }),
             None => Ok(()),
         }
     }
@@ -221,10 +197,7 @@ impl Vessel {
     fn place(&self, i: u64) -> [f64; 2] {
         let (min, max) = self.bounds;
         let [u, v] = r2(i);
-        [
-            min[1] + u * (max[1] - min[1]),
-            min[2] + v * (max[2] - min[2]),
-        ]
+        [min[1] + u * (max[1] - min[1]), min[2] + v * (max[2] - min[2])]
     }
 
     fn measure(&mut self) -> Result<(), GeometryError> {
@@ -240,18 +213,8 @@ impl Vessel {
             size[1] * size[2] * length / lines as f64
         };
         let seen = overlap(SEARCH_LINES);
-        let overlap = if seen > ROUNDING * all {
-            overlap(VOLUME_LINES)
-        } else {
-            0.0
-        };
-        let total = |cavity: bool| {
-            self.walls
-                .iter()
-                .filter(|w| w.cavity == cavity)
-                .map(|w| w.volume)
-                .sum::<f64>()
-        };
+        let overlap = if seen > ROUNDING * all { overlap(VOLUME_LINES) } else { 0.0 };
+        let total = |cavity: bool| self.walls.iter().filter(|w| w.cavity == cavity).map(|w| w.volume).sum::<f64>();
         let volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
         if volume.is_nan() || volume <= ROUNDING * all {
             return Err(GeometryError::NoGas);
@@ -286,13 +249,7 @@ fn subject(wall: &Wall) -> String {
 
 /// Is the solid outside the surface? Shapes with a thickness are solids; mesh files may be either.
 fn is_cavity(wall: &Wall, subject: &str) -> Result<bool, GeometryError> {
-    let thick = matches!(
-        wall.shape,
-        Shape::Box {
-            thickness: Some(_),
-            ..
-        } | Shape::Plane { .. }
-    );
+    let thick = matches!(wall.shape, Shape::Box { thickness: Some(_), .. } | Shape::Plane { .. });
     let (found, allowed) = match (wall.gas, thick) {
         (GasSide::Inside, false) => return Ok(true),
         (GasSide::Outside, _) | (GasSide::Both, true) => return Ok(false),
@@ -300,16 +257,10 @@ fn is_cavity(wall: &Wall, subject: &str) -> Result<bool, GeometryError> {
         (GasSide::Both, false) => ("both", "inside or outside"),
         (GasSide::Inside, true) => ("inside", "both"),
     };
-    Err(GeometryError::Side {
-        wall: subject.into(),
-        found,
-        allowed,
-    })
+    Err(GeometryError::Side { wall: subject.into(), found, allowed })
 }
 
 fn bounds_of(vertices: &[DVec3]) -> (DVec3, DVec3) {
     let far = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-    vertices
-        .iter()
-        .fold(far, |(min, max), v| (min.min(*v), max.max(*v)))
+    vertices.iter().fold(far, |(min, max), v| (min.min(*v), max.max(*v)))
 }

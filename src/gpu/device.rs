@@ -72,10 +72,8 @@ impl Device {
     /// If there is no such adapter, or it refuses the device.
     pub fn open(selector: Option<&str>) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
-        let known: Vec<String> = adapters
-            .iter()
-            .map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name))
-            .collect();
+        let known: Vec<String> =
+            adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
         let chosen = match selector {
             None => adapters.into_iter().next(),
             Some(text) => adapters

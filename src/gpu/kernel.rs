@@ -156,11 +156,7 @@ fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding: binding.index,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: binding.name == DYNAMIC,
-            min_binding_size: None,
-        },
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: binding.name == DYNAMIC, min_binding_size: None },
         count: None,
     }
 }
@@ -176,7 +172,13 @@ impl BoundKernel {
     }
 
     /// One dispatch over the workgroups that kernels wrote into entry `item` of `arguments`.
-    pub fn dispatch_indirect(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, arguments: &wgpu::Buffer, item: u32) {
+    pub fn dispatch_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        offset: u32,
+        arguments: &wgpu::Buffer,
+        item: u32,
+    ) {
         self.set(pass, offset);
         pass.dispatch_workgroups_indirect(arguments, u64::from(item) * 12);
     }

@@ -13,13 +13,17 @@ pub use timer::{PhaseTimer, TimedPass};
 /// Trouble with the device: exit code 3.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    #[error("no Vulkan adapter was found; on a machine without a GPU install Mesa's lavapipe (package mesa-vulkan-drivers)")]
+    #[error(
+        "no Vulkan adapter was found; on a machine without a GPU install Mesa's lavapipe (package mesa-vulkan-drivers)"
+    )]
     NoAdapter,
     #[error("no adapter `{asked}`; there are: {}", known.join(", "))]
     UnknownAdapter { asked: String, known: Vec<String> },
     #[error("the adapter {adapter} refused a device: {reason}")]
     Open { adapter: String, reason: String },
-    #[error("the buffer `{name}` needs {bytes} bytes for {items} items; this device allows {limit} bytes per buffer: use fewer particles, a larger diameter or a larger device")]
+    #[error(
+        "the buffer `{name}` needs {bytes} bytes for {items} items; this device allows {limit} bytes per buffer: use fewer particles, a larger diameter or a larger device"
+    )]
     TooLarge { name: &'static str, bytes: u64, limit: u64, items: u64 },
     #[error("the device has no memory for the buffer `{name}` ({bytes} bytes): {reason}")]
     Memory { name: &'static str, bytes: u64, reason: String },

@@ -82,8 +82,9 @@ impl<'a> TimedPass<'a> {
             self.pass = Some(self.encoder.begin_compute_pass(&descriptor).forget_lifetime());
         }
         let encoder = &mut *self.encoder;
-        self.pass
-            .get_or_insert_with(|| encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()).forget_lifetime())
+        self.pass.get_or_insert_with(|| {
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()).forget_lifetime()
+        })
     }
 
     /// Ends the pass; the names of the timed phases in order.

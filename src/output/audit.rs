@@ -76,18 +76,12 @@ impl Default for AuditLimits {
 impl Audit {
     /// (U + vented - U0 - injected) / (U0 + injected); NaN where there was no energy at all.
     pub fn energy_error(&self) -> f64 {
-        relative(
-            self.energy_end + self.enthalpy_vented,
-            self.energy_start + self.enthalpy_injected,
-        )
+        relative(self.energy_end + self.enthalpy_vented, self.energy_start + self.enthalpy_injected)
     }
 
     /// As [`Audit::energy_error`], of the mass.
     pub fn mass_error(&self) -> f64 {
-        relative(
-            self.mass_end + self.mass_vented,
-            self.mass_start + self.mass_injected,
-        )
+        relative(self.mass_end + self.mass_vented, self.mass_start + self.mass_injected)
     }
 
     /// Why the run cannot be trusted, one sentence each; empty if the audit is clean.
@@ -96,28 +90,18 @@ impl Audit {
         let entered = self.particles_initial + self.particles_injected;
         let found = self.particles_inside + self.particles_outside + self.particles_vented;
         if entered != found {
-            failures.push(format!(
-                "{} particles entered and {} are accounted for",
-                grouped(entered),
-                grouped(found)
-            ));
+            failures.push(format!("{} particles entered and {} are accounted for", grouped(entered), grouped(found)));
         }
         if self.particles_outside > 0 {
-            failures.push(format!(
-                "{} particles are outside the vessel",
-                grouped(self.particles_outside)
-            ));
+            failures.push(format!("{} particles are outside the vessel", grouped(self.particles_outside)));
         }
         // A run without any gas has nothing to balance.
         if entered > 0 {
-            for (what, error, limit) in [
-                ("mass", self.mass_error(), limits.mass_error),
-                ("energy", self.energy_error(), limits.energy_error),
-            ] {
+            for (what, error, limit) in
+                [("mass", self.mass_error(), limits.mass_error), ("energy", self.energy_error(), limits.energy_error)]
+            {
                 if !within(error.abs(), limit) {
-                    failures.push(format!(
-                        "the {what} is off by {error:.2e} of it; {limit:.0e} is allowed"
-                    ));
+                    failures.push(format!("the {what} is off by {error:.2e} of it; {limit:.0e} is allowed"));
                 }
             }
         }
@@ -155,13 +139,9 @@ impl Audit {
     /// The table for the end of the run and the report.
     pub fn render(&self) -> String {
         let row = |name: &str, cells: &[String]| -> Vec<String> {
-            std::iter::once(name.to_owned())
-                .chain(cells.iter().cloned())
-                .collect()
+            std::iter::once(name.to_owned()).chain(cells.iter().cloned()).collect()
         };
-        let head: Vec<String> = ["start", "in", "out", "end", "error"]
-            .map(str::to_owned)
-            .into();
+        let head: Vec<String> = ["start", "in", "out", "end", "error"].map(str::to_owned).into();
         let amounts = |values: [f64; 4], error: f64| -> Vec<String> {
             let amounts = values.iter().map(|value| format!("{value:.6e}"));
             amounts.chain([format!("{error:+.2e}")]).collect()
@@ -175,18 +155,8 @@ impl Audit {
             grouped(self.particles_inside + self.particles_outside),
             (i128::from(found) - i128::from(entered)).to_string(),
         ];
-        let mass = [
-            self.mass_start,
-            self.mass_injected,
-            self.mass_vented,
-            self.mass_end,
-        ];
-        let energy = [
-            self.energy_start,
-            self.enthalpy_injected,
-            self.enthalpy_vented,
-            self.energy_end,
-        ];
+        let mass = [self.mass_start, self.mass_injected, self.mass_vented, self.mass_end];
+        let energy = [self.energy_start, self.enthalpy_injected, self.enthalpy_vented, self.energy_end];
         let accounts = aligned(&[
             row("Audit", &head),
             row("particles", &particles),
@@ -198,31 +168,18 @@ impl Audit {
             Some(lost) => format!("{:.3} %", 100.0 * lost),
             None => "no collisions".to_owned(),
         };
-        let overflows = if self.overflows.is_empty() {
-            "none".to_owned()
-        } else {
-            self.overflows.join(", ")
-        };
-        let momentum = format!(
-            "{} -> {}",
-            vector(self.momentum_start),
-            vector(self.momentum_end)
-        );
+        let overflows = if self.overflows.is_empty() { "none".to_owned() } else { self.overflows.join(", ") };
+        let momentum = format!("{} -> {}", vector(self.momentum_start), vector(self.momentum_end));
         let facts = [
             ("outside the vessel", grouped(self.particles_outside)),
             ("lost collisions", lost),
-            (
-                "largest wall overshoot, m",
-                format!("{:.2e}", self.wall_overshoot),
-            ),
+            ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
             ("truncated flights", grouped(self.truncated_flights)),
             ("overflows", overflows),
             ("momentum, kg m/s", momentum),
         ];
         let widest = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        facts.iter().fold(accounts, |text, (name, fact)| {
-            text + &format!("{name:<widest$}  {fact}\n")
-        })
+        facts.iter().fold(accounts, |text, (name, fact)| text + &format!("{name:<widest$}  {fact}\n"))
     }
 }
 
@@ -270,50 +227,32 @@ mod tests {
         assert_eq!(clean().warnings(&limits), Vec::<String>::new());
         type Spoil = fn(&mut Audit);
         let faults: [(Spoil, &str); 9] = [
-            (
-                |a| a.particles_inside -= 1,
-                "20,000 particles entered and 19,999",
-            ),
-            (
-                |a| (a.particles_inside, a.particles_outside) = (18_998, 2),
-                "2 particles are outside",
-            ),
+            (|a| a.particles_inside -= 1, "20,000 particles entered and 19,999"),
+            (|a| (a.particles_inside, a.particles_outside) = (18_998, 2), "2 particles are outside"),
             (|a| a.mass_end *= 1.001, "the mass is off"),
             (|a| a.energy_end += 72.0, "the energy is off by 1.01e-3"),
             (|a| a.energy_end = f64::NAN, "the energy is off by NaN"),
             (|a| a.wall_overshoot = 1e-3, "1.00e-3 m beyond a wall"),
             (|a| a.wall_overshoot = f64::NAN, "beyond a wall"),
             (|a| a.truncated_flights = 5, "5 flights"),
-            (
-                |a| a.overflows.push("energy tally".to_owned()),
-                "energy tally overflowed",
-            ),
+            (|a| a.overflows.push("energy tally".to_owned()), "energy tally overflowed"),
         ];
         for (spoil, expected) in faults {
             let mut audit = clean();
             spoil(&mut audit);
             let verdict = audit.verdict(&limits);
             assert_eq!(verdict.len(), 1, "{verdict:?}");
-            assert!(
-                verdict[0].contains(expected),
-                "{verdict:?} without {expected:?}"
-            );
+            assert!(verdict[0].contains(expected), "{verdict:?} without {expected:?}");
         }
     }
 
     #[test]
     fn lost_collisions_warn_and_do_not_fail() {
-        let audit = Audit {
-            lost_collision_fraction: Some(0.05),
-            ..clean()
-        };
+        let audit = Audit { lost_collision_fraction: Some(0.05), ..clean() };
         let limits = AuditLimits::default();
         assert!(audit.verdict(&limits).is_empty());
         assert!(audit.warnings(&limits)[0].starts_with("5.0 % of the collisions were lost"));
-        let none = Audit {
-            lost_collision_fraction: None,
-            ..clean()
-        };
+        let none = Audit { lost_collision_fraction: None, ..clean() };
         assert!(none.warnings(&limits).is_empty() && none.render().contains("no collisions"));
     }
 
@@ -322,10 +261,7 @@ mod tests {
         let audit = clean();
         assert!((audit.energy_error() - 0.5 / 72_000.0).abs() < 1e-12);
         // Leaving the vented enthalpy out would be an error of 2.8 %.
-        let forgotten = Audit {
-            enthalpy_vented: 0.0,
-            ..audit
-        };
+        let forgotten = Audit { enthalpy_vented: 0.0, ..audit };
         assert!((forgotten.energy_error() + 1999.5 / 72_000.0).abs() < 1e-12);
     }
 

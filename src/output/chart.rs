@@ -14,15 +14,8 @@ use super::error::write_atomically;
 use super::ticks::Ticks;
 
 /// Colours that stay apart for colour-blind readers and in print (Okabe and Ito, 2008).
-pub const PALETTE: [[u8; 3]; 7] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-    [90, 90, 90],
-];
+pub const PALETTE: [[u8; 3]; 7] =
+    [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233], [90, 90, 90]];
 
 /// One line of a chart.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,10 +47,8 @@ pub fn line_chart(
     series: &[Series],
 ) -> Result<(), OutputError> {
     let mut svg = String::new();
-    draw(&mut svg, title, x_label, y_label, series).map_err(|problem| OutputError::Chart {
-        path: path.to_path_buf(),
-        problem: problem.to_string(),
-    })?;
+    draw(&mut svg, title, x_label, y_label, series)
+        .map_err(|problem| OutputError::Chart { path: path.to_path_buf(), problem: problem.to_string() })?;
     let drawn = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
     let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0 / 2, SIZE.1 / 2);
     let svg = svg.replacen(&drawn, &shown, 1);
@@ -84,15 +75,9 @@ fn draw(svg: &mut String, title: &str, x_label: &str, y_label: &str, series: &[S
 }
 
 fn draw_plot(area: &Area, x_label: &str, y_label: &str, series: &[Series]) -> Drawn {
-    let lines: Vec<(&Series, Vec<&[[f64; 2]]>)> = series
-        .iter()
-        .map(|series| (series, finite_stretches(&series.points)))
-        .collect();
-    let all = || {
-        lines
-            .iter()
-            .flat_map(|(_, parts)| parts.iter().copied().flatten())
-    };
+    let lines: Vec<(&Series, Vec<&[[f64; 2]]>)> =
+        series.iter().map(|series| (series, finite_stretches(&series.points))).collect();
+    let all = || lines.iter().flat_map(|(_, parts)| parts.iter().copied().flatten());
     let x = extent(all().map(|point| point[0]), 0.0);
     let y = extent(all().map(|point| point[1]), 0.05);
     let (x_ticks, y_ticks) = (Ticks::over(&x), Ticks::over(&y));
@@ -148,11 +133,7 @@ fn line_style(series: &Series) -> ShapeStyle {
 }
 
 fn stroke_colour(colour: [u8; 3], dashed: bool) -> [u8; 3] {
-    if dashed {
-        colour.map(|channel| channel / 2)
-    } else {
-        colour
-    }
+    if dashed { colour.map(|channel| channel / 2) } else { colour }
 }
 
 fn text_style(size: f64) -> TextStyle<'static> {
@@ -160,11 +141,7 @@ fn text_style(size: f64) -> TextStyle<'static> {
 }
 
 /// Draws a sample and the name of each series in rows from `top` on; returns where the rows end.
-fn draw_legend(
-    root: &Area,
-    top: i32,
-    series: &[Series],
-) -> Result<i32, Box<dyn std::error::Error>> {
+fn draw_legend(root: &Area, top: i32, series: &[Series]) -> Result<i32, Box<dyn std::error::Error>> {
     const SAMPLE: i32 = 2 * DASH + 2 * GAP + DASH;
     let right = SIZE.0 as i32 - MARGIN;
     let (mut x, mut y) = (MARGIN, top + LEGEND_LINE / 2);
@@ -176,12 +153,7 @@ fn draw_legend(
         }
         let line = [(x, y), (x + SAMPLE, y)];
         if series.dashed {
-            root.draw(&plotters::element::DashedPathElement::new(
-                line,
-                DASH,
-                GAP,
-                line_style(series),
-            ))?;
+            root.draw(&plotters::element::DashedPathElement::new(line, DASH, GAP, line_style(series)))?;
         } else {
             root.draw(&PathElement::new(line, line_style(series)))?;
         }
@@ -192,26 +164,18 @@ fn draw_legend(
         ))?;
         x += width;
     }
-    Ok(if series.is_empty() {
-        top
-    } else {
-        y + LEGEND_LINE / 2
-    })
+    Ok(if series.is_empty() { top } else { y + LEGEND_LINE / 2 })
 }
 
 /// The runs of points whose two coordinates are finite.
 fn finite_stretches(points: &[[f64; 2]]) -> Vec<&[[f64; 2]]> {
-    points
-        .split(|point| !point.iter().all(|value| value.is_finite()))
-        .filter(|part| !part.is_empty())
-        .collect()
+    points.split(|point| !point.iter().all(|value| value.is_finite())).filter(|part| !part.is_empty()).collect()
 }
 
 /// The range of the values, widened by `slack` of itself on both sides; never of zero width.
 fn extent(values: impl Iterator<Item = f64>, slack: f64) -> std::ops::Range<f64> {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
     if low > high {
         return 0.0..1.0;
     }
@@ -230,25 +194,13 @@ mod tests {
     use super::*;
 
     fn series(name: &str, points: Vec<[f64; 2]>, dashed: bool, colour: usize) -> Series {
-        Series {
-            name: name.to_owned(),
-            points,
-            dashed,
-            colour: PALETTE[colour],
-        }
+        Series { name: name.to_owned(), points, dashed, colour: PALETTE[colour] }
     }
 
     fn chart(series: &[Series]) -> String {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("pressure.svg");
-        line_chart(
-            &path,
-            "Tank <test> & \"more\"",
-            "time (ms)",
-            "pressure (kPa)",
-            series,
-        )
-        .unwrap();
+        line_chart(&path, "Tank <test> & \"more\"", "time (ms)", "pressure (kPa)", series).unwrap();
         std::fs::read_to_string(path).unwrap()
     }
 
@@ -259,13 +211,7 @@ mod tests {
         svg.lines()
             .filter(|line| line.starts_with("<polyline") && line.contains(&stroke))
             .map(|line| {
-                let points = line
-                    .split("points=\"")
-                    .nth(1)
-                    .unwrap()
-                    .split('"')
-                    .next()
-                    .unwrap();
+                let points = line.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
                 points
                     .split_whitespace()
                     .map(|pair| {
@@ -278,31 +224,22 @@ mod tests {
     }
 
     fn ramp(slope: f64) -> Vec<[f64; 2]> {
-        (0..=100)
-            .map(|i| [f64::from(i), 101.0 + slope * f64::from(i)])
-            .collect()
+        (0..=100).map(|i| [f64::from(i), 101.0 + slope * f64::from(i)]).collect()
     }
 
     #[test]
     fn a_line_rises_with_its_data_and_falls_when_the_data_fall() {
-        let data_line =
-            |slope| polylines(&chart(&[series("p", ramp(slope), false, 0)]), PALETTE[0]).remove(1);
+        let data_line = |slope| polylines(&chart(&[series("p", ramp(slope), false, 0)]), PALETTE[0]).remove(1);
         let (rising, falling) = (data_line(3.0), data_line(-0.5));
         assert_eq!(rising.len(), 101);
-        assert!(
-            rising
-                .windows(2)
-                .all(|w| w[1].0 > w[0].0 && w[1].1 < w[0].1)
-        );
+        assert!(rising.windows(2).all(|w| w[1].0 > w[0].0 && w[1].1 < w[0].1));
         assert!(falling.windows(2).all(|w| w[1].1 >= w[0].1) && falling[0].1 < falling[100].1);
     }
 
     #[test]
     fn names_title_and_labels_are_there_and_escaped() {
-        let svg = chart(&[
-            series("inner <particles>", ramp(1.0), false, 0),
-            series("control volume", ramp(1.1), true, 1),
-        ]);
+        let svg =
+            chart(&[series("inner <particles>", ramp(1.0), false, 0), series("control volume", ramp(1.1), true, 1)]);
         for text in [
             "Tank &lt;test&gt; &amp; &quot;more&quot;",
             "inner &lt;particles&gt;",
@@ -313,58 +250,31 @@ mod tests {
             assert!(svg.contains(text), "{text}");
         }
         assert!(!svg.contains("<particles>") && !svg.contains("no data"));
-        assert!(
-            polylines(&svg, stroke_colour(PALETTE[1], true)).len() > 20,
-            "a reference line is dashed"
-        );
+        assert!(polylines(&svg, stroke_colour(PALETTE[1], true)).len() > 20, "a reference line is dashed");
         assert!(svg.starts_with("<svg width=\"920\" height=\"540\" viewBox=\"0 0 1840 1080\""));
     }
 
     #[test]
     fn empty_single_and_broken_data_make_a_chart() {
         assert!(chart(&[]).contains("no data"));
-        assert!(
-            chart(&[series(
-                "p",
-                vec![[f64::NAN, 1.0], [1.0, f64::INFINITY]],
-                false,
-                0
-            )])
-            .contains("no data")
-        );
+        assert!(chart(&[series("p", vec![[f64::NAN, 1.0], [1.0, f64::INFINITY]], false, 0)]).contains("no data"));
         let single = chart(&[series("p", vec![[1.0, 2.0]], false, 0)]);
         assert!(single.contains("<circle") && !single.contains("no data"));
         let mut broken = ramp(1.0);
         broken[50][1] = f64::NAN;
         let lines = polylines(&chart(&[series("p", broken, false, 0)]), PALETTE[0]);
-        assert_eq!(
-            lines[1..].iter().map(Vec::len).collect::<Vec<_>>(),
-            [50, 50]
-        );
+        assert_eq!(lines[1..].iter().map(Vec::len).collect::<Vec<_>>(), [50, 50]);
         for value in [0.0, 1e300, -1e300, 1e-300, f64::MAX, f64::MIN] {
             let flat = chart(&[series("p", vec![[0.0, value], [1.0, value]], true, 0)]);
             assert!(!flat.contains("NaN") && !flat.contains("inf"), "{value}");
         }
-        chart(&[series(
-            "p",
-            vec![[0.0, f64::MIN], [1.0, f64::MAX]],
-            false,
-            0,
-        )]);
+        chart(&[series("p", vec![[0.0, f64::MIN], [1.0, f64::MAX]], false, 0)]);
     }
 
     #[test]
     fn a_long_legend_takes_more_rows() {
-        let many: Vec<Series> = (0..7)
-            .map(|i| {
-                series(
-                    &format!("chamber number {i}: particles"),
-                    ramp(1.0),
-                    false,
-                    i,
-                )
-            })
-            .collect();
+        let many: Vec<Series> =
+            (0..7).map(|i| series(&format!("chamber number {i}: particles"), ramp(1.0), false, i)).collect();
         let svg = chart(&many);
         let sample = |i: usize| polylines(&svg, PALETTE[i])[0][0];
         assert!(sample(6).1 > sample(0).1 && sample(0).1 == sample(1).1);

@@ -91,11 +91,7 @@ mod tests {
             limits: [("max_buffer_size".to_owned(), u64::MAX)].into(),
             features: vec!["TIMESTAMP_QUERY".to_owned()],
         };
-        let command = vec![
-            "corpuscle".to_owned(),
-            "run".to_owned(),
-            "a scene.toml".to_owned(),
-        ];
+        let command = vec!["corpuscle".to_owned(), "run".to_owned(), "a scene.toml".to_owned()];
         let mut written = Environment::of_this_host(command, adapter);
         let path = written.write(dir.path()).unwrap();
         let text = std::fs::read_to_string(path).unwrap();

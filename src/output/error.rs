@@ -6,11 +6,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     #[error("cannot {action} {path}: {source}", path = path.display())]
-    Io {
-        action: &'static str,
-        path: PathBuf,
-        source: io::Error,
-    },
+    Io { action: &'static str, path: PathBuf, source: io::Error },
     #[error(
         "the output folder {path} holds {foreign}, which no earlier run wrote; \
          choose another folder, or pass --force to write into this one (what is not a result stays)",
@@ -24,24 +20,11 @@ pub enum OutputError {
     #[error("a history row has {found} values, the table has {expected} columns")]
     RowLength { found: usize, expected: usize },
     #[error("{path}:{line}: {problem}", path = path.display())]
-    BadRow {
-        path: PathBuf,
-        line: u64,
-        problem: String,
-    },
+    BadRow { path: PathBuf, line: u64, problem: String },
     #[error("{path}:{line}: column {header:?} holds {found:?}, which is not a number", path = path.display())]
-    BadValue {
-        path: PathBuf,
-        line: u64,
-        header: String,
-        found: String,
-    },
+    BadValue { path: PathBuf, line: u64, header: String, found: String },
     #[error("triangle {triangle} of the walls names vertex {vertex}, but there are {vertices}")]
-    BadTriangle {
-        triangle: usize,
-        vertex: u32,
-        vertices: usize,
-    },
+    BadTriangle { triangle: usize, vertex: u32, vertices: usize },
     #[error("{triangles} wall triangles came with {indices} wall indices")]
     WallIndexCount { triangles: usize, indices: usize },
     #[error("cannot draw {path}: {problem}", path = path.display())]
@@ -51,11 +34,7 @@ pub enum OutputError {
 impl OutputError {
     /// For `map_err`: what was being done to which file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
-        move |source| OutputError::Io {
-            action,
-            path: path.to_path_buf(),
-            source,
-        }
+        move |source| OutputError::Io { action, path: path.to_path_buf(), source }
     }
 }
 
@@ -70,9 +49,7 @@ pub(super) fn write_atomically(
     let partial = path.with_file_name(name);
     let file = std::fs::File::create(&partial).map_err(OutputError::io("create", &partial))?;
     let mut out = BufWriter::with_capacity(1 << 20, file);
-    write(&mut out)
-        .and_then(|()| out.flush())
-        .map_err(OutputError::io("write", &partial))?;
+    write(&mut out).and_then(|()| out.flush()).map_err(OutputError::io("write", &partial))?;
     std::fs::rename(&partial, path).map_err(OutputError::io("replace", path))
 }
 

@@ -23,15 +23,8 @@ pub const SNAPSHOT_FOLDER: &str = "snapshots";
 const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run writes at the top of its folder, apart from the snapshots.
-const RESULT_FILES: [&str; 7] = [
-    MARKER_FILE,
-    HISTORY_FILE,
-    PLAN_FILE,
-    SCENE_FILE,
-    ENVIRONMENT_FILE,
-    PRESSURE_CHART_FILE,
-    REPORT_FILE,
-];
+const RESULT_FILES: [&str; 7] =
+    [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE, REPORT_FILE];
 
 /// A folder that exists, holds no earlier results, and carries the marker.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,28 +39,18 @@ impl OutputFolder {
     /// system refuses. With `force`, files that carry the names of results are replaced and all others stay.
     pub fn create(path: &Path, force: bool) -> Result<OutputFolder, OutputError> {
         if path.exists() && !path.is_dir() {
-            return Err(OutputError::NotAFolder {
-                path: path.to_path_buf(),
-            });
+            return Err(OutputError::NotAFolder { path: path.to_path_buf() });
         }
         fs::create_dir_all(path).map_err(OutputError::io("create", path))?;
         let contents = Contents::of(path)?;
         if !force && let Some(foreign) = contents.foreign() {
-            return Err(OutputError::FolderInUse {
-                path: path.to_path_buf(),
-                foreign,
-            });
+            return Err(OutputError::FolderInUse { path: path.to_path_buf(), foreign });
         }
         for file in &contents.results {
             fs::remove_file(file).map_err(OutputError::io("remove", file))?;
         }
-        let folder = OutputFolder {
-            path: path.to_path_buf(),
-        };
-        folder.write_text(
-            MARKER_FILE,
-            "Results of a corpuscle run; the next run into this folder replaces them.\n",
-        )?;
+        let folder = OutputFolder { path: path.to_path_buf() };
+        folder.write_text(MARKER_FILE, "Results of a corpuscle run; the next run into this folder replaces them.\n")?;
         Ok(folder)
     }
 
@@ -78,10 +61,7 @@ impl OutputFolder {
     /// Writes one of the result files (`PLAN_FILE`, ...) whole; returns its path. Panics on any other name.
     pub fn write_text(&self, name: &str, text: &str) -> Result<PathBuf, OutputError> {
         // A programming error: the next run would take the file for the user's.
-        assert!(
-            RESULT_FILES.contains(&name),
-            "{name} is not in RESULT_FILES"
-        );
+        assert!(RESULT_FILES.contains(&name), "{name} is not in RESULT_FILES");
         let path = self.path.join(name);
         write_atomically(&path, |out| out.write_all(text.as_bytes()))?;
         Ok(path)
@@ -98,11 +78,7 @@ struct Contents {
 
 impl Contents {
     fn of(folder: &Path) -> Result<Contents, OutputError> {
-        let mut contents = Contents {
-            marked: false,
-            results: Vec::new(),
-            others: Vec::new(),
-        };
+        let mut contents = Contents { marked: false, results: Vec::new(), others: Vec::new() };
         for (name, path, kind) in entries(folder)? {
             if name == SNAPSHOT_FOLDER && kind.is_dir() {
                 for (inner, path, kind) in entries(&path)? {
@@ -112,9 +88,7 @@ impl Contents {
                         contents.others.push(format!("{name}/{inner}"));
                     }
                 }
-            } else if kind.is_file()
-                && RESULT_FILES.contains(&name.trim_end_matches(PARTIAL_SUFFIX))
-            {
+            } else if kind.is_file() && RESULT_FILES.contains(&name.trim_end_matches(PARTIAL_SUFFIX)) {
                 contents.marked |= name == MARKER_FILE;
                 contents.results.push(path);
             } else {
@@ -132,11 +106,7 @@ impl Contents {
         }
         let mut names = self.others.clone();
         if !self.marked {
-            names.extend(
-                self.results
-                    .iter()
-                    .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())),
-            );
+            names.extend(self.results.iter().filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())));
         }
         const SHOWN: usize = 3;
         let more = names.len().saturating_sub(SHOWN);
@@ -179,13 +149,7 @@ mod tests {
     fn finished_run(path: &Path) {
         let folder = OutputFolder::create(path, false).unwrap();
         HistoryWriter::create(folder.path(), &[Column::new("time", "s")]).unwrap();
-        for name in [
-            PLAN_FILE,
-            SCENE_FILE,
-            ENVIRONMENT_FILE,
-            PRESSURE_CHART_FILE,
-            REPORT_FILE,
-        ] {
+        for name in [PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE, REPORT_FILE] {
             folder.write_text(name, "x").unwrap();
         }
         let mut snapshots = SnapshotWriter::create(folder.path()).unwrap();
@@ -213,18 +177,10 @@ mod tests {
         finished_run(dir.path());
         let notes = dir.path().join("snapshots/notes.txt");
         fs::write(&notes, "mine").unwrap();
-        let error = OutputFolder::create(dir.path(), false)
-            .unwrap_err()
-            .to_string();
+        let error = OutputFolder::create(dir.path(), false).unwrap_err().to_string();
         assert!(error.contains(&dir.path().display().to_string()), "{error}");
-        assert!(
-            error.contains("snapshots/notes.txt") && error.contains("--force"),
-            "{error}"
-        );
-        assert!(
-            dir.path().join(HISTORY_FILE).exists(),
-            "a refusal changes nothing"
-        );
+        assert!(error.contains("snapshots/notes.txt") && error.contains("--force"), "{error}");
+        assert!(dir.path().join(HISTORY_FILE).exists(), "a refusal changes nothing");
         OutputFolder::create(dir.path(), true).unwrap();
         assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
         assert!(!dir.path().join(HISTORY_FILE).exists());
@@ -235,9 +191,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let scene = dir.path().join(SCENE_FILE);
         fs::write(&scene, "title = 'mine'").unwrap();
-        let error = OutputFolder::create(dir.path(), false)
-            .unwrap_err()
-            .to_string();
+        let error = OutputFolder::create(dir.path(), false).unwrap_err().to_string();
         assert!(error.contains("scene.toml"), "{error}");
         assert_eq!(fs::read_to_string(&scene).unwrap(), "title = 'mine'");
     }
@@ -247,9 +201,6 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("file");
         fs::write(&path, "").unwrap();
-        assert!(matches!(
-            OutputFolder::create(&path, true),
-            Err(OutputError::NotAFolder { .. })
-        ));
+        assert!(matches!(OutputFolder::create(&path, true), Err(OutputError::NotAFolder { .. })));
     }
 }

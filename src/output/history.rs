@@ -23,19 +23,12 @@ pub struct Column {
 
 impl Column {
     pub fn new(name: impl Into<String>, unit: &'static str) -> Column {
-        Column {
-            name: name.into(),
-            unit,
-        }
+        Column { name: name.into(), unit }
     }
 
     /// The column's head in the file.
     pub fn header(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{}_{}", self.name, self.unit)
-        }
+        if self.unit.is_empty() { self.name.clone() } else { format!("{}_{}", self.name, self.unit) }
     }
 }
 
@@ -53,10 +46,7 @@ impl History {
         if let Some(header) = repeated(&headers) {
             return Err(OutputError::DuplicateColumn { header });
         }
-        Ok(History {
-            headers,
-            rows: Vec::new(),
-        })
+        Ok(History { headers, rows: Vec::new() })
     }
 
     pub fn headers(&self) -> &[String] {
@@ -70,10 +60,7 @@ impl History {
     /// Appends a row in the order of the columns. Errors: a row of another length.
     pub fn push(&mut self, row: &[f64]) -> Result<(), OutputError> {
         if row.len() != self.headers.len() {
-            return Err(OutputError::RowLength {
-                found: row.len(),
-                expected: self.headers.len(),
-            });
+            return Err(OutputError::RowLength { found: row.len(), expected: self.headers.len() });
         }
         self.rows.push(row.to_vec());
         Ok(())
@@ -105,19 +92,11 @@ impl History {
 
     /// Errors name the file, the line and the column.
     pub fn read(path: &Path) -> Result<History, OutputError> {
-        let bad_row = |line: u64, problem: String| OutputError::BadRow {
-            path: path.to_path_buf(),
-            line,
-            problem,
-        };
+        let bad_row = |line: u64, problem: String| OutputError::BadRow { path: path.to_path_buf(), line, problem };
         let file = File::open(path).map_err(OutputError::io("open", path))?;
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
-        let headers: Vec<String> = reader
-            .headers()
-            .map_err(|error| bad_row(1, error.to_string()))?
-            .iter()
-            .map(str::to_owned)
-            .collect();
+        let headers: Vec<String> =
+            reader.headers().map_err(|error| bad_row(1, error.to_string()))?.iter().map(str::to_owned).collect();
         if headers.is_empty() {
             return Err(bad_row(1, "the file is empty".to_owned()));
         }
@@ -126,19 +105,12 @@ impl History {
         }
         let mut rows = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|error| {
-                bad_row(
-                    error.position().map_or(0, |at| at.line()),
-                    error.to_string(),
-                )
-            })?;
+            let record =
+                record.map_err(|error| bad_row(error.position().map_or(0, |at| at.line()), error.to_string()))?;
             let line = record.position().map_or(0, |at| at.line());
             if record.len() != headers.len() {
                 let (found, expected) = (record.len(), headers.len());
-                return Err(bad_row(
-                    line,
-                    format!("{found} values where the header has {expected} columns"),
-                ));
+                return Err(bad_row(line, format!("{found} values where the header has {expected} columns")));
             }
             let mut row = Vec::with_capacity(headers.len());
             for (field, header) in record.iter().zip(&headers) {
@@ -169,11 +141,7 @@ impl HistoryWriter {
         let history = History::new(columns)?;
         let path = dir.join(HISTORY_FILE);
         let file = File::create(&path).map_err(OutputError::io("create", &path))?;
-        let mut writer = HistoryWriter {
-            path,
-            file,
-            history,
-        };
+        let mut writer = HistoryWriter { path, file, history };
         let header = csv_line(writer.history.headers.iter().map(String::as_str));
         writer.append(header)?;
         Ok(writer)
@@ -195,8 +163,7 @@ impl HistoryWriter {
 
     fn append(&mut self, line: std::io::Result<Vec<u8>>) -> Result<(), OutputError> {
         // One unbuffered write per row: the row is the system's as soon as this returns.
-        line.and_then(|line| self.file.write_all(&line))
-            .map_err(OutputError::io("write", &self.path))
+        line.and_then(|line| self.file.write_all(&line)).map_err(OutputError::io("write", &self.path))
     }
 }
 
@@ -209,11 +176,7 @@ fn csv_line<T: AsRef<[u8]>>(fields: impl Iterator<Item = T>) -> std::io::Result<
 /// The shortest text that parses back to the same f64.
 pub(super) fn number(value: f64) -> String {
     let magnitude = value.abs();
-    if magnitude == 0.0 || (1e-4..1e15).contains(&magnitude) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
+    if magnitude == 0.0 || (1e-4..1e15).contains(&magnitude) { format!("{value}") } else { format!("{value:e}") }
 }
 
 fn repeated(headers: &[String]) -> Option<String> {
@@ -227,11 +190,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn columns() -> Vec<Column> {
-        vec![
-            Column::new("time", "s"),
-            Column::new("inner:pressure", "pa"),
-            Column::new("inner:particles, \"air\"", ""),
-        ]
+        vec![Column::new("time", "s"), Column::new("inner:pressure", "pa"), Column::new("inner:particles, \"air\"", "")]
     }
 
     #[test]
@@ -239,10 +198,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let writer = HistoryWriter::create(dir.path(), &columns()).unwrap();
         let text = std::fs::read_to_string(writer.path()).unwrap();
-        assert_eq!(
-            text,
-            "time_s,inner:pressure_pa,\"inner:particles, \"\"air\"\"\"\n"
-        );
+        assert_eq!(text, "time_s,inner:pressure_pa,\"inner:particles, \"\"air\"\"\"\n");
     }
 
     #[test]
@@ -253,11 +209,7 @@ mod tests {
         writer.row(&[2.5e-7, f64::NAN, -0.0]).unwrap();
         let running = std::fs::read(writer.path()).unwrap();
         assert_eq!(
-            std::str::from_utf8(&running)
-                .unwrap()
-                .lines()
-                .skip(1)
-                .collect::<Vec<_>>(),
+            std::str::from_utf8(&running).unwrap().lines().skip(1).collect::<Vec<_>>(),
             ["0,101325,12", "2.5e-7,NaN,-0"]
         );
         let whole = dir.path().join("whole.csv");
@@ -292,10 +244,7 @@ mod tests {
         writer.row(&[1e-3, 2e17, 8.0]).unwrap();
         let read = History::read(writer.path()).unwrap();
         assert_eq!(&read, writer.history());
-        assert_eq!(
-            read.column("inner:pressure_pa"),
-            Some(vec![1.0 / 3.0, 2e17])
-        );
+        assert_eq!(read.column("inner:pressure_pa"), Some(vec![1.0 / 3.0, 2e17]));
         let points = read.points("time_s", "inner:pressure_pa");
         assert_eq!(points, Some(vec![[0.0, 1.0 / 3.0], [1e-3, 2e17]]));
         assert_eq!(read.column("outer:pressure_pa"), None);
@@ -312,24 +261,13 @@ mod tests {
             message
         };
         let word = message("time_s,p_pa\n0,1\n1,high\n");
-        assert!(
-            word.contains(":3:") && word.contains("\"p_pa\"") && word.contains("\"high\""),
-            "{word}"
-        );
+        assert!(word.contains(":3:") && word.contains("\"p_pa\"") && word.contains("\"high\""), "{word}");
         let short = message("time_s,p_pa\n0,1\n1\n");
-        assert!(
-            short.contains(":3: 1 values") && short.contains("2 columns"),
-            "{short}"
-        );
+        assert!(short.contains(":3: 1 values") && short.contains("2 columns"), "{short}");
         assert!(message("a,a\n0,1\n").contains("two columns are called \"a\""));
         assert!(message("").contains("empty"));
         std::fs::remove_file(&path).unwrap();
-        assert!(
-            History::read(&path)
-                .unwrap_err()
-                .to_string()
-                .contains("cannot open")
-        );
+        assert!(History::read(&path).unwrap_err().to_string().contains("cannot open"));
     }
 
     #[test]
@@ -338,9 +276,6 @@ mod tests {
         let error = history.push(&[1.0]).unwrap_err().to_string();
         assert_eq!(error, "a history row has 1 values, the table has 3 columns");
         let twice = [Column::new("a", "pa"), Column::new("a", "pa")];
-        assert!(matches!(
-            History::new(&twice),
-            Err(OutputError::DuplicateColumn { .. })
-        ));
+        assert!(matches!(History::new(&twice), Err(OutputError::DuplicateColumn { .. })));
     }
 }

@@ -22,11 +22,7 @@ impl PhaseTable {
         let total = self.seconds();
         // A dash where there is nothing to divide by.
         let ratio = |over: f64, under: f64, decimals: usize| {
-            if under > 0.0 {
-                format!("{:.decimals$}", over / under)
-            } else {
-                "-".to_owned()
-            }
+            if under > 0.0 { format!("{:.decimals$}", over / under) } else { "-".to_owned() }
         };
         let particle_steps = self.particle_steps as f64;
         let line = |name: &str, seconds: f64, dispatches: u64| {
@@ -40,24 +36,13 @@ impl PhaseTable {
         };
         let head = ["Phase", "device s", "%", "ns/particle-step", "dispatches"];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
-        rows.extend(
-            self.rows
-                .iter()
-                .map(|(name, seconds, dispatches)| line(name, *seconds, *dispatches)),
-        );
+        rows.extend(self.rows.iter().map(|(name, seconds, dispatches)| line(name, *seconds, *dispatches)));
         let dispatches = self.rows.iter().map(|(_, _, dispatches)| dispatches).sum();
         rows.push(line("total", total, dispatches));
         let mut text = aligned(&rows);
-        text += &format!(
-            "{} steps, {} particle-steps",
-            grouped(self.steps),
-            grouped(self.particle_steps)
-        );
+        text += &format!("{} steps, {} particle-steps", grouped(self.steps), grouped(self.particle_steps));
         if total > 0.0 {
-            text += &format!(
-                ", {}particle-steps/s of device time",
-                metric(particle_steps / total)
-            );
+            text += &format!(", {}particle-steps/s of device time", metric(particle_steps / total));
         }
         text.push('\n');
         text
@@ -70,10 +55,7 @@ mod tests {
 
     fn table() -> PhaseTable {
         PhaseTable {
-            rows: vec![
-                ("bin".to_owned(), 0.5, 1_000),
-                ("choose".to_owned(), 1.5, 2_000),
-            ],
+            rows: vec![("bin".to_owned(), 0.5, 1_000), ("choose".to_owned(), 1.5, 2_000)],
             steps: 1_000,
             particle_steps: 20_000_000,
         }
@@ -99,14 +81,7 @@ mod tests {
 
     #[test]
     fn a_run_without_steps_divides_by_nothing() {
-        let text = PhaseTable {
-            rows: vec![("bin".to_owned(), 0.0, 0)],
-            ..PhaseTable::default()
-        }
-        .render();
-        assert!(
-            text.contains('-') && !text.contains("NaN") && !text.contains("inf"),
-            "{text}"
-        );
+        let text = PhaseTable { rows: vec![("bin".to_owned(), 0.0, 0)], ..PhaseTable::default() }.render();
+        assert!(text.contains('-') && !text.contains("NaN") && !text.contains("inf"), "{text}");
     }
 }

@@ -66,12 +66,7 @@ impl Progress {
     /// over the steps of the particles in each.
     pub fn update(&mut self, time: f64, steps: u64, particle_steps: u64) {
         let elapsed = self.started.elapsed();
-        self.show(Sample {
-            elapsed,
-            time,
-            steps,
-            particle_steps,
-        });
+        self.show(Sample { elapsed, time, steps, particle_steps });
     }
 
     /// Ends the display and states the whole run's rates.
@@ -79,12 +74,7 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        let now = Sample {
-            elapsed: self.started.elapsed(),
-            time,
-            steps,
-            particle_steps,
-        };
+        let now = Sample { elapsed: self.started.elapsed(), time, steps, particle_steps };
         let rates = now.rates_since(&Sample::default());
         tracing::info!(
             "{} of {}, {} steps in {} ({}steps/s, {}particle-steps/s)",
@@ -98,11 +88,7 @@ impl Progress {
     }
 
     fn show(&mut self, now: Sample) {
-        let interval = if self.bar.is_some() {
-            BAR_INTERVAL
-        } else {
-            LOG_INTERVAL
-        };
+        let interval = if self.bar.is_some() { BAR_INTERVAL } else { LOG_INTERVAL };
         if now.elapsed.saturating_sub(self.shown) < interval {
             return;
         }
@@ -122,11 +108,7 @@ impl Progress {
     }
 
     fn fraction(&self, time: f64) -> f64 {
-        if self.end_time > 0.0 {
-            (time / self.end_time).clamp(0.0, 1.0)
-        } else {
-            1.0
-        }
+        if self.end_time > 0.0 { (time / self.end_time).clamp(0.0, 1.0) } else { 1.0 }
     }
 
     fn message(&self, now: &Sample) -> String {
@@ -170,9 +152,7 @@ impl Sample {
         Rates {
             time: per_second(self.time - earlier.time),
             steps: per_second(self.steps.saturating_sub(earlier.steps) as f64),
-            particle_steps: per_second(
-                self.particle_steps.saturating_sub(earlier.particle_steps) as f64
-            ),
+            particle_steps: per_second(self.particle_steps.saturating_sub(earlier.particle_steps) as f64),
         }
     }
 }
@@ -214,26 +194,16 @@ mod tests {
     fn logged(samples: impl Iterator<Item = Sample>) -> String {
         let captured = Captured::default();
         let writer = captured.clone();
-        let subscriber = tracing_subscriber::fmt()
-            .with_writer(move || writer.clone())
-            .with_ansi(false)
-            .finish();
+        let subscriber = tracing_subscriber::fmt().with_writer(move || writer.clone()).with_ansi(false).finish();
         let mut progress = Progress::new(0.1);
         progress.bar = None;
-        tracing::subscriber::with_default(subscriber, || {
-            samples.for_each(|now| progress.show(now))
-        });
+        tracing::subscriber::with_default(subscriber, || samples.for_each(|now| progress.show(now)));
         String::from_utf8(captured.0.lock().unwrap().clone()).unwrap()
     }
 
     /// A run of 100 steps/s, 1 ms of simulated time each second, after `i` seconds.
     fn second(i: u64) -> Sample {
-        Sample {
-            elapsed: Duration::from_secs(i),
-            time: 1e-3 * i as f64,
-            steps: 100 * i,
-            particle_steps: 2_000_000 * i,
-        }
+        Sample { elapsed: Duration::from_secs(i), time: 1e-3 * i as f64, steps: 100 * i, particle_steps: 2_000_000 * i }
     }
 
     #[test]
@@ -248,18 +218,14 @@ mod tests {
     #[test]
     fn a_line_gives_simulated_time_rates_and_time_left() {
         let log = logged((0..=6).map(second));
-        let expected =
-            "5 %: 5.00 ms of 100.00 ms, 100 steps/s, 2.00 M particle-steps/s, 1 min 35 s left";
+        let expected = "5 %: 5.00 ms of 100.00 ms, 100 steps/s, 2.00 M particle-steps/s, 1 min 35 s left";
         assert!(log.contains(expected), "{log}");
     }
 
     #[test]
     fn the_time_left_follows_a_run_that_slows_down() {
         // From 20 s on the run is ten times slower: 79 ms left at 0.1 ms/s.
-        let slow = |i: u64| Sample {
-            time: 0.02 + 1e-4 * (i - 20) as f64,
-            ..second(i)
-        };
+        let slow = |i: u64| Sample { time: 0.02 + 1e-4 * (i - 20) as f64, ..second(i) };
         let log = logged((0..20).map(second).chain((20..=40).map(slow)));
         let last = log.lines().last().unwrap();
         assert!(last.contains("13 min 00 s left"), "{log}");
@@ -276,10 +242,6 @@ mod tests {
     fn a_run_of_no_length_or_without_steps_still_shows() {
         let progress = Progress::new(0.0);
         assert_eq!(progress.fraction(0.0), 1.0);
-        assert!(
-            progress
-                .message(&Sample::default())
-                .contains("unknown time left")
-        );
+        assert!(progress.message(&Sample::default()).contains("unknown time left"));
     }
 }

@@ -38,10 +38,7 @@ impl SnapshotWriter {
     pub fn create(dir: &Path) -> Result<SnapshotWriter, OutputError> {
         let folder = dir.join(SNAPSHOT_FOLDER);
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
-        Ok(SnapshotWriter {
-            folder,
-            written: Vec::new(),
-        })
+        Ok(SnapshotWriter { folder, written: Vec::new() })
     }
 
     /// Writes the particles at `time` (s) in the order given and lists the file in the collection.
@@ -66,19 +63,12 @@ impl SnapshotWriter {
         walls: &[u32],
     ) -> Result<PathBuf, OutputError> {
         if walls.len() != triangles.len() {
-            return Err(OutputError::WallIndexCount {
-                triangles: triangles.len(),
-                indices: walls.len(),
-            });
+            return Err(OutputError::WallIndexCount { triangles: triangles.len(), indices: walls.len() });
         }
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
                 let vertices = vertices.len();
-                return Err(OutputError::BadTriangle {
-                    triangle,
-                    vertex,
-                    vertices,
-                });
+                return Err(OutputError::BadTriangle { triangle, vertex, vertices });
             }
         }
         let path = self.folder.join("walls.vtp");
@@ -93,10 +83,7 @@ impl SnapshotWriter {
             writeln!(out, r#"<VTKFile type="Collection" version="1.0">"#)?;
             writeln!(out, "<Collection>")?;
             for (time, name) in &self.written {
-                writeln!(
-                    out,
-                    r#"<DataSet timestep="{time}" part="0" file="{name}"/>"#
-                )?;
+                writeln!(out, r#"<DataSet timestep="{time}" part="0" file="{name}"/>"#)?;
             }
             writeln!(out, "</Collection>\n</VTKFile>")
         })
@@ -119,22 +106,16 @@ fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
                 element: "PointData",
                 attributes: r#" Scalars="gas" Vectors="velocity""#,
                 arrays: vec![
-                    Array::new("velocity", "Float32", rows(), |p| {
-                        p.velocity.map(f32::to_le_bytes)
-                    }),
+                    Array::new("velocity", "Float32", rows(), |p| p.velocity.map(f32::to_le_bytes)),
                     Array::new("gas", "UInt8", rows(), |p| [[p.gas]]),
-                    Array::new("spin_energy", "Float32", rows(), |p| {
-                        [p.spin_energy.to_le_bytes()]
-                    }),
+                    Array::new("spin_energy", "Float32", rows(), |p| [p.spin_energy.to_le_bytes()]),
                     Array::new("id", "UInt32", rows(), |p| [p.id.to_le_bytes()]),
                 ],
             },
             Section {
                 element: "Points",
                 attributes: "",
-                arrays: vec![Array::new("position", "Float64", rows(), |p| {
-                    p.position.map(f64::to_le_bytes)
-                })],
+                arrays: vec![Array::new("position", "Float64", rows(), |p| p.position.map(f64::to_le_bytes))],
             },
             Section {
                 element: "Cells",
@@ -149,11 +130,7 @@ fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
     }
 }
 
-fn wall_data<'a>(
-    vertices: &'a [[f64; 3]],
-    triangles: &'a [[u32; 3]],
-    walls: &'a [u32],
-) -> DataSet<'a> {
+fn wall_data<'a>(vertices: &'a [[f64; 3]], triangles: &'a [[u32; 3]], walls: &'a [u32]) -> DataSet<'a> {
     DataSet {
         kind: "PolyData",
         counts: format!(
@@ -166,34 +143,22 @@ fn wall_data<'a>(
             Section {
                 element: "CellData",
                 attributes: r#" Scalars="wall""#,
-                arrays: vec![Array::new("wall", "UInt32", walls.iter(), |wall| {
-                    [wall.to_le_bytes()]
-                })],
+                arrays: vec![Array::new("wall", "UInt32", walls.iter(), |wall| [wall.to_le_bytes()])],
             },
             Section {
                 element: "Points",
                 attributes: "",
-                arrays: vec![Array::new(
-                    "position",
-                    "Float64",
-                    vertices.iter(),
-                    |vertex| vertex.map(f64::to_le_bytes),
-                )],
+                arrays: vec![Array::new("position", "Float64", vertices.iter(), |vertex| vertex.map(f64::to_le_bytes))],
             },
             Section {
                 element: "Polys",
                 attributes: "",
                 arrays: vec![
                     // One list of indices: VTK refuses triples here.
-                    Array::new(
-                        "connectivity",
-                        "Int64",
-                        triangles.as_flattened().iter(),
-                        |&vertex| [i64::from(vertex).to_le_bytes()],
-                    ),
-                    Array::new("offsets", "Int64", 0..triangles.len(), |i| {
-                        [(3 * (i as i64 + 1)).to_le_bytes()]
+                    Array::new("connectivity", "Int64", triangles.as_flattened().iter(), |&vertex| {
+                        [i64::from(vertex).to_le_bytes()]
                     }),
+                    Array::new("offsets", "Int64", 0..triangles.len(), |i| [(3 * (i as i64 + 1)).to_le_bytes()]),
                 ],
             },
         ],
@@ -208,14 +173,8 @@ mod tests {
     /// Arrays by name with their declared type, read by offsets alone: shares nothing with the writer.
     fn appended_arrays(bytes: &[u8]) -> HashMap<String, (String, Vec<u8>)> {
         let marker = b"<AppendedData encoding=\"raw\">\n_";
-        let at = bytes
-            .windows(marker.len())
-            .position(|w| w == marker)
-            .unwrap();
-        let (xml, block) = (
-            std::str::from_utf8(&bytes[..at]).unwrap(),
-            &bytes[at + marker.len()..],
-        );
+        let at = bytes.windows(marker.len()).position(|w| w == marker).unwrap();
+        let (xml, block) = (std::str::from_utf8(&bytes[..at]).unwrap(), &bytes[at + marker.len()..]);
         let attribute = |line: &str, name: &str| {
             let start = line.find(&format!(" {name}=\"")).unwrap() + name.len() + 3;
             line[start..].split('"').next().unwrap().to_owned()
@@ -242,17 +201,9 @@ mod tests {
         arrays
     }
 
-    fn numbers<const N: usize, T>(
-        array: &(String, Vec<u8>),
-        kind: &str,
-        decode: fn([u8; N]) -> T,
-    ) -> Vec<T> {
+    fn numbers<const N: usize, T>(array: &(String, Vec<u8>), kind: &str, decode: fn([u8; N]) -> T) -> Vec<T> {
         assert_eq!(array.0, kind);
-        array
-            .1
-            .chunks_exact(N)
-            .map(|chunk| decode(chunk.try_into().unwrap()))
-            .collect()
+        array.1.chunks_exact(N).map(|chunk| decode(chunk.try_into().unwrap())).collect()
     }
 
     fn particles() -> Vec<ParticleRow> {
@@ -293,14 +244,8 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(back(&arrays), given);
-        assert_eq!(
-            numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes),
-            [0, 1, 2]
-        );
-        assert_eq!(
-            numbers(&arrays["offsets"], "Int64", i64::from_le_bytes),
-            [1, 2, 3]
-        );
+        assert_eq!(numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes), [0, 1, 2]);
+        assert_eq!(numbers(&arrays["offsets"], "Int64", i64::from_le_bytes), [1, 2, 3]);
         assert_eq!(arrays["types"].1, [VTK_VERTEX; 3]);
         // The comparison can fail: one flipped bit in the block is another particle.
         let mut damaged = bytes.clone();
@@ -316,34 +261,17 @@ mod tests {
         let mut writer = SnapshotWriter::create(dir.path()).unwrap();
         writer.write(0.0, &[]).unwrap();
         let pvd = dir.path().join("snapshots/particles.pvd");
-        assert!(
-            !std::fs::read_to_string(&pvd)
-                .unwrap()
-                .contains("particles_000001")
-        );
+        assert!(!std::fs::read_to_string(&pvd).unwrap().contains("particles_000001"));
         writer.write(1.0 / 3.0, &particles()).unwrap();
         let text = std::fs::read_to_string(&pvd).unwrap();
-        assert!(
-            text.contains(r#"timestep="0" part="0" file="particles_000000.vtu""#),
-            "{text}"
-        );
-        assert!(
-            text.contains(r#"timestep="0.3333333333333333" part="0" file="particles_000001.vtu""#),
-            "{text}"
-        );
+        assert!(text.contains(r#"timestep="0" part="0" file="particles_000000.vtu""#), "{text}");
+        assert!(text.contains(r#"timestep="0.3333333333333333" part="0" file="particles_000001.vtu""#), "{text}");
         let mut names: Vec<_> = std::fs::read_dir(dir.path().join("snapshots"))
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
         names.sort();
-        assert_eq!(
-            names,
-            [
-                "particles.pvd",
-                "particles_000000.vtu",
-                "particles_000001.vtu"
-            ]
-        );
+        assert_eq!(names, ["particles.pvd", "particles_000000.vtu", "particles_000001.vtu"]);
     }
 
     #[test]
@@ -356,26 +284,11 @@ mod tests {
         let arrays = appended_arrays(&std::fs::read(path).unwrap());
         let corners = numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes);
         assert_eq!(corners, [0, 2, 1, 0, 1, 3]);
-        assert_eq!(
-            numbers(&arrays["offsets"], "Int64", i64::from_le_bytes),
-            [3, 6]
-        );
-        assert_eq!(
-            numbers(&arrays["wall"], "UInt32", u32::from_le_bytes),
-            [0, 7]
-        );
-        assert_eq!(
-            numbers(&arrays["position"], "Float64", f64::from_le_bytes),
-            vertices.as_flattened()
-        );
-        let error = writer
-            .write_walls(&vertices, &[[0, 1, 4]], &[0])
-            .unwrap_err()
-            .to_string();
-        assert_eq!(
-            error,
-            "triangle 0 of the walls names vertex 4, but there are 4"
-        );
+        assert_eq!(numbers(&arrays["offsets"], "Int64", i64::from_le_bytes), [3, 6]);
+        assert_eq!(numbers(&arrays["wall"], "UInt32", u32::from_le_bytes), [0, 7]);
+        assert_eq!(numbers(&arrays["position"], "Float64", f64::from_le_bytes), vertices.as_flattened());
+        let error = writer.write_walls(&vertices, &[[0, 1, 4]], &[0]).unwrap_err().to_string();
+        assert_eq!(error, "triangle 0 of the walls names vertex 4, but there are 4");
         assert!(writer.write_walls(&vertices, &triangles, &[0]).is_err());
     }
 }

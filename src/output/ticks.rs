@@ -15,16 +15,9 @@ impl Ticks {
         // The smallest distance at which the axis may set its labels: 1, 2 or 5 times a power of ten.
         let spacing = (range.end - range.start) / (2.5 * Ticks::WANTED as f64);
         let scientific = !(1e-3..1e6).contains(&largest);
-        let unit = if scientific {
-            10f64.powf(largest.log10().floor())
-        } else {
-            1.0
-        };
+        let unit = if scientific { 10f64.powf(largest.log10().floor()) } else { 1.0 };
         let decimals = (-(spacing / unit).log10().floor()).clamp(0.0, 12.0) as usize;
-        Ticks {
-            decimals,
-            scientific,
-        }
+        Ticks { decimals, scientific }
     }
 
     pub fn label(&self, value: f64) -> String {
@@ -41,11 +34,7 @@ impl Ticks {
 }
 
 fn without_zeros(number: &str) -> &str {
-    let short = if number.contains('.') {
-        number.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        number
-    };
+    let short = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
     if short == "-0" { "0" } else { short }
 }
 

@@ -64,10 +64,7 @@ impl DataSet<'_> {
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         let kind = self.kind;
         writeln!(out, r#"<?xml version="1.0"?>"#)?;
-        writeln!(
-            out,
-            r#"<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
-        )?;
+        writeln!(out, r#"<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
         writeln!(out, "<{kind}>")?;
         if let Some(time) = self.time {
             writeln!(
@@ -90,10 +87,7 @@ impl DataSet<'_> {
             }
             writeln!(out, "</{element}>")?;
         }
-        write!(
-            out,
-            "</Piece>\n</{kind}>\n<AppendedData encoding=\"raw\">\n_"
-        )?;
+        write!(out, "</Piece>\n</{kind}>\n<AppendedData encoding=\"raw\">\n_")?;
         for array in self.sections.iter().flat_map(|section| &section.arrays) {
             out.write_all(&array.bytes.to_le_bytes())?;
             (array.values)(out)?;

@@ -72,6 +72,19 @@ pub struct Wall {
     pub gas: GasSide,
 }
 
+impl Wall {
+    /// Whether the wall is the surface of a convex space of gas: no line between two points of the gas
+    /// crosses it.
+    pub fn is_convex_cavity(&self) -> bool {
+        let convex = match &self.shape {
+            Shape::Box { thickness, .. } => thickness.is_none(),
+            Shape::Cylinder { .. } | Shape::Sphere { .. } => true,
+            Shape::Plane { .. } | Shape::Mesh { .. } => false,
+        };
+        convex && self.gas == GasSide::Inside
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GasSide {
     Inside,
@@ -110,15 +123,23 @@ pub struct Hole {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
     /// `axis` 0..3, and whether it is the face at the larger coordinate.
-    Box { axis: usize, positive: bool },
+    Box {
+        axis: usize,
+        positive: bool,
+    },
     Plane,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outline {
-    Rectangle { size: [f64; 2] },
+    Rectangle {
+        size: [f64; 2],
+    },
     /// A polygon of `segments` corners with the circle's area.
-    Circle { diameter: f64, segments: u32 },
+    Circle {
+        diameter: f64,
+        segments: u32,
+    },
 }
 
 #[derive(Debug, Clone, PartialEq)]

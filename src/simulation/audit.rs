@@ -179,7 +179,8 @@ impl Account {
             momentum_to_walls: surfaces.then(|| averages.total_impulse()),
             momentum_end: end.momentum,
             energy_start: self.start.energy,
-            enthalpy_injected: inflow.enthalpy(),
+            // What an orifice still owes is not in yet; it owes nothing once its flow has ended.
+            enthalpy_injected: inflow.enthalpy() - inflow.debt(),
             enthalpy_vented: 0.0,
             energy_end: end.energy,
             lost_collision_fraction: (plan.method != Method::None && events > 0.0).then(|| self.lost as f64 / events),

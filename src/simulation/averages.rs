@@ -132,8 +132,7 @@ impl Averages {
 
     /// The row of the window that ends at `end`, s; starts the next.
     pub fn row(&mut self, end: f64, particles: u64) -> Row {
-        let states: Vec<ZoneState> =
-            (0..self.layout.volumes.len()).map(|zone| self.zone(zone)).collect();
+        let states: Vec<ZoneState> = (0..self.layout.volumes.len()).map(|zone| self.zone(zone)).collect();
         let duration = end - self.start;
         let surfaces = self.layout.surfaces.iter().map(|(patches, area)| self.surface(patches, *area, duration));
         let row = Row {

@@ -31,7 +31,9 @@ pub struct Ladder {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("the gas needs a step of {needed:.3e} s, below the ladder's smallest of {smallest:.3e} s: it is {ratio:.0} times denser or hotter than planned for")]
+#[error(
+    "the gas needs a step of {needed:.3e} s, below the ladder's smallest of {smallest:.3e} s: it is {ratio:.0} times denser or hotter than planned for"
+)]
 pub struct LadderError {
     pub needed: f64,
     pub smallest: f64,

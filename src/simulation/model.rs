@@ -19,7 +19,9 @@ pub enum ModelError {
     #[diagnostic(transparent)]
     Plan(#[from] PlanError),
     #[error("orifice \"{orifice}\": its disc is not in the gas: ({:.4}, {:.4}, {:.4}) m lies in or behind a wall", point[0], point[1], point[2])]
-    #[diagnostic(help("move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"))]
+    #[diagnostic(help(
+        "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
+    ))]
     OrificeInWall { orifice: String, point: [f64; 3] },
 }
 

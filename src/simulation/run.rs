@@ -232,7 +232,11 @@ impl<'a> Simulation<'a> {
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
         }
-        observer.progress(self.read_until, interval.first_step + u64::from(interval.steps), self.account.particle_steps);
+        observer.progress(
+            self.read_until,
+            interval.first_step + u64::from(interval.steps),
+            self.account.particle_steps,
+        );
         Ok(())
     }
 

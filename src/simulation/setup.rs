@@ -23,14 +23,17 @@ pub fn set_up(model: &Model, device: &Device, shuffle: Option<&Shuffle>) -> Resu
     let plan = &model.plan;
     let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
     let (patch, patches) = patches(model);
-    let walls = Walls::new(&triangle_grid, &plan.grid, &patch);
+    let parts = |triangle: usize| {
+        let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
+        !wall.is_convex_cavity()
+    };
+    let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
     let mut particles = initial_particles(model)?;
     if let Some(shuffle) = shuffle {
         shuffle(&mut particles);
     }
     let zones = zones(model);
-    let input =
-        SubdomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), particles: &particles };
+    let input = SubdomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), particles: &particles };
     let subdomain = Subdomain::new(device, &input)?;
     Ok(Setup { subdomain, layout: layout(model, &patches), patches: patches.len() })
 }

@@ -86,7 +86,11 @@ impl Subdomain {
     pub fn inject(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
         self.kernels.reset.dispatch(pass.phase("inject"), 0, [1, 1, 1]);
         if let (Some(kernel), true) = (&self.kernels.inject, step.newborns > 0) {
-            kernel.dispatch(pass.phase("inject"), self.offset(device, step, 0), threads(device, u64::from(step.newborns)));
+            kernel.dispatch(
+                pass.phase("inject"),
+                self.offset(device, step, 0),
+                threads(device, u64::from(step.newborns)),
+            );
         }
     }
 

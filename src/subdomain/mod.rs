@@ -21,9 +21,9 @@ use crate::plan::Plan;
 pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS};
 pub use constants::{Features, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
+pub use encode::StepSlot;
 pub use layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuTriangle, GpuZone};
 pub use scales::Scales;
-pub use encode::StepSlot;
 pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
 pub use walls::Walls;
@@ -181,9 +181,7 @@ impl Subdomain {
         let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
         let mut encoder = device.encoder();
         encoder.copy_buffer_to_buffer(&remembered.particles, 0, &self.particle.particles, 0, bytes);
-        for buffer in
-            [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums]
-        {
+        for buffer in [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums] {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);

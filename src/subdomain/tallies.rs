@@ -68,7 +68,11 @@ impl Tallies {
                 .collect(),
             surfaces: surfaces
                 .chunks_exact(SURFACE_WORDS)
-                .map(|w| SurfaceSum { impulse: [signed(w, 0), signed(w, 2), signed(w, 4)], normal: signed(w, 6), hits: signed(w, 8) })
+                .map(|w| SurfaceSum {
+                    impulse: [signed(w, 0), signed(w, 2), signed(w, 4)],
+                    normal: signed(w, 6),
+                    hits: signed(w, 8),
+                })
                 .collect(),
             blocks: block_words[..blocks * BLOCK_WORDS]
                 .chunks_exact(BLOCK_WORDS)

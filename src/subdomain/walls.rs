@@ -18,6 +18,8 @@ pub struct Walls {
     pub list: Vec<u32>,
     /// Two bits per cell.
     pub class: Vec<u32>,
+    /// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
+    pub parting: Vec<u32>,
     /// m.
     pub tolerance: f64,
 }
@@ -29,8 +31,10 @@ impl Walls {
         TOLERANCE * cells * grid.cell
     }
 
-    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied.
-    pub fn new(triangle_grid: &TriangleGrid, grid: &Grid, patch: &[u32]) -> Walls {
+    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `parts` tells
+    /// of a triangle of the vessel whether it can part two points of the gas: those of the surface of a
+    /// convex cavity cannot.
+    pub fn new(triangle_grid: &TriangleGrid, grid: &Grid, patch: &[u32], parts: impl Fn(usize) -> bool) -> Walls {
         let triangles = triangle_grid
             .triangles
             .iter()
@@ -66,7 +70,35 @@ impl Walls {
             start: triangle_grid.start.clone(),
             list: triangle_grid.list.clone(),
             class,
+            parting: parting(triangle_grid, grid, parts),
             tolerance: Walls::tolerance(grid),
         }
     }
+}
+
+fn parting(triangle_grid: &TriangleGrid, grid: &Grid, parts: impl Fn(usize) -> bool) -> Vec<u32> {
+    let mut bits = vec![0u32; grid.cell_count().div_ceil(32)];
+    let [nx, ny, nz] = grid.cells;
+    for z in 0..nz {
+        for y in 0..ny {
+            for x in 0..nx {
+                let cell = grid.cell_index([x, y, z]);
+                let parted = triangle_grid
+                    .in_cell(cell)
+                    .iter()
+                    .any(|&t| parts(triangle_grid.triangles[t as usize].source as usize));
+                if !parted {
+                    continue;
+                }
+                for around in 0..27 {
+                    let at = [x + around % 3, y + around / 3 % 3, z + around / 9];
+                    if (0..3).all(|axis| at[axis] >= 1 && at[axis] <= grid.cells[axis]) {
+                        let near = grid.cell_index(at.map(|c| c - 1));
+                        bits[near / 32] |= 1 << (near % 32);
+                    }
+                }
+            }
+        }
+    }
+    bits
 }

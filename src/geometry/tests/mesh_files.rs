@@ -9,24 +9,11 @@ type Corners = Vec<[[f32; 3]; 3]>;
 
 /// A ball of radius 0.25 about (x, 0, 0), normals outwards.
 fn ball(x: f64) -> Corners {
-    let outer = Shape::Box {
-        min: [-9.0; 3],
-        max: [9.0; 3],
-        thickness: None,
-        holes: vec![],
-    };
-    let walls = [
-        wall("tank", outer, GasSide::Inside),
-        sphere("ball", [x, 0.0, 0.0], 0.25, 2, GasSide::Outside),
-    ];
+    let outer = Shape::Box { min: [-9.0; 3], max: [9.0; 3], thickness: None, holes: vec![] };
+    let walls = [wall("tank", outer, GasSide::Inside), sphere("ball", [x, 0.0, 0.0], 0.25, 2, GasSide::Outside)];
     let vessel = Vessel::build(&walls).unwrap();
     let corner = |v: u32| vessel.vertices[v as usize].map(|c| c as f32);
-    vessel
-        .triangles
-        .iter()
-        .filter(|t| t.wall == 1)
-        .map(|t| t.vertices.map(corner))
-        .collect()
+    vessel.triangles.iter().filter(|t| t.wall == 1).map(|t| t.vertices.map(corner)).collect()
 }
 
 fn turned(mut corners: Corners) -> Corners {
@@ -40,9 +27,7 @@ fn binary_stl(corners: &Corners, header: &[u8]) -> Vec<u8> {
     bytes[80..].copy_from_slice(&(corners.len() as u32).to_le_bytes());
     for t in corners {
         bytes.extend([0; 12]);
-        t.iter()
-            .flatten()
-            .for_each(|c| bytes.extend(c.to_le_bytes()));
+        t.iter().flatten().for_each(|c| bytes.extend(c.to_le_bytes()));
         bytes.extend([0; 2]);
     }
     bytes
@@ -67,14 +52,7 @@ fn obj(corners: &Corners) -> Vec<u8> {
         for c in t {
             writeln!(text, "v {} {} {}", c[0], c[1], c[2]).unwrap();
         }
-        writeln!(
-            text,
-            "f {}/1/1 {}/1/1 {}/1/1",
-            3 * k + 1,
-            3 * k + 2,
-            3 * k + 3
-        )
-        .unwrap();
+        writeln!(text, "f {}/1/1 {}/1/1 {}/1/1", 3 * k + 1, 3 * k + 2, 3 * k + 3).unwrap();
     }
     text.into_bytes()
 }
@@ -94,14 +72,7 @@ impl Folder {
 }
 
 fn mesh(path: &Path, scale: f64, gas: GasSide) -> Wall {
-    wall(
-        "mesh",
-        Shape::Mesh {
-            path: path.to_path_buf(),
-            scale,
-        },
-        gas,
-    )
+    wall("mesh", Shape::Mesh { path: path.to_path_buf(), scale }, gas)
 }
 
 fn error_of(name: &str, bytes: &[u8]) -> GeometryError {
@@ -140,16 +111,8 @@ fn the_gas_is_on_the_side_that_was_asked_whatever_way_the_file_is_turned() {
         let path = folder.file(name, &binary_stl(&corners, b""));
         let inside = Vessel::build(&[mesh(&path, 1.0, GasSide::Inside)]).unwrap();
         assert!(inside.is_gas([0.0; 3]) && !inside.is_gas([0.3, 0.0, 0.0]));
-        let outer = Shape::Box {
-            min: [-1.0; 3],
-            max: [1.0; 3],
-            thickness: None,
-            holes: vec![],
-        };
-        let solid = [
-            wall("tank", outer, GasSide::Inside),
-            mesh(&path, 1.0, GasSide::Outside),
-        ];
+        let outer = Shape::Box { min: [-1.0; 3], max: [1.0; 3], thickness: None, holes: vec![] };
+        let solid = [wall("tank", outer, GasSide::Inside), mesh(&path, 1.0, GasSide::Outside)];
         let outside = Vessel::build(&solid).unwrap();
         assert!(!outside.is_gas([0.0; 3]) && outside.is_gas([0.3, 0.0, 0.0]));
         assert!((inside.gas_volume() + outside.gas_volume() - 8.0).abs() < 1e-12);
@@ -160,37 +123,18 @@ fn the_gas_is_on_the_side_that_was_asked_whatever_way_the_file_is_turned() {
 fn separate_parts_are_allowed_but_not_inside_out_ones() {
     let folder = Folder::new();
     let two = [ball(0.0), ball(1.0)].concat();
-    let vessel = Vessel::build(&[mesh(
-        &folder.file("two.stl", &binary_stl(&two, b"")),
-        1.0,
-        GasSide::Inside,
-    )])
-    .unwrap();
-    assert!(
-        vessel.is_gas([0.0; 3])
-            && vessel.is_gas([1.0, 0.0, 0.0])
-            && !vessel.is_gas([0.5, 0.0, 0.0])
-    );
+    let vessel = Vessel::build(&[mesh(&folder.file("two.stl", &binary_stl(&two, b"")), 1.0, GasSide::Inside)]).unwrap();
+    assert!(vessel.is_gas([0.0; 3]) && vessel.is_gas([1.0, 0.0, 0.0]) && !vessel.is_gas([0.5, 0.0, 0.0]));
 
-    let smaller: Corners = ball(0.0)
-        .iter()
-        .map(|t| t.map(|c| c.map(|x| x / 2.0)))
-        .collect();
+    let smaller: Corners = ball(0.0).iter().map(|t| t.map(|c| c.map(|x| x / 2.0))).collect();
     // A cavity with a solid core: the core is turned the other way.
     let shell = [ball(0.0), turned(smaller.clone())].concat();
-    let vessel = Vessel::build(&[mesh(
-        &folder.file("shell.stl", &binary_stl(&shell, b"")),
-        1.0,
-        GasSide::Inside,
-    )])
-    .unwrap();
+    let vessel =
+        Vessel::build(&[mesh(&folder.file("shell.stl", &binary_stl(&shell, b"")), 1.0, GasSide::Inside)]).unwrap();
     assert!(!vessel.is_gas([0.0; 3]) && vessel.is_gas([0.2, 0.0, 0.0]));
 
     // Nested with the same orientation (one cavity in another), and one of two balls inside out.
-    for parts in [
-        [ball(0.0), smaller.clone()].concat(),
-        [ball(0.0), turned(smaller_at(smaller, 0.6))].concat(),
-    ] {
+    for parts in [[ball(0.0), smaller.clone()].concat(), [ball(0.0), turned(smaller_at(smaller, 0.6))].concat()] {
         let error = error_of("parts.stl", &binary_stl(&parts, b""));
         assert!(matches!(error, GeometryError::InsideOut { .. }), "{error}");
     }
@@ -205,29 +149,17 @@ fn smaller_at(mut corners: Corners, x: f32) -> Corners {
 fn a_leak_names_its_edges_the_wall_and_the_file() {
     let mut corners = ball(0.0);
     corners.remove(7);
-    for (name, bytes) in [
-        ("leaky.stl", binary_stl(&corners, b"")),
-        ("leaky.obj", obj(&corners)),
-    ] {
+    for (name, bytes) in [("leaky.stl", binary_stl(&corners, b"")), ("leaky.obj", obj(&corners))] {
         let error = error_of(name, &bytes);
-        assert!(
-            matches!(error, GeometryError::OpenEdges { count: 3, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, GeometryError::OpenEdges { count: 3, .. }), "{error}");
         let text = error.to_string();
-        assert!(
-            text.contains("wall `mesh`") && text.contains(name) && text.contains(" to ("),
-            "{text}"
-        );
+        assert!(text.contains("wall `mesh`") && text.contains(name) && text.contains(" to ("), "{text}");
         assert!(miette::Diagnostic::help(&error).is_some());
     }
     // One vertex moved by the least possible: no longer the same vertex.
     let mut corners = ball(0.0);
     corners[0][0][0] = corners[0][0][0].next_up();
-    assert!(matches!(
-        error_of("shifted.stl", &binary_stl(&corners, b"")),
-        GeometryError::OpenEdges { .. }
-    ));
+    assert!(matches!(error_of("shifted.stl", &binary_stl(&corners, b"")), GeometryError::OpenEdges { .. }));
 }
 
 #[test]
@@ -240,22 +172,10 @@ fn every_defect_of_a_mesh_is_its_own_error() {
     let mut not_a_number = ball(0.0);
     not_a_number[3][1][2] = f32::NAN;
     let check = |corners: &Corners| error_of("bad.stl", &binary_stl(corners, b""));
-    assert!(matches!(
-        check(&one_turned),
-        GeometryError::Orientation { count: 3, .. }
-    ));
-    assert!(matches!(
-        check(&doubled),
-        GeometryError::CrowdedEdges { .. }
-    ));
-    assert!(matches!(
-        check(&flat),
-        GeometryError::Degenerate { count: 1, .. }
-    ));
-    assert!(matches!(
-        check(&not_a_number),
-        GeometryError::NotFinite { count: 1, .. }
-    ));
+    assert!(matches!(check(&one_turned), GeometryError::Orientation { count: 3, .. }));
+    assert!(matches!(check(&doubled), GeometryError::CrowdedEdges { .. }));
+    assert!(matches!(check(&flat), GeometryError::Degenerate { count: 1, .. }));
+    assert!(matches!(check(&not_a_number), GeometryError::NotFinite { count: 1, .. }));
     assert!(matches!(check(&vec![]), GeometryError::Empty { .. }));
 }
 
@@ -267,10 +187,7 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
         ("short.stl", b"solid"),
         ("cut.stl", &whole[..whole.len() - 30]),
         ("text.stl", b"solid x\nfacet normal 0 0 z\n"),
-        (
-            "vertex.stl",
-            b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n",
-        ),
+        ("vertex.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n"),
         ("count.stl", &[0xff; 90]),
         ("mesh.ply", b"ply"),
         ("none", b""),
@@ -281,23 +198,11 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
     ];
     for (name, bytes) in cases {
         let error = error_of(name, bytes);
-        assert!(
-            matches!(error, GeometryError::Unreadable { .. }),
-            "{name}: {error}"
-        );
+        assert!(matches!(error, GeometryError::Unreadable { .. }), "{name}: {error}");
     }
-    for (name, bytes) in [
-        ("empty.obj", b"# nothing\n".as_slice()),
-        ("line.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n"),
-    ] {
-        assert!(
-            matches!(error_of(name, bytes), GeometryError::Empty { .. }),
-            "{name}"
-        );
+    for (name, bytes) in [("empty.obj", b"# nothing\n".as_slice()), ("line.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n")] {
+        assert!(matches!(error_of(name, bytes), GeometryError::Empty { .. }), "{name}");
     }
     let missing = build_error(&[mesh(Path::new("no/such/file.stl"), 1.0, GasSide::Inside)]);
-    assert!(
-        missing.to_string().contains("no/such/file.stl"),
-        "{missing}"
-    );
+    assert!(missing.to_string().contains("no/such/file.stl"), "{missing}");
 }

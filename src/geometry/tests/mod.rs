@@ -11,21 +11,12 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 
 pub(super) fn wall(name: &str, shape: Shape, gas: GasSide) -> Wall {
-    Wall {
-        name: name.into(),
-        shape,
-        gas,
-    }
+    Wall { name: name.into(), shape, gas }
 }
 
 /// A box of gas from the origin.
 pub(super) fn tank(size: [f64; 3]) -> Wall {
-    let shape = Shape::Box {
-        min: [0.0; 3],
-        max: size,
-        thickness: None,
-        holes: vec![],
-    };
+    let shape = Shape::Box { min: [0.0; 3], max: size, thickness: None, holes: vec![] };
     wall("tank", shape, GasSide::Inside)
 }
 
@@ -35,43 +26,15 @@ pub(super) fn hollow_box(min: [f64; 3], max: [f64; 3], thickness: f64) -> Wall {
 }
 
 pub(super) fn pierced_box(min: [f64; 3], max: [f64; 3], thickness: f64, holes: Vec<Hole>) -> Wall {
-    wall(
-        "shell",
-        Shape::Box {
-            min,
-            max,
-            thickness: Some(thickness),
-            holes,
-        },
-        GasSide::Both,
-    )
+    wall("shell", Shape::Box { min, max, thickness: Some(thickness), holes }, GasSide::Both)
 }
 
 pub(super) fn hole(name: &str, face: Face, center: [f64; 2], outline: Outline) -> Hole {
-    Hole {
-        name: name.into(),
-        face,
-        center,
-        outline,
-    }
+    Hole { name: name.into(), face, center, outline }
 }
 
-pub(super) fn sphere(
-    name: &str,
-    center: [f64; 3],
-    radius: f64,
-    subdivisions: u32,
-    gas: GasSide,
-) -> Wall {
-    wall(
-        name,
-        Shape::Sphere {
-            center,
-            radius,
-            subdivisions,
-        },
-        gas,
-    )
+pub(super) fn sphere(name: &str, center: [f64; 3], radius: f64, subdivisions: u32, gas: GasSide) -> Wall {
+    wall(name, Shape::Sphere { center, radius, subdivisions }, gas)
 }
 
 pub(super) fn build_error(walls: &[Wall]) -> GeometryError {
@@ -80,23 +43,13 @@ pub(super) fn build_error(walls: &[Wall]) -> GeometryError {
 
 /// The triangles of one wall for the oracle, normals out of what the surface encloses.
 pub(super) fn oracle(vessel: &Vessel, wall: u32) -> TriMesh {
-    let vertices = vessel
-        .vertices
-        .iter()
-        .map(|v| Vector::from_array(*v))
-        .collect();
+    let vertices = vessel.vertices.iter().map(|v| Vector::from_array(*v)).collect();
     let cavity = vessel.walls[wall as usize].cavity;
     let triangles = vessel
         .triangles
         .iter()
         .filter(|t| t.wall == wall)
-        .map(|t| {
-            if cavity {
-                [t.vertices[0], t.vertices[2], t.vertices[1]]
-            } else {
-                t.vertices
-            }
-        })
+        .map(|t| if cavity { [t.vertices[0], t.vertices[2], t.vertices[1]] } else { t.vertices })
         .collect();
     TriMesh::new(vertices, triangles).expect("a mesh")
 }

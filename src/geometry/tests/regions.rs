@@ -8,13 +8,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn chamber(region: Option<Region>) -> Chamber {
-    Chamber {
-        name: "c".into(),
-        region,
-        pressure: 1e5,
-        temperature: 300.0,
-        mixture: Mixture(vec![(0, 1.0)]),
-    }
+    Chamber { name: "c".into(), region, pressure: 1e5, temperature: 300.0, mixture: Mixture(vec![(0, 1.0)]) }
 }
 
 fn vessel() -> Vessel {
@@ -26,30 +20,11 @@ fn a_region_wholly_in_the_gas_has_its_own_volume() {
     let vessel = vessel();
     let axis = DVec3::new(2.0, -1.0, 2.0).normalize().to_array();
     for region in [
-        Region::Box {
-            min: [0.6, 0.1, 0.13],
-            max: [0.97, 0.31, 0.77],
-        },
-        Region::Box {
-            min: [0.3; 3],
-            max: [0.5; 3],
-        },
-        Region::Sphere {
-            center: [0.75; 3],
-            radius: 0.2,
-        },
-        Region::Cylinder {
-            base: [0.6, 0.7, 0.1],
-            axis,
-            radius: 0.07,
-            height: 0.3,
-        },
-        Region::Cylinder {
-            base: [0.6, 0.8, 0.8],
-            axis: [1.0, 0.0, 0.0],
-            radius: 0.1,
-            height: 0.3,
-        },
+        Region::Box { min: [0.6, 0.1, 0.13], max: [0.97, 0.31, 0.77] },
+        Region::Box { min: [0.3; 3], max: [0.5; 3] },
+        Region::Sphere { center: [0.75; 3], radius: 0.2 },
+        Region::Cylinder { base: [0.6, 0.7, 0.1], axis, radius: 0.07, height: 0.3 },
+        Region::Cylinder { base: [0.6, 0.8, 0.8], axis: [1.0, 0.0, 0.0], radius: 0.1, height: 0.3 },
     ] {
         let share = vessel.gas_volume_in(&region) / region_volume(&region);
         assert!((share - 1.0).abs() < 1e-12, "{region:?} {share}");
@@ -63,110 +38,49 @@ fn a_region_cut_by_walls_has_the_part_in_the_gas() {
     let octant = 4.0 / 3.0 * PI * 0.2f64.powi(3) / 8.0;
     let cases = [
         // Much larger than the vessel.
-        (
-            Region::Box {
-                min: [-9.0; 3],
-                max: [9.0; 3],
-            },
-            1.0 - shell,
-        ),
-        (
-            Region::Box {
-                min: [0.2, 0.2, 0.2],
-                max: [0.6, 0.6, 0.4],
-            },
-            0.032 - shell / 2.0,
-        ),
+        (Region::Box { min: [-9.0; 3], max: [9.0; 3] }, 1.0 - shell),
+        (Region::Box { min: [0.2, 0.2, 0.2], max: [0.6, 0.6, 0.4] }, 0.032 - shell / 2.0),
         // An eighth of a ball in a corner.
-        (
-            Region::Sphere {
-                center: [1.0; 3],
-                radius: 0.2,
-            },
-            octant,
-        ),
+        (Region::Sphere { center: [1.0; 3], radius: 0.2 }, octant),
         // A rod through the wall at x = 1, and one through the shell.
+        (Region::Cylinder { base: [0.9, 0.8, 0.8], axis: [1.0, 0.0, 0.0], radius: 0.1, height: 0.4 }, PI * 1e-3),
         (
-            Region::Cylinder {
-                base: [0.9, 0.8, 0.8],
-                axis: [1.0, 0.0, 0.0],
-                radius: 0.1,
-                height: 0.4,
-            },
-            PI * 1e-3,
-        ),
-        (
-            Region::Cylinder {
-                base: [0.4, 0.4, 0.1],
-                axis: [0.0, 0.0, 1.0],
-                radius: 0.05,
-                height: 0.6,
-            },
+            Region::Cylinder { base: [0.4, 0.4, 0.1], axis: [0.0, 0.0, 1.0], radius: 0.05, height: 0.6 },
             PI * 0.0025 * 0.56,
         ),
-        (
-            Region::Sphere {
-                center: [3.0; 3],
-                radius: 1.0,
-            },
-            0.0,
-        ),
+        (Region::Sphere { center: [3.0; 3], radius: 1.0 }, 0.0),
     ];
     for (region, right) in cases {
         let found = vessel.gas_volume_in(&region);
-        assert!(
-            (found - right).abs() <= 1e-4 * right,
-            "{region:?}: {found} {right}"
-        );
+        assert!((found - right).abs() <= 1e-4 * right, "{region:?}: {found} {right}");
     }
 }
 
 #[test]
 fn chambers_share_out_the_gas_and_earlier_ones_come_first() {
     let vessel = vessel();
-    let cavity = Region::Box {
-        min: [0.3; 3],
-        max: [0.5; 3],
-    };
-    let upper = Region::Box {
-        min: [0.0, 0.0, 0.4],
-        max: [1.0; 3],
-    };
-    let volumes = vessel.chamber_volumes(&[
-        chamber(Some(cavity.clone())),
-        chamber(Some(upper.clone())),
-        chamber(None),
-    ]);
+    let cavity = Region::Box { min: [0.3; 3], max: [0.5; 3] };
+    let upper = Region::Box { min: [0.0, 0.0, 0.4], max: [1.0; 3] };
+    let volumes = vessel.chamber_volumes(&[chamber(Some(cavity.clone())), chamber(Some(upper.clone())), chamber(None)]);
     let shell = 0.24f64.powi(3) - 0.2f64.powi(3);
     assert!((volumes[0] - 0.008).abs() < 1e-14);
-    assert!(
-        (volumes[1] - (0.6 - shell / 2.0 - 0.004)).abs() < 6e-5,
-        "{volumes:?}"
-    );
+    assert!((volumes[1] - (0.6 - shell / 2.0 - 0.004)).abs() < 6e-5, "{volumes:?}");
     assert!((volumes.iter().sum::<f64>() - vessel.gas_volume()).abs() < 1e-14);
     // In the other order the upper half of the cavity is the other chamber's.
     let turned = vessel.chamber_volumes(&[chamber(Some(upper)), chamber(Some(cavity))]);
-    assert!(
-        (turned[1] - 0.004).abs() < 1e-6 && (turned[0] - volumes[1] - 0.004).abs() < 1e-4,
-        "{turned:?}"
-    );
+    assert!((turned[1] - 0.004).abs() < 1e-6 && (turned[0] - volumes[1] - 0.004).abs() < 1e-4, "{turned:?}");
 }
 
 fn region() -> impl Strategy<Value = Region> {
     let place = || prop::array::uniform3(-1.0..1.0f64);
     prop_oneof![
-        (place(), prop::array::uniform3(0.1..1.0f64)).prop_map(|(min, size)| Region::Box {
-            min,
-            max: std::array::from_fn(|k| min[k] + size[k])
-        }),
+        (place(), prop::array::uniform3(0.1..1.0f64))
+            .prop_map(|(min, size)| Region::Box { min, max: std::array::from_fn(|k| min[k] + size[k]) }),
         (place(), 0.1..1.0f64).prop_map(|(center, radius)| Region::Sphere { center, radius }),
         (place(), place(), 0.1..1.0f64, 0.1..1.0f64).prop_map(|(base, axis, radius, height)| {
             Region::Cylinder {
                 base,
-                axis: DVec3::from(axis)
-                    .try_normalize()
-                    .unwrap_or(DVec3::X)
-                    .to_array(),
+                axis: DVec3::from(axis).try_normalize().unwrap_or(DVec3::X).to_array(),
                 radius,
                 height,
             }

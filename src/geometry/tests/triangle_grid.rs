@@ -16,15 +16,7 @@ fn scene(turn: [f64; 3]) -> Vessel {
         u: axis.any_orthonormal_vector().to_array(),
         size: [0.5, 0.3],
         thickness: 0.03,
-        holes: vec![hole(
-            "h",
-            Face::Plane,
-            [0.1, 0.0],
-            Outline::Circle {
-                diameter: 0.1,
-                segments: 12,
-            },
-        )],
+        holes: vec![hole("h", Face::Plane, [0.1, 0.0], Outline::Circle { diameter: 0.1, segments: 12 })],
     };
     Vessel::build(&[tank([1.0, 1.1, 0.9]), wall("plate", plate, GasSide::Both)]).unwrap()
 }
@@ -100,25 +92,16 @@ fn clear_cells_are_those_with_no_triangle_in_27() {
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.041).unwrap();
     let built = TriangleGrid::build(&vessel, &grid, 0.002).unwrap();
     let [nx, ny, nz] = grid.cells;
-    for (x, y, z) in
-        (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))))
-    {
+    for (x, y, z) in (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z)))) {
         let class = built.class[grid.cell_index([x, y, z])];
-        let border = [(x, nx), (y, ny), (z, nz)]
-            .iter()
-            .any(|&(i, n)| i == 0 || i == n - 1);
+        let border = [(x, nx), (y, ny), (z, nz)].iter().any(|&(i, n)| i == 0 || i == n - 1);
         if border {
             assert!(matches!(class, CellClass::Solid | CellClass::Cut));
             continue;
         }
-        let near = |dx: u32, dy: u32, dz: u32| {
-            built.class[grid.cell_index([x + dx - 1, y + dy - 1, z + dz - 1])]
-        };
+        let near = |dx: u32, dy: u32, dz: u32| built.class[grid.cell_index([x + dx - 1, y + dy - 1, z + dz - 1])];
         let lonely = (0..27).all(|k| near(k % 3, k / 3 % 3, k / 9) != CellClass::Cut);
-        assert_eq!(
-            class == CellClass::Clear,
-            lonely && class != CellClass::Solid
-        );
+        assert_eq!(class == CellClass::Clear, lonely && class != CellClass::Solid);
     }
 }
 
@@ -136,10 +119,7 @@ fn fixed_triangles_keep_ids_and_normals() {
         // A quantum (6e-10 m) over the height of the flattest triangle.
         assert!(error < 1e-5, "{error} {t:?}");
         for (corner, v) in fixed.corners.iter().zip(t.vertices) {
-            assert_eq!(
-                corner.map(|q| q as u32),
-                grid.to_fixed(vessel.vertices[v as usize]).unwrap()
-            );
+            assert_eq!(corner.map(|q| q as u32), grid.to_fixed(vessel.vertices[v as usize]).unwrap());
         }
     }
 }
@@ -149,17 +129,11 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
     let vessel = scene([0.0, 0.0, 1.0]);
     let grid = Grid::around([0.0; 3], [0.5; 3], 0.1).unwrap();
     let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
-    assert!(
-        matches!(&error, GeometryError::OutsideGrid { wall, .. } if wall == "wall `tank`"),
-        "{error}"
-    );
+    assert!(matches!(&error, GeometryError::OutsideGrid { wall, .. } if wall == "wall `tank`"), "{error}");
 
     let speck = sphere("speck", [0.5; 3], 1e-10, 0, GasSide::Outside);
     let vessel = Vessel::build(&[tank([1.0; 3]), speck]).unwrap();
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
     let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
-    assert!(
-        matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"),
-        "{error}"
-    );
+    assert!(matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"), "{error}");
 }

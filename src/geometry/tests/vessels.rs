@@ -8,21 +8,12 @@ use parry3d_f64::shape::Shape as _;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-const UP: Face = Face::Box {
-    axis: 2,
-    positive: true,
-};
-const LEFT: Face = Face::Box {
-    axis: 1,
-    positive: false,
-};
+const UP: Face = Face::Box { axis: 2, positive: true };
+const LEFT: Face = Face::Box { axis: 1, positive: false };
 
 fn all_shapes() -> Vec<Wall> {
     let square = Outline::Rectangle { size: [0.05, 0.04] };
-    let round = Outline::Circle {
-        diameter: 0.06,
-        segments: 24,
-    };
+    let round = Outline::Circle { diameter: 0.06, segments: 24 };
     let holes = vec![
         hole("a", UP, [0.4, 0.3], square),
         hole("b", UP, [0.5, 0.3], round),
@@ -36,18 +27,10 @@ fn all_shapes() -> Vec<Wall> {
         u: u.to_array(),
         size: [0.3, 0.2],
         thickness: 0.02,
-        holes: vec![
-            hole("d", Face::Plane, [0.05, -0.02], round),
-            hole("e", Face::Plane, [-0.06, 0.0], square),
-        ],
+        holes: vec![hole("d", Face::Plane, [0.05, -0.02], round), hole("e", Face::Plane, [-0.06, 0.0], square)],
     };
-    let cylinder = Shape::Cylinder {
-        base: [1.3, 0.3, 0.2],
-        axis: normal.to_array(),
-        radius: 0.1,
-        height: 0.2,
-        segments: 17,
-    };
+    let cylinder =
+        Shape::Cylinder { base: [1.3, 0.3, 0.2], axis: normal.to_array(), radius: 0.1, height: 0.2, segments: 17 };
     vec![
         tank([2.0, 1.0, 1.0]),
         pierced_box([0.3, 0.2, 0.3], [0.6, 0.4, 0.5], 0.01, holes),
@@ -74,27 +57,15 @@ fn every_primitive_is_closed_with_the_volume_of_its_formula() {
     let vessel = Vessel::build(&all_shapes()).unwrap();
     let vertices: Vec<DVec3> = vessel.vertices.iter().map(|v| DVec3::from(*v)).collect();
     for (k, right) in right_volumes().into_iter().enumerate() {
-        let triangles: Vec<[u32; 3]> = vessel
-            .triangles
-            .iter()
-            .filter(|t| t.wall == k as u32)
-            .map(|t| t.vertices)
-            .collect();
+        let triangles: Vec<[u32; 3]> =
+            vessel.triangles.iter().filter(|t| t.wall == k as u32).map(|t| t.vertices).collect();
         check_closed("w", &vertices, &triangles).unwrap();
         // The polyhedron inscribed in a sphere has 1 - 1.6 % at 3 subdivisions.
         let tolerance = if k == 4 { 0.02 } else { 1e-12 };
         let found = vessel.walls[k].volume;
-        assert!(
-            (found / right - 1.0).abs() < tolerance,
-            "{}: {found} {right}",
-            vessel.walls[k].name
-        );
+        assert!((found / right - 1.0).abs() < tolerance, "{}: {found} {right}", vessel.walls[k].name);
         let parry = oracle(&vessel, k as u32).mass_properties(1.0).mass();
-        assert!(
-            (found / parry - 1.0).abs() < 1e-9,
-            "{}: {found} {parry}",
-            vessel.walls[k].name
-        );
+        assert!((found / parry - 1.0).abs() < 1e-9, "{}: {found} {parry}", vessel.walls[k].name);
         assert!(check_closed("w", &vertices, &triangles[1..]).is_err());
     }
     assert!(!vessel.overlaps());
@@ -104,10 +75,7 @@ fn every_primitive_is_closed_with_the_volume_of_its_formula() {
 
 #[test]
 fn normals_point_into_the_gas() {
-    for vessel in [
-        Vessel::build(&all_shapes()).unwrap(),
-        Vessel::build(&[tank([1.0, 2.0, 3.0])]).unwrap(),
-    ] {
+    for vessel in [Vessel::build(&all_shapes()).unwrap(), Vessel::build(&[tank([1.0, 2.0, 3.0])]).unwrap()] {
         for t in &vessel.triangles {
             let [a, b, c] = t.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
             let step = 1e-6 * (b - a).cross(c - a).normalize();
@@ -122,10 +90,7 @@ fn normals_point_into_the_gas() {
 fn faces_are_those_of_the_box_and_of_the_cavity() {
     let vessel = Vessel::build(&all_shapes()).unwrap();
     let area = |wall: u32, face: Option<Face>| -> f64 {
-        let chosen = vessel
-            .triangles
-            .iter()
-            .filter(|t| t.wall == wall && t.face == face);
+        let chosen = vessel.triangles.iter().filter(|t| t.wall == wall && t.face == face);
         chosen
             .map(|t| {
                 let [a, b, c] = t.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
@@ -143,31 +108,16 @@ fn faces_are_those_of_the_box_and_of_the_cavity() {
 fn holes_are_found_where_they_were_cut() {
     let vessel = Vessel::build(&all_shapes()).unwrap();
     assert_eq!(
-        vessel
-            .holes
-            .iter()
-            .map(|h| (h.name.as_str(), h.wall))
-            .collect::<Vec<_>>(),
+        vessel.holes.iter().map(|h| (h.name.as_str(), h.wall)).collect::<Vec<_>>(),
         [("c", 1), ("a", 1), ("b", 1), ("d", 2), ("e", 2)]
     );
     let [c, a, b] = [0, 1, 2].map(|k| &vessel.holes[k]);
-    assert!(
-        DVec3::from(a.center).distance(DVec3::new(0.4, 0.3, 0.505)) < 1e-15
-            && a.normal == [0.0, 0.0, 1.0]
-    );
+    assert!(DVec3::from(a.center).distance(DVec3::new(0.4, 0.3, 0.505)) < 1e-15 && a.normal == [0.0, 0.0, 1.0]);
     assert!(DVec3::from(c.center).distance(DVec3::new(0.45, 0.195, 0.42)) < 1e-15);
     assert_eq!(DVec3::from(c.normal), -DVec3::Y);
-    assert!(
-        (a.area - 0.002).abs() < 1e-15
-            && (a.perimeter - 0.18).abs() < 1e-15
-            && (a.thickness - 0.01).abs() < 1e-15
-    );
+    assert!((a.area - 0.002).abs() < 1e-15 && (a.perimeter - 0.18).abs() < 1e-15 && (a.thickness - 0.01).abs() < 1e-15);
     // The circle's area, on a polygon with a longer rim.
-    assert!(
-        (b.area - PI * 9e-4).abs() < 1e-15
-            && b.perimeter > TAU * 0.03
-            && b.perimeter < 1.01 * TAU * 0.03
-    );
+    assert!((b.area - PI * 9e-4).abs() < 1e-15 && b.perimeter > TAU * 0.03 && b.perimeter < 1.01 * TAU * 0.03);
     for h in &vessel.holes {
         // Gas all along the axis of the hole, and solid beside it.
         for s in [-0.49, 0.0, 0.49] {
@@ -187,24 +137,13 @@ fn a_plate_let_into_the_walls_divides_the_volume() {
         u: [0.0, 1.0, 0.0],
         size: [size, size],
         thickness: 0.1,
-        holes: vec![hole(
-            "h",
-            Face::Plane,
-            [0.1, 0.2],
-            Outline::Rectangle { size: [0.2, 0.1] },
-        )],
+        holes: vec![hole("h", Face::Plane, [0.1, 0.2], Outline::Rectangle { size: [0.2, 0.1] })],
     };
     let right = 1.0 - 0.1 + 0.1 * 0.2 * 0.1;
-    for (size, overlaps, tolerance) in [(1.0, false, 1e-12), (1.06, true, 1e-5), (1.5, true, 2e-4)]
-    {
-        let vessel =
-            Vessel::build(&[tank([1.0; 3]), wall("plate", plane(size), GasSide::Both)]).unwrap();
+    for (size, overlaps, tolerance) in [(1.0, false, 1e-12), (1.06, true, 1e-5), (1.5, true, 2e-4)] {
+        let vessel = Vessel::build(&[tank([1.0; 3]), wall("plate", plane(size), GasSide::Both)]).unwrap();
         assert_eq!(vessel.overlaps(), overlaps, "{size}");
-        assert!(
-            (vessel.gas_volume() - right).abs() < tolerance,
-            "{size}: {}",
-            vessel.gas_volume() - right
-        );
+        assert!((vessel.gas_volume() - right).abs() < tolerance, "{size}: {}", vessel.gas_volume() - right);
         assert_eq!(vessel.gas_intervals(0.1, 0.1), [(0.0, 0.45), (0.55, 1.0)]);
         assert_eq!(vessel.gas_intervals(0.6, 0.7), [(0.0, 1.0)]);
     }
@@ -218,11 +157,7 @@ fn overlapping_spheres_leave_the_volume_of_their_union() {
     let lens = 2.0 * PI * 0.1f64.powi(2) * (3.0 * 0.2 - 0.1) / 3.0;
     let right = 1.0 - (2.0 * 4.0 / 3.0 * PI * 0.2f64.powi(3) - lens);
     assert!(vessel.overlaps());
-    assert!(
-        (vessel.gas_volume() - right).abs() < 1e-4,
-        "{}",
-        vessel.gas_volume() - right
-    );
+    assert!((vessel.gas_volume() - right).abs() < 1e-4, "{}", vessel.gas_volume() - right);
     // Without the lens it would be off by 1e-2.
     assert!(lens > 1e-2);
 }
@@ -232,76 +167,27 @@ fn malformed_walls_are_refused_by_name() {
     let ball = |gas| sphere("ball", [0.5; 3], 0.2, 1, gas);
     let shell = |center: [f64; 2], size: f64| {
         let holes = vec![
-            hole(
-                "first",
-                UP,
-                [0.4, 0.4],
-                Outline::Circle {
-                    diameter: 0.1,
-                    segments: 8,
-                },
-            ),
-            hole(
-                "vent",
-                UP,
-                center,
-                Outline::Rectangle { size: [size, size] },
-            ),
+            hole("first", UP, [0.4, 0.4], Outline::Circle { diameter: 0.1, segments: 8 }),
+            hole("vent", UP, center, Outline::Rectangle { size: [size, size] }),
         ];
         build_error(&[tank([1.0; 3]), pierced_box([0.3; 3], [0.7; 3], 0.05, holes)])
     };
-    assert_eq!(
-        build_error(&[ball(GasSide::Outside)]),
-        GeometryError::Unbounded
-    );
-    assert_eq!(
-        build_error(&[
-            tank([0.1; 3]),
-            sphere("b", [5.0; 3], 1.0, 1, GasSide::Inside)
-        ]),
-        GeometryError::NoGas
-    );
-    assert!(matches!(
-        build_error(&[ball(GasSide::Both)]),
-        GeometryError::Side { found: "both", .. }
-    ));
+    assert_eq!(build_error(&[ball(GasSide::Outside)]), GeometryError::Unbounded);
+    assert_eq!(build_error(&[tank([0.1; 3]), sphere("b", [5.0; 3], 1.0, 1, GasSide::Inside)]), GeometryError::NoGas);
+    assert!(matches!(build_error(&[ball(GasSide::Both)]), GeometryError::Side { found: "both", .. }));
     let message = shell([0.7, 0.5], 0.1).to_string();
-    assert_eq!(
-        message,
-        "wall `shell`: hole `vent` does not lie within its face"
-    );
-    assert_eq!(
-        shell([0.45, 0.4], 0.04).to_string(),
-        "wall `shell`: hole `vent` overlaps hole `first`"
-    );
-    assert!(matches!(
-        shell([0.6, 0.6], -0.1),
-        GeometryError::Hole { .. }
-    ));
-    assert!(matches!(
-        build_error(&[tank([1.0, 0.0, 1.0])]),
-        GeometryError::Shape { .. }
-    ));
-    assert!(matches!(
-        build_error(&[tank([1.0, f64::NAN, 1.0])]),
-        GeometryError::Shape { .. }
-    ));
+    assert_eq!(message, "wall `shell`: hole `vent` does not lie within its face");
+    assert_eq!(shell([0.45, 0.4], 0.04).to_string(), "wall `shell`: hole `vent` overlaps hole `first`");
+    assert!(matches!(shell([0.6, 0.6], -0.1), GeometryError::Hole { .. }));
+    assert!(matches!(build_error(&[tank([1.0, 0.0, 1.0])]), GeometryError::Shape { .. }));
+    assert!(matches!(build_error(&[tank([1.0, f64::NAN, 1.0])]), GeometryError::Shape { .. }));
     let plain = Shape::Box {
         min: [0.0; 3],
         max: [1.0; 3],
         thickness: None,
-        holes: vec![hole(
-            "h",
-            UP,
-            [0.5; 2],
-            Outline::Rectangle { size: [0.1; 2] },
-        )],
+        holes: vec![hole("h", UP, [0.5; 2], Outline::Rectangle { size: [0.1; 2] })],
     };
-    assert!(
-        build_error(&[wall("w", plain, GasSide::Inside)])
-            .to_string()
-            .contains("needs a wall with a thickness")
-    );
+    assert!(build_error(&[wall("w", plain, GasSide::Inside)]).to_string().contains("needs a wall with a thickness"));
 }
 
 proptest! {
