@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use crate::geometry::TriangleGrid;
 use crate::output::grouped;
 use crate::scene::load;
+use crate::simulation::Model;
+use crate::subdomain::Walls;
 
 use super::CliError;
 use super::arguments::CheckArguments;
@@ -27,7 +30,10 @@ pub fn check(raw: CheckArguments) -> Result<(), CliError> {
 }
 
 fn verdict(path: &Path) -> Result<String, CliError> {
-    let plan = model_of(path, load(path)?)?.plan;
+    let Model { vessel, plan, .. } = model_of(path, load(path)?)?;
+    // The last that a run asks of the walls: that they survive the rounding to the grid of its positions.
+    TriangleGrid::build(&vessel, &plan.grid, Walls::tolerance(&plan.grid))
+        .map_err(|error| CliError::model(path, error.into()))?;
     let mut line = format!(
         "ok {}: {} particles ({} injected), {} cells, {} steps",
         path.display(),

@@ -6,6 +6,9 @@ use super::CliError;
 use super::arguments::{Arguments, ManArguments};
 use super::terminal::say;
 
+/// In the foot of every page.
+const SOURCE: &str = concat!("corpuscle ", env!("CARGO_PKG_VERSION"));
+
 pub fn man(raw: ManArguments) -> Result<(), CliError> {
     let mut command = Arguments::command();
     // Gives the verbs their full names and the options that all share.
@@ -21,6 +24,6 @@ pub fn man(raw: ManArguments) -> Result<(), CliError> {
         },
     };
     let mut text = Vec::new();
-    clap_mangen::Man::new(page).render(&mut text).map_err(CliError::StandardOutput)?;
+    clap_mangen::Man::new(page).source(SOURCE).render(&mut text).map_err(CliError::StandardOutput)?;
     say(&String::from_utf8_lossy(&text))
 }

@@ -12,11 +12,9 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use crate::gpu::{AdapterDescription, Device};
-use crate::output::{
-    AdapterRecord, AuditLimits, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, grouped,
-};
+use crate::output::{AdapterRecord, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, grouped};
 use crate::scene::to_toml;
-use crate::simulation::{Model, Options, Outcome, Simulation};
+use crate::simulation::{Model, Options, Outcome, Simulation, audit_limits};
 
 use super::CliError;
 use super::arguments::RunArguments;
@@ -53,7 +51,7 @@ pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
     drawn?;
     recorder.finish(&outcome)?;
 
-    let limits = AuditLimits::default();
+    let limits = audit_limits(&model.plan);
     for warning in outcome.audit.warnings(&limits) {
         tracing::warn!("{warning}");
     }

@@ -2,7 +2,7 @@
 
 use crate::gas::Inflow;
 use crate::geometry::Vessel;
-use crate::output::{Audit, PhaseTable};
+use crate::output::{Audit, AuditLimits, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
@@ -189,6 +189,13 @@ impl Account {
             overflows: Vec::new(),
         }
     }
+}
+
+/// What an audit of a run of this plan lets pass. Walls let a particle be behind them by their tolerance, which
+/// grows with the vessel (and the device rounds what it found up to a quantum).
+pub fn audit_limits(plan: &Plan) -> AuditLimits {
+    let wall_overshoot = (1.0 + 1e-6) * Walls::tolerance(&plan.grid) + plan.grid.quantum();
+    AuditLimits { wall_overshoot, ..AuditLimits::default() }
 }
 
 /// Particles that are in no gas, nor within the tolerance of a wall: each has passed a closed mesh.

@@ -15,6 +15,7 @@ mod run;
 mod setup;
 mod step;
 
+pub use audit::audit_limits;
 pub use averages::{Layout, Row, SurfaceState, ZoneState};
 pub use clock::Clock;
 pub use ladder::{Demand, Ladder, LadderError};

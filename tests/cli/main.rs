@@ -1,0 +1,286 @@
+//! The command line as its users see it: texts, exit codes, files.
+//!
+//! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
+//! whatever adapter the machine has.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use tempfile::TempDir;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The program in the root of the package, without colours.
+fn corpuscle(arguments: &[&str]) -> Command {
+    let mut command = assert_cmd::cargo::cargo_bin_cmd!("corpuscle");
+    // Silences a warning of Mesa's device selection layer.
+    command.current_dir(ROOT).env("NODEVICE_SELECT", "1").env("NO_COLOR", "1").args(arguments);
+    command
+}
+
+/// Exit code, standard output and standard error.
+fn outcome(arguments: &[&str]) -> (i32, String, String) {
+    let output = corpuscle(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+fn printed(arguments: &[&str]) -> String {
+    let (code, out, err) = outcome(arguments);
+    assert_eq!(code, 0, "{arguments:?}: {err}");
+    out
+}
+
+/// A short run of the smallest scene into `folder`.
+fn short_run(folder: &Path, more: &[&str]) -> (i32, String, String) {
+    let folder = folder.to_str().unwrap();
+    let basic = ["run", "scenes/box.toml", "--particles", "500", "--steps", "64", "--out", folder];
+    outcome(&[&basic, more].concat())
+}
+
+fn finished_run(folder: &Path, more: &[&str]) -> String {
+    let (code, out, err) = short_run(folder, more);
+    assert_eq!(code, 0, "{err}");
+    out
+}
+
+/// Of all files below a folder, sorted.
+fn names_below(folder: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                names.push(path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned());
+            }
+        }
+    }
+    names.sort();
+    names
+}
+
+/// The fault of this file, written beside the results.
+fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
+    let text = fs::read_to_string(Path::new(ROOT).join("scenes/box.toml")).unwrap();
+    let changed = text.replace(from, to);
+    assert_ne!(changed, text);
+    let path = folder.path().join("changed.toml");
+    fs::write(&path, changed).unwrap();
+    path
+}
+
+const VERBS: [&str; 7] = ["run", "plan", "check", "schema", "adapters", "completions", "man"];
+
+#[test]
+fn every_verb_has_its_help() {
+    insta::assert_snapshot!("help", printed(&["--help"]));
+    for verb in VERBS {
+        insta::assert_snapshot!(format!("help_{verb}"), printed(&[verb, "--help"]));
+    }
+}
+
+#[test]
+fn every_scene_of_the_package_is_sound() {
+    let scenes = ["check", "scenes/box.toml", "scenes/effusion.toml", "scenes/tank.toml"];
+    insta::assert_snapshot!("check_scenes", printed(&scenes));
+}
+
+#[test]
+fn the_plan_of_the_tank_says_why() {
+    insta::assert_snapshot!("plan_tank", printed(&["plan", "scenes/tank.toml"]));
+}
+
+#[test]
+fn overrides_reach_the_plan() {
+    let plan = |more: &[&str]| -> toml::Table {
+        printed(&[&["plan", "scenes/effusion.toml", "--toml"], more].concat()).parse().unwrap()
+    };
+    let changed = plan(&["--particles", "700", "--seed", "5"]);
+    assert_eq!((changed["particles"].as_integer(), changed["seed"].as_integer()), (Some(700), Some(5)));
+    // Without collisions the plan has no diameter, and is TOML still.
+    assert_eq!(changed["diameter"].as_float(), Some(0.0));
+    assert_ne!(plan(&[])["particles"], changed["particles"]);
+}
+
+#[test]
+fn the_schema_completions_and_man_pages_come_out() {
+    let schema: serde_json::Value = serde_json::from_str(&printed(&["schema"])).unwrap();
+    assert!(schema["properties"]["chamber"].is_object());
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let text = printed(&["completions", shell]);
+        assert!(VERBS.iter().all(|verb| text.contains(verb)), "{shell}");
+    }
+    let page = printed(&["man"]);
+    assert!(page.contains(".TH corpuscle 1") && VERBS.iter().all(|verb| page.contains(verb)), "{page}");
+    assert!(printed(&["man", "run"]).contains(r"\-\-particles"));
+    let (code, _, err) = outcome(&["man", "walk"]);
+    assert!(code == 2 && err.contains("`walk`") && err.contains("adapters"), "{err}");
+}
+
+#[test]
+fn the_adapters_are_listed_with_their_limits() {
+    let text = printed(&["adapters"]);
+    let facts = ["0: ", "type", "backend", "driver", "PCI id", "largest binding", "largest buffer"];
+    let more = ["workgroups per dimension", "timestamps", "particles by the binding"];
+    assert!(facts.iter().chain(&more).all(|fact| text.contains(fact)), "{text}");
+}
+
+#[test]
+fn bad_input_is_2_and_is_shown_in_its_place() {
+    let (code, out, err) = outcome(&["run", "tests/robustness/bad/unknown_key_gas.toml"]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    assert!(err.contains("unknown_key_gas.toml:13") && err.contains("did you mean"), "{err}");
+    assert!(!err.contains('\u{1b}'), "no colours where there is no terminal: {err}");
+    assert_eq!(outcome(&["plan", "scenes/no_such.toml"]).0, 2);
+    assert_eq!(outcome(&["run", "scenes/box.toml", "--particles", "0"]).0, 2);
+    assert_eq!(outcome(&["run"]).0, 2);
+    assert_eq!(outcome(&[]).0, 2);
+    assert_eq!(outcome(&["walk"]).0, 2);
+}
+
+/// Walls and plan: their message names the scene and keeps its help.
+#[test]
+fn walls_and_plans_that_are_not_sound_are_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_with(
+        &folder,
+        "# No region: all the gas there is.",
+        "region = { sphere = { center = [9.0, 9.0, 9.0], radius = 1.0 } }",
+    );
+    let (code, _, err) = outcome(&["check", path.to_str().unwrap()]);
+    assert!(code == 2 && err.contains("changed.toml") && err.contains("help:"), "{err}");
+}
+
+#[test]
+fn a_check_goes_on_after_a_bad_scene() {
+    let (code, out, err) = outcome(&["check", "tests/robustness/bad/empty.toml", "scenes/box.toml"]);
+    assert_eq!(code, 2);
+    assert!(out.starts_with("ok scenes/box.toml: 8,000 particles"), "{out}");
+    assert!(err.contains("empty.toml") && err.contains("1 of 2 scenes"), "{err}");
+}
+
+#[test]
+fn an_unknown_device_is_3_and_touches_no_earlier_results() {
+    let folder = tempfile::tempdir().unwrap();
+    finished_run(folder.path(), &[]);
+    let before = names_below(folder.path());
+    let (code, _, err) = short_run(folder.path(), &["--gpu", "no such"]);
+    assert!(code == 3 && err.contains("no adapter `no such`"), "{err}");
+    assert_eq!(names_below(folder.path()), before);
+}
+
+/// A step so long that the whole ladder does not reach down to what the gas needs.
+#[test]
+fn a_run_that_cannot_be_trusted_is_4() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_with(&folder, "particles = 8000", "particles = 2000\ntime_step = 1.0");
+    let text = fs::read_to_string(&scene).unwrap().replace("end_time = 0.0044", "end_time = 1.0");
+    fs::write(&scene, text).unwrap();
+    let out = folder.path().join("out");
+    let (code, _, err) = outcome(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(code == 4 && err.contains("the gas needs a step of"), "{code} {err}");
+    assert!(out.join("pressure.svg").exists());
+}
+
+const FILES: [&str; 10] = [
+    ".corpuscle-run",
+    "environment.json",
+    "history.csv",
+    "plan.toml",
+    "pressure.svg",
+    "scene.toml",
+    "snapshots/particles.pvd",
+    "snapshots/particles_000000.vtu",
+    "snapshots/particles_000001.vtu",
+    "snapshots/walls.vtp",
+];
+
+const HEADER: &str = "time_s,window_end_s,step_s,particles,\
+    box:pressure_pa,box:reference_pressure_pa,box:temperature_k,box:reference_temperature_k,\
+    box:density_kg_m3,box:velocity_x_m_s,box:velocity_y_m_s,box:velocity_z_m_s,box:particles:nitrogen,\
+    walls:pressure_pa,walls:impulse_x_kg_m_s,walls:impulse_y_kg_m_s,walls:impulse_z_kg_m_s,walls:hits";
+
+#[test]
+fn a_run_leaves_exactly_its_files_and_its_path_as_the_last_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("deep/results");
+    let text = finished_run(&out, &["--seed", "3"]);
+    assert_eq!(text.lines().last(), out.to_str());
+    for part in ["adapter 0: ", "Audit ", "particles", "Phase ", "advect", "64 steps", "wall time "] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert_eq!(names_below(&out), FILES);
+
+    let history = fs::read_to_string(out.join("history.csv")).unwrap();
+    assert_eq!(history.lines().next(), Some(HEADER));
+    let rows: Vec<Vec<f64>> =
+        history.lines().skip(1).map(|line| line.split(',').map(|value| value.parse().unwrap()).collect()).collect();
+    assert!(!rows.is_empty());
+    // Gas at rest: the reference stays as it was, and so does the number of particles.
+    assert!(
+        rows.iter().all(|row| row[3] == 500.0 && (row[5] - 101_325.0).abs() < 1e-3 && row[7] == 300.0),
+        "{history}"
+    );
+
+    let environment: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("environment.json")).unwrap()).unwrap();
+    assert!(environment["adapter"]["limits"]["max_buffer_size"].as_u64().unwrap() > 0);
+    let chart = fs::read_to_string(out.join("pressure.svg")).unwrap();
+    assert!(chart.contains("largest difference") && chart.contains("of the peak"), "{chart}");
+
+    // The scene of the results is the one that ran, and gives the plan of the results.
+    let scene = out.join("scene.toml");
+    let recorded = fs::read_to_string(&scene).unwrap();
+    assert!(recorded.contains("seed = 3\n") && recorded.contains("particles = 500\n"), "{recorded}");
+    let plan = printed(&["plan", "--toml", scene.to_str().unwrap()]);
+    assert_eq!(plan, fs::read_to_string(out.join("plan.toml")).unwrap());
+}
+
+#[test]
+fn results_are_replaced_and_what_is_no_result_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    finished_run(folder.path(), &["--quiet"]);
+    let text = finished_run(folder.path(), &["--quiet"]);
+    assert_eq!(text.lines().collect::<Vec<_>>(), [folder.path().to_str().unwrap()]);
+    assert_eq!(names_below(folder.path()), FILES);
+
+    let notes = folder.path().join("notes.txt");
+    fs::write(&notes, "mine").unwrap();
+    let (code, _, err) = short_run(folder.path(), &[]);
+    assert!(code == 2 && err.contains("notes.txt") && err.contains("--force"), "{err}");
+    finished_run(folder.path(), &["--force"]);
+    assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
+}
+
+/// A snapshot that cannot be written stops the run, and the message names it.
+#[test]
+fn results_that_cannot_be_written_are_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let blocked = folder.path().join("snapshots/particles_000000.vtu");
+    fs::create_dir_all(&blocked).unwrap();
+    let (code, _, err) = short_run(folder.path(), &["--force"]);
+    // A message is broken into lines where it likes.
+    let flat = err.replace(['\n', '│', ' '], "");
+    assert!(code == 2 && flat.contains("particles_000000.vtu"), "{err}");
+}
+
+#[test]
+fn equal_runs_leave_equal_bytes_however_they_are_batched() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        finished_run(&out, more);
+        ["history.csv", "snapshots/particles_000001.vtu", "plan.toml", "scene.toml", "pressure.svg"]
+            .map(|file| fs::read(out.join(file)).unwrap())
+    };
+    let first = run("first", &[]);
+    assert!(first == run("again", &[]), "a second run differs");
+    assert!(first == run("batched", &["--batch", "7"]), "a run in batches of 7 differs");
+    // The comparison can fail: another seed is another gas.
+    let other = run("other", &["--seed", "2"]);
+    assert!(first[0] != other[0] && first[1] != other[1] && first[2] != other[2]);
+}
