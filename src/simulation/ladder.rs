@@ -13,8 +13,8 @@ const TAIL: f64 = 0.02;
 const FAST_TAIL: f64 = 1e-3;
 /// A longer step is taken only with this much room, so that the level does not flutter.
 const ROOM: f64 = 0.9;
-/// Blocks with less gas volume than this share of a full block take the density of the gas they have only
-/// if they hold it: their volume is too uncertain.
+/// The volume of a block with less gas volume than this share of a full one is too uncertain for a density of
+/// its own: all such blocks count as one, so that the gas of a vessel thinner than a block counts too.
 const LEAST_VOLUME: f64 = 0.05;
 
 pub struct Ladder {
@@ -76,19 +76,30 @@ impl Ladder {
         self.level
     }
 
+    /// Collisions per particle and second in gas of this volume, m3.
+    fn collision_rate(&self, gas: &BlockSum, volume: f64) -> f64 {
+        let number = gas.number as f64;
+        let kt = 2.0 / 3.0 * gas.energy as f64 / self.energy_unit / number;
+        self.rate * number / volume * kt.sqrt()
+    }
+
     /// What a measured state asks for.
     pub fn demand(&self, blocks: &[BlockSum], fast: &[u32]) -> Demand {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
-        let mut rates: Vec<(f64, u64)> = blocks
-            .iter()
-            .zip(&self.volumes)
-            .filter(|(block, volume)| block.number > 0 && **volume > LEAST_VOLUME * self.full)
-            .map(|(block, volume)| {
-                let number = block.number as f64;
-                let kt = 2.0 / 3.0 * block.energy as f64 / self.energy_unit / number;
-                (self.rate * number / volume * kt.sqrt(), block.number)
-            })
-            .collect();
+        let mut rates = Vec::with_capacity(blocks.len());
+        let (mut slivers, mut slivers_volume) = (BlockSum { number: 0, energy: 0 }, 0.0);
+        for (block, &volume) in blocks.iter().zip(&self.volumes).filter(|(block, _)| block.number > 0) {
+            if volume > LEAST_VOLUME * self.full {
+                rates.push((self.collision_rate(block, volume), block.number));
+            } else {
+                slivers.number += block.number;
+                slivers.energy += block.energy;
+                slivers_volume += volume;
+            }
+        }
+        if slivers.number > 0 && slivers_volume > 0.0 {
+            rates.push((self.collision_rate(&slivers, slivers_volume), slivers.number));
+        }
         rates.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut beyond = 0;
         let mut rate = 0.0;
@@ -143,5 +154,33 @@ impl Ladder {
     pub fn start(&mut self, demand: Demand) -> Result<u32, LadderError> {
         self.level = 0;
         self.follow(demand)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ladder(volumes: Vec<f64>) -> Ladder {
+        Ladder { level: 0, levels: 12, rate: 1.0, limit: 0.3, top: 1.0, energy_unit: 1.0, volumes, full: 1.0 }
+    }
+
+    /// kT = 1.
+    fn block(number: u64) -> BlockSum {
+        BlockSum { number, energy: 3 * number / 2 }
+    }
+
+    #[test]
+    fn gas_in_slivers_counts_as_a_whole() {
+        let demand = |volumes: &[f64], numbers: &[u64]| {
+            let blocks: Vec<BlockSum> = numbers.iter().map(|&number| block(number)).collect();
+            ladder(volumes.to_vec()).demand(&blocks, &[0]).collision
+        };
+        // A vessel thinner than a block: its density is that of all its blocks, however they share the volume.
+        assert_eq!(demand(&[0.01, 0.03], &[60, 20]), 80.0 / 0.04);
+        assert_eq!(demand(&[0.0, 0.04], &[60, 20]), 80.0 / 0.04);
+        // A few particles in a sliver do not set the step of all.
+        assert_eq!(demand(&[1.0, 1e-6], &[1000, 2]), 1000.0);
+        assert_eq!(demand(&[1.0, 1e-6], &[0, 0]), 0.0);
     }
 }
