@@ -99,8 +99,8 @@ fn overrides_reach_the_plan() {
     let plan = |more: &[&str]| -> toml::Table {
         printed(&[&["plan", "scenes/effusion.toml", "--toml"], more].concat()).parse().unwrap()
     };
-    let changed = plan(&["--particles", "700", "--seed", "5"]);
-    assert_eq!((changed["particles"].as_integer(), changed["seed"].as_integer()), (Some(700), Some(5)));
+    let changed = plan(&["--particles", "7000", "--seed", "5"]);
+    assert_eq!((changed["particles"].as_integer(), changed["seed"].as_integer()), (Some(7000), Some(5)));
     // Without collisions the plan has no diameter, and is TOML still.
     assert_eq!(changed["diameter"].as_float(), Some(0.0));
     assert_ne!(plan(&[])["particles"], changed["particles"]);
@@ -146,11 +146,8 @@ fn bad_input_is_2_and_is_shown_in_its_place() {
 #[test]
 fn walls_and_plans_that_are_not_sound_are_2() {
     let folder = tempfile::tempdir().unwrap();
-    let path = scene_with(
-        &folder,
-        "# No region: all the gas there is.",
-        "region = { sphere = { center = [9.0, 9.0, 9.0], radius = 1.0 } }",
-    );
+    let nowhere = "name = \"box\"\nregion = { sphere = { center = [9.0, 9.0, 9.0], radius = 1.0 } }\npressure";
+    let path = scene_with(&folder, "name = \"box\"\npressure", nowhere);
     let (code, _, err) = outcome(&["check", path.to_str().unwrap()]);
     assert!(code == 2 && err.contains("changed.toml") && err.contains("help:"), "{err}");
 }
