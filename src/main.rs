@@ -1,1 +1,5 @@
-fn main() {}
+//! The program `corpuscle`.
+
+fn main() -> std::process::ExitCode {
+    corpuscle::cli::main()
+}

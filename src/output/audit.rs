@@ -5,7 +5,11 @@
 //! - energy: U0 + integral of h dm in = U + integral of h dm out (specification, section 4), for rigid walls
 //!   that take no heat.
 //!
-//! Momentum is shown, not judged: the walls take it. Every comparison is written so that a NaN fails it.
+//! - momentum, where the scene names surfaces and so what the walls received is tallied: start + injected =
+//!   end + to the walls, within a share of M sqrt(2 U / M), the momentum of all gas flying one way at its
+//!   mean thermal speed. In other scenes it is shown, not judged: the walls take an unknown part.
+//!
+//! Every comparison is written so that a NaN fails it.
 
 use super::table::{aligned, grouped};
 
@@ -54,6 +58,8 @@ pub struct AuditLimits {
     /// Relative, of mass and of energy (specification, section 8: 1e-4).
     pub mass_error: f64,
     pub energy_error: f64,
+    /// Relative to the momentum of all gas flying one way.
+    pub momentum_error: f64,
     /// m.
     pub wall_overshoot: f64,
     pub truncated_flights: u64,
@@ -66,6 +72,7 @@ impl Default for AuditLimits {
         AuditLimits {
             mass_error: 1e-6,
             energy_error: 1e-4,
+            momentum_error: 1e-4,
             wall_overshoot: 1e-6,
             truncated_flights: 0,
             lost_collision_fraction: 0.03,
@@ -82,6 +89,18 @@ impl Audit {
     /// As [`Audit::energy_error`], of the mass.
     pub fn mass_error(&self) -> f64 {
         relative(self.mass_end + self.mass_vented, self.mass_start + self.mass_injected)
+    }
+
+    /// |p_end - p_start - p_injected + p_to_walls| over M sqrt(2 U / M) at the end; `None` where the walls' part
+    /// was not tallied.
+    pub fn momentum_error(&self) -> Option<f64> {
+        let to_walls = self.momentum_to_walls?;
+        let square = |axis: usize| {
+            let expected = self.momentum_start[axis] + self.momentum_injected[axis] - to_walls[axis];
+            (self.momentum_end[axis] - expected).powi(2)
+        };
+        let scale = (2.0 * self.energy_end * self.mass_end).sqrt();
+        Some((square(0) + square(1) + square(2)).sqrt() / scale)
     }
 
     /// Why the run cannot be trusted, one sentence each; empty if the audit is clean.
@@ -103,6 +122,14 @@ impl Audit {
                 if !within(error.abs(), limit) {
                     failures.push(format!("the {what} is off by {error:.2e} of it; {limit:.0e} is allowed"));
                 }
+            }
+            if let Some(error) = self.momentum_error()
+                && !within(error, limits.momentum_error)
+            {
+                failures.push(format!(
+                    "the momentum is off by {error:.2e} of that of all gas flying one way; {:.0e} is allowed",
+                    limits.momentum_error
+                ));
             }
         }
         if !within(self.wall_overshoot, limits.wall_overshoot) {
@@ -169,14 +196,21 @@ impl Audit {
             None => "no collisions".to_owned(),
         };
         let overflows = if self.overflows.is_empty() { "none".to_owned() } else { self.overflows.join(", ") };
-        let momentum = format!("{} -> {}", vector(self.momentum_start), vector(self.momentum_end));
+        let (to_walls, momentum_error) = match (self.momentum_to_walls, self.momentum_error()) {
+            (Some(received), Some(error)) => (vector(received), format!("{error:.2e}")),
+            _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
+        };
         let facts = [
             ("outside the vessel", grouped(self.particles_outside)),
             ("lost collisions", lost),
             ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
             ("truncated flights", grouped(self.truncated_flights)),
             ("overflows", overflows),
-            ("momentum, kg m/s", momentum),
+            ("momentum, kg m/s, start", vector(self.momentum_start)),
+            ("  injected", vector(self.momentum_injected)),
+            ("  to the walls", to_walls),
+            ("  end", vector(self.momentum_end)),
+            ("  error", momentum_error),
         ];
         let widest = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
         facts.iter().fold(accounts, |text, (name, fact)| text + &format!("{name:<widest$}  {fact}\n"))
@@ -208,6 +242,8 @@ mod tests {
             mass_vented: 0.01,
             mass_end: 0.14,
             momentum_start: [0.0; 3],
+            momentum_injected: [12.0, 0.0, 0.0],
+            momentum_to_walls: None,
             momentum_end: [1e-3, -2e-3, 0.0],
             energy_start: 15_000.0,
             enthalpy_injected: 57_000.0,
@@ -256,6 +292,22 @@ mod tests {
         assert!(none.warnings(&limits).is_empty() && none.render().contains("no collisions"));
     }
 
+    /// The gas keeps what it had and got less what the walls received: checked where that is known.
+    #[test]
+    fn the_momentum_closes_where_the_walls_part_is_known() {
+        let limits = AuditLimits::default();
+        let received = |x: f64| Audit { momentum_to_walls: Some([x, 2e-3, 0.0]), ..clean() };
+        let closed = received(12.0 - 1e-3);
+        assert!(closed.verdict(&limits).is_empty() && closed.momentum_error().unwrap() < 1e-12);
+        // All gas flying one way has sqrt(2 x 70000.5 J x 0.14 kg) = 140.0 kg m/s.
+        let off = received(12.03);
+        assert!((off.momentum_error().unwrap() - 0.031 / 140.0).abs() < 1e-7);
+        let verdict = off.verdict(&limits);
+        assert!(verdict.len() == 1 && verdict[0].starts_with("the momentum is off by 2.21e-4"), "{verdict:?}");
+        assert_eq!(received(f64::NAN).verdict(&limits).len(), 1);
+        assert_eq!(clean().momentum_error(), None);
+    }
+
     #[test]
     fn the_energy_error_is_relative_to_all_energy_that_entered() {
         let audit = clean();
@@ -277,8 +329,15 @@ mod tests {
         largest wall overshoot, m  1.00e-9
         truncated flights          0
         overflows                  none
-        momentum, kg m/s           (0.000e0, 0.000e0, 0.000e0) -> (1.000e-3, -2.000e-3, 0.000e0)
+        momentum, kg m/s, start    (0.000e0, 0.000e0, 0.000e0)
+          injected                 (1.200e1, 0.000e0, 0.000e0)
+          to the walls             not tallied: no surfaces
+          end                      (1.000e-3, -2.000e-3, 0.000e0)
+          error                    unknown
         ");
+        let told = Audit { momentum_to_walls: Some([11.999, 2e-3, 0.0]), ..clean() }.render();
+        assert!(told.contains("to the walls             (1.200e1, 2.000e-3, 0.000e0)"), "{told}");
+        assert!(!told.contains("unknown"), "{told}");
     }
 
     #[test]

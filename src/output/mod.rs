@@ -30,3 +30,4 @@ pub use history::{Column, History, HistoryWriter};
 pub use phases::PhaseTable;
 pub use progress::Progress;
 pub use snapshot::{ParticleRow, SnapshotWriter};
+pub use table::grouped;

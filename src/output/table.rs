@@ -30,7 +30,7 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// A count with its thousands apart: `1,234,567`.
-pub(super) fn grouped(count: u64) -> String {
+pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (i, digit) in digits.chars().enumerate() {

@@ -5,7 +5,7 @@ use crate::geometry::GridError;
 /// A particle's id and its gas share one 32-bit word on the device: 28 bits of id, 4 of gas.
 pub const MOST_PARTICLES: u64 = (1 << 28) - 1;
 pub const MOST_GASES: usize = 16;
-pub const MOST_ROUNDS: u32 = 16;
+pub const MOST_ROUNDS: u32 = 8;
 /// Cell numbers are 32-bit on the device, with a bit to spare.
 pub const MOST_CELLS: usize = 1 << 31;
 

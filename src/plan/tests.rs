@@ -76,7 +76,7 @@ fn the_tank_at_a_million() {
     // By the cells: sigma / (6 sqrt(R 980 / M)) = 7.40e-7 s, h = sigma sqrt(1.25).
     assert!(near(plan.time_step, 7.40e-7, 2e-3), "{}", plan.time_step);
     assert!(near(plan.grid.cell, 2.396e-3 * 1.25f64.sqrt(), 1e-3), "{}", plan.grid.cell);
-    assert_eq!((plan.rounds, plan.collision_limit, plan.block_cells_log2), (4, 0.3, 3));
+    assert_eq!((plan.rounds, plan.collision_limit, plan.block_cells_log2), (8, 0.5, 3));
     assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
     // The check can fail: heavier inflator gas is fewer particles.
     let heavy = planned(|scene, _| scene.gases[1].molar_mass = 0.044).unwrap();
@@ -208,7 +208,7 @@ fn what_cannot_be_planned_is_refused() {
     assert!(matches!(refused(&|s, _| s.model.diameter = Some(1e-6)), Grid(_)));
     let refined = |s: &mut Scene, _: &mut Measured| (s.model.diameter, s.model.time_step) = (Some(1e-4), Some(1e-8));
     assert!(matches!(refused(&refined), TooManyCells { .. }));
-    assert_eq!(refused(&|s, _| s.model.rounds = Some(0)), Rounds { found: 0, limit: 16 });
+    assert_eq!(refused(&|s, _| s.model.rounds = Some(0)), Rounds { found: 0, limit: 8 });
     assert!(matches!(refused(&|s, _| s.model.collision_number = Some(1.0)), CollisionNumber { .. }));
     assert!(matches!(refused(&|_, m| m.chamber_volumes[0] = 0.0), NoVolume { .. }));
     assert_eq!(refused(&|_, m| m.chamber_volumes.truncate(1)), Volumes { volumes: 1, chambers: 2 });

@@ -16,6 +16,9 @@ pub const SURFACE_WORDS: usize = 10;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 
+/// First length of the neighbour lists; they grow when a device finds one too short.
+pub const FIRST_LIST: u64 = 16;
+
 /// What does not grow with the number of particles.
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
@@ -179,6 +182,12 @@ impl ParticleBuffers {
             &self.rechoose,
         ]
     }
+}
+
+/// How many particles' neighbour lists, the largest of the buffers that grow with them, fit a buffer of
+/// `bytes`. Lists grow where gas is dense, and buffers are made larger than the gas at hand: a guide, no promise.
+pub fn most_particles(bytes: u64) -> u64 {
+    bytes / (FIRST_LIST * size_of::<u32>() as u64)
 }
 
 /// The buffer that a shader calls `name`. Three kernels call their own tally `sums`.

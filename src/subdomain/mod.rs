@@ -18,7 +18,7 @@ mod walls;
 use crate::gpu::{BoundKernel, Device, GpuError, Readback};
 use crate::plan::Plan;
 
-pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS};
+pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS, most_particles};
 pub use constants::{Features, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
 pub use encode::StepSlot;
@@ -28,11 +28,8 @@ pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
 pub use walls::Walls;
 
-use buffers::{FixedBuffers, ParticleBuffers, TallyWords};
+use buffers::{FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords};
 use kernels::{Compiled, Kernels};
-
-/// First length of the neighbour lists; they grow when a device finds one too short.
-const FIRST_LIST: u64 = 16;
 
 /// What a subdomain is made from.
 pub struct SubdomainInput<'a> {

@@ -1,0 +1,151 @@
+//! The command line as typed. Help, completions and man pages all come from these types.
+
+use std::path::PathBuf;
+
+use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input, 3 device trouble, 4 the audit failed.";
+
+/// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags
+#[derive(Debug, Parser)]
+#[command(name = "corpuscle", version, disable_help_subcommand = true, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub verb: Verb,
+    /// Say more; -vv says all
+    #[arg(short, long, global = true, action = ArgAction::Count, conflicts_with = "quiet")]
+    pub verbose: u8,
+    /// Say nothing but results and errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+}
+
+/// How much is said on standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verbosity {
+    Quiet,
+    Normal,
+    Verbose,
+    All,
+}
+
+impl Arguments {
+    pub fn verbosity(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, 0) => Verbosity::Normal,
+            (_, 1) => Verbosity::Verbose,
+            _ => Verbosity::All,
+        }
+    }
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Run a scene
+    Run(RunArguments),
+    /// Print what a run would model, and why; opens no device
+    Plan(PlanArguments),
+    /// Check scenes, their walls and their plans; opens no device
+    Check(CheckArguments),
+    /// Print the JSON schema of scene files
+    Schema,
+    /// List the devices that runs can use, with the limits that matter
+    Adapters,
+    /// Print a shell's completions
+    Completions(CompletionsArguments),
+    /// Print a man page
+    Man(ManArguments),
+}
+
+/// A scene, and what is to be different in it.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// The scene, a TOML file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// Particles at the end of the run, initial and injected together
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..(1 << 28)))]
+    pub particles: Option<u64>,
+    /// Another seed is another sample of the same gas
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..(1 << 56)))]
+    pub seed: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The folder for the results [default: results/<name of the scene file>]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than an earlier run's results
+    #[arg(long)]
+    pub force: bool,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+    /// Steps per submission to the device; changes no result
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub batch: Option<u32>,
+    /// Stop after that many steps, at the end of an interval
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub steps: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub struct PlanArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// As TOML, with everything that is in the plan.toml of a run
+    #[arg(long)]
+    pub toml: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The scenes, TOML files
+    #[arg(required = true, value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    pub scenes: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// The page of this verb instead of the program's
+    pub verb: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn values_out_of_range_are_refused() {
+        let parse =
+            |option: &str, value: &str| Arguments::try_parse_from(["corpuscle", "run", "s.toml", option, value]);
+        for (option, value) in [
+            ("--particles", "0"),
+            ("--particles", "268435456"),
+            ("--seed", "72057594037927936"),
+            ("--batch", "0"),
+            ("--steps", "-1"),
+        ] {
+            assert!(parse(option, value).is_err(), "{option} {value}");
+        }
+        for (option, value) in [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1")] {
+            assert!(parse(option, value).is_ok(), "{option} {value}");
+        }
+    }
+}

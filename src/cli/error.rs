@@ -1,0 +1,121 @@
+//! What can go wrong with a command, and the exit code that says so.
+
+use std::path::{Path, PathBuf};
+
+use miette::Diagnostic;
+
+use crate::gpu::GpuError;
+use crate::output::OutputError;
+use crate::scene::SceneError;
+use crate::simulation::{ModelError, SimulationError};
+
+pub const BAD_INPUT: u8 = 2;
+pub const DEVICE_TROUBLE: u8 = 3;
+pub const AUDIT_FAILED: u8 = 4;
+
+#[derive(Debug, thiserror::Error, Diagnostic)]
+pub enum CliError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// Built by [`CliError::model`].
+    #[error("{}: {error}", path.display())]
+    Model {
+        path: PathBuf,
+        error: ModelError,
+        #[help]
+        help: Option<String>,
+    },
+    #[error("{failed} of {checked} scenes cannot be run")]
+    Check { failed: usize, checked: usize },
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error("cannot write the plan as TOML: {0}")]
+    PlanToml(#[from] toml::ser::Error),
+    #[error("cannot write the schema as JSON: {0}")]
+    SchemaJson(#[from] serde_json::Error),
+    #[error("cannot write to standard output: {0}")]
+    StandardOutput(std::io::Error),
+    #[error("there is no verb `{asked}`; there are: {}", known.join(", "))]
+    UnknownVerb { asked: String, known: Vec<String> },
+    #[error(transparent)]
+    #[diagnostic(help("`corpuscle adapters` lists what runs can use"))]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error("the audit failed:{}", list(failures))]
+    #[diagnostic(help("the results are written, and cannot be trusted; please report it with the scene"))]
+    Audit { failures: Vec<String> },
+}
+
+fn list(failures: &[String]) -> String {
+    failures.iter().map(|failure| format!("\n- {failure}")).collect()
+}
+
+impl CliError {
+    pub fn model(path: &Path, error: ModelError) -> CliError {
+        let help = error.help().map(|help| help.to_string());
+        CliError::Model { path: path.to_path_buf(), error, help }
+    }
+
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Gpu(_) | CliError::Simulation(SimulationError::Gpu(_)) => DEVICE_TROUBLE,
+            CliError::Audit { .. }
+            | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
+            CliError::Simulation(
+                SimulationError::Geometry(_)
+                | SimulationError::Fill(_)
+                | SimulationError::State(_)
+                | SimulationError::Observer(_),
+            )
+            | CliError::Scene(_)
+            | CliError::Model { .. }
+            | CliError::Check { .. }
+            | CliError::Output(_)
+            | CliError::PlanToml(_)
+            | CliError::SchemaJson(_)
+            | CliError::StandardOutput(_)
+            | CliError::UnknownVerb { .. } => BAD_INPUT,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulation::LadderError;
+
+    /// What a user can mend is 2, what the machine refuses 3, what cannot be trusted 4. The causes of 4 do not
+    /// occur in a sound program, so no command shows them.
+    #[test]
+    fn the_exit_code_tells_whose_fault_it_is() {
+        let hang = || GpuError::Trouble { reason: "it hangs".into() };
+        let cases = [
+            (CliError::Audit { failures: vec!["2 particles are outside the vessel".into()] }, 4),
+            (SimulationError::Lost { time: 0.1, what: "a particle".into() }.into(), 4),
+            (
+                SimulationError::Ladder {
+                    time: 0.1,
+                    source: LadderError { needed: 1e-9, smallest: 1e-8, ratio: 10.0 },
+                }
+                .into(),
+                4,
+            ),
+            (CliError::Gpu(hang()), 3),
+            (SimulationError::Gpu(hang()).into(), 3),
+            (SimulationError::Observer("cannot write history.csv: no space left".into()).into(), 2),
+            (CliError::Check { failed: 1, checked: 2 }, 2),
+        ];
+        for (error, code) in cases {
+            assert_eq!(error.exit_code(), code, "{error}");
+        }
+    }
+
+    #[test]
+    fn a_failed_audit_says_all_that_failed() {
+        let failures = vec!["the mass is off".to_string(), "2 flights".to_string()];
+        assert_eq!(CliError::Audit { failures }.to_string(), "the audit failed:\n- the mass is off\n- 2 flights");
+    }
+}

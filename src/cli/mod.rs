@@ -1,0 +1,60 @@
+//! The command line: one file per verb.
+//!
+//! Raw arguments ([`Arguments`], what was typed) become settings (what is meant: a scene with its overrides, a
+//! folder) before anything is done. Results go to standard output, messages to standard error. Exit codes:
+//! 0 done; 2 bad input; 3 device trouble; 4 the audit failed.
+
+mod adapters;
+mod arguments;
+mod check;
+mod completions;
+mod error;
+mod man;
+mod plan;
+mod run;
+mod schema;
+mod settings;
+mod terminal;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+pub use arguments::Arguments;
+pub use error::CliError;
+
+use arguments::Verb;
+
+/// Reads the command line, does what it says and tells how it went.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(usage) => {
+            // Help and version come this way too. Nobody is left to tell if it cannot be printed.
+            let _ = usage.print();
+            return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
+        }
+    };
+    terminal::start(arguments.verbosity());
+    match perform(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let code = error.exit_code();
+            terminal::complain(error);
+            ExitCode::from(code)
+        }
+    }
+}
+
+fn perform(arguments: Arguments) -> Result<(), CliError> {
+    let quiet = arguments.quiet;
+    match arguments.verb {
+        Verb::Run(raw) => run::run(raw, quiet),
+        Verb::Plan(raw) => plan::plan(raw),
+        Verb::Check(raw) => check::check(raw),
+        Verb::Schema => schema::schema(),
+        Verb::Adapters => adapters::adapters(),
+        Verb::Completions(raw) => completions::completions(raw),
+        Verb::Man(raw) => man::man(raw),
+    }
+}

@@ -1,0 +1,11 @@
+//! `corpuscle plan`: what a run would model, and why.
+
+use super::CliError;
+use super::arguments::PlanArguments;
+use super::settings::{model_of, scene_of};
+use super::terminal::say;
+
+pub fn plan(raw: PlanArguments) -> Result<(), CliError> {
+    let plan = model_of(&raw.scene.scene, scene_of(&raw.scene)?)?.plan;
+    say(&if raw.toml { plan.to_toml()? } else { plan.render() })
+}

@@ -1,0 +1,138 @@
+//! The columns of `history.csv` and their values.
+//!
+//! A column is called `owner:quantity`, for instance `inner:pressure_pa`. Names are unique among the
+//! chambers, among the probes and among the surfaces, and hold no colon; where two of the lists share a name
+//! its columns say which list they are of: `chamber:inner:pressure_pa`, `probe:inner:pressure_pa`.
+
+use crate::output::Column;
+use crate::scene::Scene;
+use crate::simulation::{Row, ZoneState};
+
+use super::reference::Reference;
+
+/// The part before the quantity, of everything that has columns.
+pub struct Owners {
+    pub chambers: Vec<String>,
+    pub probes: Vec<String>,
+    pub surfaces: Vec<String>,
+}
+
+impl Owners {
+    pub fn of(scene: &Scene) -> Owners {
+        let chambers: Vec<&str> = scene.chambers.iter().map(|chamber| chamber.name.as_str()).collect();
+        let probes: Vec<&str> = scene.probes.iter().map(|probe| probe.name.as_str()).collect();
+        let surfaces: Vec<&str> = scene.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+        let lists = [&chambers, &probes, &surfaces];
+        let named = |kind: &str, own: &[&str]| -> Vec<String> {
+            let shared = |name: &str| lists.iter().filter(|list| list.contains(&name)).count() > 1;
+            own.iter().map(|name| if shared(name) { format!("{kind}:{name}") } else { (*name).to_owned() }).collect()
+        };
+        Owners {
+            chambers: named("chamber", &chambers),
+            probes: named("probe", &probes),
+            surfaces: named("surface", &surfaces),
+        }
+    }
+}
+
+/// Of a chamber's pressure and of its reference: the heads that the chart looks for.
+pub fn pressure_columns(owner: &str) -> [Column; 2] {
+    [Column::new(format!("{owner}:pressure"), "pa"), Column::new(format!("{owner}:reference_pressure"), "pa")]
+}
+
+pub fn time_column() -> Column {
+    Column::new("time", "s")
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+pub fn columns(scene: &Scene) -> Vec<Column> {
+    let owners = Owners::of(scene);
+    let mut columns =
+        vec![time_column(), Column::new("window_end", "s"), Column::new("step", "s"), Column::new("particles", "")];
+    for owner in &owners.chambers {
+        columns.extend(pressure_columns(owner));
+        columns.push(Column::new(format!("{owner}:temperature"), "k"));
+        columns.push(Column::new(format!("{owner}:reference_temperature"), "k"));
+        flow_columns(&mut columns, owner, scene);
+    }
+    for owner in &owners.probes {
+        columns.push(Column::new(format!("{owner}:pressure"), "pa"));
+        columns.push(Column::new(format!("{owner}:temperature"), "k"));
+        flow_columns(&mut columns, owner, scene);
+    }
+    for owner in &owners.surfaces {
+        columns.push(Column::new(format!("{owner}:pressure"), "pa"));
+        columns.extend(AXES.map(|axis| Column::new(format!("{owner}:impulse_{axis}"), "kg_m_s")));
+        columns.push(Column::new(format!("{owner}:hits"), ""));
+    }
+    columns
+}
+
+fn flow_columns(columns: &mut Vec<Column>, owner: &str, scene: &Scene) {
+    columns.push(Column::new(format!("{owner}:density"), "kg_m3"));
+    columns.extend(AXES.map(|axis| Column::new(format!("{owner}:velocity_{axis}"), "m_s")));
+    columns.extend(scene.gases.iter().map(|gas| Column::new(format!("{owner}:particles:{}", gas.name), "")));
+}
+
+/// The values of a row, in the order of the columns.
+pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
+    let mut values = vec![row.time, row.window[1], row.step, row.particles as f64];
+    for (chamber, state) in row.chambers.iter().enumerate() {
+        let [pressure, temperature] = reference.at(row.time, chamber);
+        values.extend([state.pressure, pressure, state.temperature, temperature]);
+        push_flow(&mut values, state);
+    }
+    for state in &row.probes {
+        values.extend([state.pressure, state.temperature]);
+        push_flow(&mut values, state);
+    }
+    for surface in &row.surfaces {
+        values.push(surface.pressure);
+        values.extend(surface.impulse);
+        values.push(surface.hits as f64);
+    }
+    values
+}
+
+fn push_flow(values: &mut Vec<f64>, state: &ZoneState) {
+    values.push(state.density);
+    values.extend(state.velocity);
+    values.extend(&state.particles);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::History;
+    use crate::scene::{load, parse, to_toml};
+    use std::path::Path;
+
+    fn scene(name: &str) -> Scene {
+        load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)).unwrap()
+    }
+
+    #[test]
+    fn names_that_lists_share_say_their_list_and_others_do_not() {
+        let text = to_toml(&scene("tank.toml"));
+        let shared = text.replace("name = \"vent jet\"", "name = \"inner\"");
+        assert_ne!(shared, text);
+        let owners = Owners::of(&parse(&shared, "tank.toml", Path::new("")).unwrap());
+        assert_eq!(owners.chambers, ["chamber:inner", "tank"]);
+        assert_eq!(owners.probes, ["probe:inner"]);
+        assert_eq!(owners.surfaces, ["far wall"]);
+        assert_eq!(Owners::of(&scene("tank.toml")).chambers, ["inner", "tank"]);
+    }
+
+    /// Whatever the names, the history takes the columns; without the list's name it would not.
+    #[test]
+    fn columns_are_unique_however_the_lists_share_names() {
+        let mut same = scene("tank.toml");
+        for name in [&mut same.chambers[0].name, &mut same.probes[0].name, &mut same.surfaces[0].name] {
+            *name = "a".into();
+        }
+        assert!(History::new(&columns(&same)).is_ok());
+        let [pressure, _] = pressure_columns("a");
+        assert!(History::new(&[pressure.clone(), pressure]).is_err());
+    }
+}

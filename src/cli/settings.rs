@@ -1,0 +1,76 @@
+//! From raw arguments to what they mean: scenes with their overrides, and the settings of a run.
+
+use std::path::{Path, PathBuf};
+
+use crate::scene::{Scene, load};
+use crate::simulation::Model;
+
+use super::CliError;
+use super::arguments::{RunArguments, SceneArguments};
+
+/// The scene of the file with the overrides in it, as if the file had said so.
+pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
+    let mut scene = load(&raw.scene)?;
+    if let Some(particles) = raw.particles {
+        scene.model.particles = Some(particles);
+    }
+    if let Some(seed) = raw.seed {
+        scene.seed = seed;
+    }
+    Ok(scene)
+}
+
+/// The scene, its walls and its plan. `path` stands in the message if they are not sound.
+pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
+    Model::new(scene).map_err(|error| CliError::model(path, error))
+}
+
+/// A run as it will be done.
+pub struct RunSettings {
+    pub model: Model,
+    pub folder: PathBuf,
+    pub force: bool,
+    /// Index or PCI bus id; `None`: the first.
+    pub gpu: Option<String>,
+    /// Steps per submission; `None`: a whole interval.
+    pub batch: Option<u32>,
+    pub stop_after_steps: Option<u64>,
+}
+
+impl RunSettings {
+    pub fn new(raw: RunArguments) -> Result<RunSettings, CliError> {
+        let path = &raw.scene.scene;
+        let model = model_of(path, scene_of(&raw.scene)?)?;
+        let folder = raw.out.unwrap_or_else(|| default_folder(path));
+        let RunArguments { force, gpu, batch, steps, .. } = raw;
+        Ok(RunSettings { model, folder, force, gpu, batch, stop_after_steps: steps })
+    }
+}
+
+/// `results/tank` of `scenes/tank.toml`, below the working directory.
+fn default_folder(scene: &Path) -> PathBuf {
+    Path::new("results").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_folder_is_named_after_the_scene() {
+        assert_eq!(default_folder(Path::new("scenes/tank.toml")), Path::new("results/tank"));
+        assert_eq!(default_folder(Path::new("/a/b.c.toml")), Path::new("results/b.c"));
+    }
+
+    #[test]
+    fn overrides_replace_what_the_file_says_and_nothing_else() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/box.toml");
+        let raw = |particles, seed| SceneArguments { scene: path.clone(), particles, seed };
+        let plain = scene_of(&raw(None, None)).unwrap();
+        let other = scene_of(&raw(Some(500), Some(7))).unwrap();
+        assert_eq!((other.model.particles, other.seed), (Some(500), 7));
+        assert_ne!(plain, other);
+        let restored = Scene { model: plain.model.clone(), seed: plain.seed, ..other };
+        assert_eq!(restored, plain);
+    }
+}

@@ -1,0 +1,55 @@
+//! What the user sees: results on standard output; logs and errors on standard error, with colours only where
+//! that is a terminal.
+
+use std::io::{ErrorKind, IsTerminal, Write};
+
+use miette::MietteHandlerOpts;
+use tracing::Level;
+
+use super::CliError;
+use super::arguments::Verbosity;
+
+/// Sets up logs and error reports. To be called once.
+pub fn start(verbosity: Verbosity) {
+    let level = match verbosity {
+        Verbosity::Quiet => Level::ERROR,
+        Verbosity::Normal => Level::INFO,
+        Verbosity::Verbose => Level::DEBUG,
+        Verbosity::All => Level::TRACE,
+    };
+    let colour = colour();
+    tracing_subscriber::fmt()
+        .with_max_level(level)
+        .with_writer(std::io::stderr)
+        .with_ansi(colour)
+        .with_target(false)
+        .without_time()
+        .init();
+    // An error's own text names its causes. The hook can only be set already by an embedding program.
+    let _ = miette::set_hook(Box::new(move |_| {
+        Box::new(MietteHandlerOpts::new().color(colour).without_cause_chain().terminal_links(false).build())
+    }));
+}
+
+/// <https://no-color.org>
+fn colour() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Prints a result.
+///
+/// # Errors
+/// If standard output takes no more, unless its reader has simply seen enough.
+pub fn say(text: &str) -> Result<(), CliError> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::StandardOutput(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints an error with its place in the scene file and its remedy.
+pub fn complain(error: CliError) {
+    // If standard error is closed nobody reads it.
+    let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
+}
