@@ -128,21 +128,48 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// If the device fails, a particle, mass or energy is lost, or the observer stops the run.
     pub fn run(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
+        self.begin(observer)?;
+        while self.advance(observer)? {}
+        self.finish(observer)
+    }
+
+    /// Takes the account of the initial state; comes before the first [`Simulation::advance`].
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
         let at_start = self.measure()?;
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
-        self.snapshot(observer)?;
-        while !self.clock.done() && !self.stopped() {
-            self.submit_next()?;
-            if self.flying.len() >= AHEAD {
-                self.read_oldest(observer)?;
-            }
-            if self.snapshot_due() {
-                self.read_all(observer)?;
-                self.snapshot(observer)?;
-            }
+        self.snapshot(observer)
+    }
+
+    /// Submits one interval and reads one that is done; false, and nothing is done, where the run has
+    /// reached its end.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn advance(&mut self, observer: &mut dyn Observer) -> Result<bool, SimulationError> {
+        if self.clock.done() || self.stopped() {
+            return Ok(false);
         }
+        self.submit_next()?;
+        if self.flying.len() >= AHEAD {
+            self.read_oldest(observer)?;
+        }
+        if self.snapshot_due() {
+            self.read_all(observer)?;
+            self.snapshot(observer)?;
+        }
+        Ok(true)
+    }
+
+    /// Reads what is under way and closes the account.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
         if self.averages.ready() {
             self.emit_row(observer)?;
@@ -293,7 +320,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// The flights of the last step of the run so far, by id: for tests and studies of single steps.
+    /// The flights of the last step of the run so far, with ids, in the order of [`Simulation::particles`]: for tests and studies of single steps.
     ///
     /// # Errors
     /// If the device fails.
@@ -301,6 +328,14 @@ impl<'a> Simulation<'a> {
         let particles = self.subdomain.particles(self.device)?;
         let flights = self.subdomain.flights(self.device)?;
         Ok(particles.iter().map(GpuParticle::id).zip(flights).collect())
+    }
+
+    /// The particles, in the order of the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn particles(&self) -> Result<Vec<GpuParticle>, SimulationError> {
+        Ok(self.subdomain.particles(self.device)?)
     }
 
     pub fn scales(&self) -> Scales {
