@@ -59,8 +59,12 @@ fn modules() -> Vec<(&'static str, Module)> {
 /// The structs that the buffers of a module hold, by name, those within structs and arrays included.
 fn held(module: &Module) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    let mut open: Vec<naga::Handle<naga::Type>> =
-        module.global_variables.iter().filter(|(_, global)| global.binding.is_some()).map(|(_, global)| global.ty).collect();
+    let mut open: Vec<naga::Handle<naga::Type>> = module
+        .global_variables
+        .iter()
+        .filter(|(_, global)| global.binding.is_some())
+        .map(|(_, global)| global.ty)
+        .collect();
     while let Some(handle) = open.pop() {
         match &module.types[handle].inner {
             TypeInner::Struct { members, .. } => {

@@ -23,9 +23,14 @@ impl Cells {
         self.shifted(p, v.map(|v| v * (0.5 * dt)))
     }
 
+    /// A coordinate with its sign: from -2^30 on, up to 3 2^30.
+    pub fn signed(x: u32) -> i64 {
+        if x < 3 << 30 { i64::from(x) } else { i64::from(x) - (1 << 32) }
+    }
+
     /// The cell of a point, or the nearest that has neighbours on all sides.
     pub fn cell(&self, p: [u32; 3]) -> [u32; 3] {
-        std::array::from_fn(|k| ((p[k] as i32) >> self.bits).clamp(1, self.counts[k] as i32 - 2) as u32)
+        std::array::from_fn(|k| (Cells::signed(p[k]) >> self.bits).clamp(1, i64::from(self.counts[k]) - 2) as u32)
     }
 
     pub fn index(&self, cell: [u32; 3]) -> u32 {
@@ -49,7 +54,7 @@ impl Cells {
 
     /// Whether two points are nearer than the edge of a cell, exactly.
     pub fn nearer_than_a_cell(&self, p: [u32; 3], q: [u32; 3]) -> bool {
-        let d2 = (0..3).map(|k| i128::from(q[k] as i32) - i128::from(p[k] as i32)).map(|d| d * d).sum::<i128>();
+        let d2 = (0..3).map(|k| Cells::signed(q[k]) - Cells::signed(p[k])).map(|d| i128::from(d * d)).sum::<i128>();
         d2 < 1 << (2 * self.bits)
     }
 

@@ -49,7 +49,8 @@ fn a_collision_conserves_and_has_no_virial() {
     let momentum = |i: &Body, j: &Body| along(scaled(i.v, gases[i.gas].mass), j.v, gases[j.gas].mass);
     let mut turned = 0.0f64;
     for k in 0..2000 {
-        let (mut i, mut j) = (random_body(&mut stream, 2 * k, 0), random_body(&mut stream, 2 * k + 1, (k % 2) as usize));
+        let (mut i, mut j) =
+            (random_body(&mut stream, 2 * k, 0), random_body(&mut stream, 2 * k + 1, (k % 2) as usize));
         let (time, miss) = closest_approach(&i, &j, [0.0; 3]).unwrap();
         let diameter = norm(miss) / stream.uniform();
         let (old_energy, old_momentum, g) = (energy(&i) + energy(&j), momentum(&i, &j), minus(j.v, i.v));
@@ -153,7 +154,7 @@ fn reflections_and_winding_numbers_agree_with_a_box() {
         let unfolded = walls::reflect_in_box(x, v, 2.0, low, high);
         if let Some(followed) = walls::bounced(&triangles, x, v, 2.0, 1e-9) {
             assert!(norm(minus(followed.0, unfolded.0)) < 1e-9 && norm(minus(followed.1, unfolded.1)) < 1e-9);
-            assert_eq!(followed.2, unfolded.2);
+            assert_eq!(followed.2.len() as u32, unfolded.2);
             (compared, hits) = (compared + 1, hits + unfolded.2);
         }
         assert!(!walls::lost(&triangles, x, 0.0));

@@ -7,12 +7,7 @@ use super::vector::Vector;
 pub type Candidates = Vec<(usize, usize, Vector)>;
 
 /// The earliest meeting of each body: (time, partner's index, which candidate), ties by the partner's id.
-pub fn choices(
-    bodies: &[Body],
-    candidates: &Candidates,
-    diameter: f64,
-    dt: f64,
-) -> Vec<Option<(f64, usize, usize)>> {
+pub fn choices(bodies: &[Body], candidates: &Candidates, diameter: f64, dt: f64) -> Vec<Option<(f64, usize, usize)>> {
     let mut best: Vec<Option<(f64, usize, usize)>> = vec![None; bodies.len()];
     for (k, &(i, j, image)) in candidates.iter().enumerate() {
         let Some(time) = meeting(&bodies[i], &bodies[j], image, diameter, dt) else { continue };

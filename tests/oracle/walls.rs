@@ -25,7 +25,8 @@ pub fn inset(t: &Triangle, p: Vector) -> f64 {
 pub struct Crossing {
     pub triangle: usize,
     pub time: f64,
-    /// As [`inset`] of the point of crossing.
+    /// How near the flight's line passes the edges, m, negative outside: the [`inset`] of the point of crossing
+    /// times the sine of the angle between flight and plane.
     pub inset: f64,
     /// Speed against the normal.
     pub approach: f64,
@@ -40,14 +41,15 @@ pub fn crossings(triangles: &[Triangle], x: Vector, v: Vector, behind: f64) -> V
         let distance = dot(minus(x, t[0]), n);
         if approach > 0.0 && distance >= -behind {
             let time = distance / approach;
-            found.push(Crossing { triangle, time, inset: inset(t, along(x, v, time)), approach });
+            let sine = approach / norm(v);
+            found.push(Crossing { triangle, time, inset: inset(t, along(x, v, time)) * sine, approach });
         }
     }
     found
 }
 
 /// Whether the segment p-q crosses a triangle, from either side: `Some` if it surely does or does not,
-/// `None` if an end is within `slack` of a plane that it would cross, or the crossing within `slack` of an edge.
+/// `None` if an end is within `slack` of a plane that it may cross, or its line within `slack` of an edge.
 pub fn parted(triangles: &[Triangle], p: Vector, q: Vector, slack: f64) -> Option<bool> {
     let mut unsure = false;
     for t in triangles {
@@ -60,7 +62,8 @@ pub fn parted(triangles: &[Triangle], p: Vector, q: Vector, slack: f64) -> Optio
         if (before > 0.0) == (after > 0.0) {
             continue;
         }
-        let at = inset(t, along(p, minus(q, p), before / (before - after)));
+        let sine = (before - after).abs() / norm(minus(q, p));
+        let at = inset(t, along(p, minus(q, p), before / (before - after))) * sine;
         if at > slack {
             return Some(true);
         }
@@ -129,9 +132,16 @@ pub fn reflect_in_box(x: Vector, v: Vector, time: f64, low: Vector, high: Vector
     (place, velocity, hits)
 }
 
-/// A flight of up to `time` off every triangle on its way; `None` if it comes within `slack` of an edge.
-pub fn bounced(triangles: &[Triangle], x: Vector, v: Vector, time: f64, slack: f64) -> Option<(Vector, Vector, u32)> {
-    let (mut place, mut velocity, mut left, mut hits) = (x, v, time, 0);
+/// A flight of up to `time` off every triangle on its way: place, velocity, and which triangles it hit; `None`
+/// if it comes within `slack` of an edge.
+pub fn bounced(
+    triangles: &[Triangle],
+    x: Vector,
+    v: Vector,
+    time: f64,
+    slack: f64,
+) -> Option<(Vector, Vector, Vec<usize>)> {
+    let (mut place, mut velocity, mut left, mut hits) = (x, v, time, Vec::new());
     let mut last = usize::MAX;
     loop {
         let mut ahead = crossings(triangles, place, velocity, slack);
@@ -139,14 +149,16 @@ pub fn bounced(triangles: &[Triangle], x: Vector, v: Vector, time: f64, slack: f
         let Some(hit) = ahead.iter().min_by(|a, b| a.time.total_cmp(&b.time)).copied() else {
             return Some((along(place, velocity, left), velocity, hits));
         };
-        if hit.inset < slack || ahead.iter().any(|c| c.triangle != hit.triangle && (c.time - hit.time) * norm(velocity) < slack) {
+        if hit.inset < slack
+            || ahead.iter().any(|c| c.triangle != hit.triangle && (c.time - hit.time) * norm(velocity) < slack)
+        {
             return None;
         }
         place = along(place, velocity, hit.time);
         velocity = reflected(velocity, normal(&triangles[hit.triangle]));
         left -= hit.time;
         last = hit.triangle;
-        hits += 1;
+        hits.push(hit.triangle);
     }
 }
 
