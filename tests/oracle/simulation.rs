@@ -203,9 +203,10 @@ impl Simulation {
                 Boundary::Specular => {
                     let from = along(body.x0, body.v, body.start);
                     let (x, v, _) = reflect_in_box(from, body.v, self.dt - body.start, [0.0; 3], self.size);
-                    for k in 0..3 {
-                        let hits = ((from[k] + body.v[k] * (self.dt - body.start)) / self.size[k]).floor().abs();
-                        self.impulse += hits * 2.0 * self.gases[body.gas].mass * body.v[k].abs();
+                    let unfolded = along(from, body.v, self.dt - body.start);
+                    for ((end, size), speed) in unfolded.into_iter().zip(self.size).zip(body.v.map(f64::abs)) {
+                        let hits = (end / size).floor().abs();
+                        self.impulse += hits * 2.0 * self.gases[body.gas].mass * speed;
                     }
                     body.x0 = x;
                     body.v = v;
