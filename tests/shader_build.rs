@@ -47,18 +47,19 @@ fn a_kernel_holds_what_it_uses_once_and_before_it() {
     assert_eq!(source.matches(TWO).count(), 1);
     assert!(source.find(TWO) < source.find("fn double") && source.find("fn double") < source.find("fn main"));
     assert_eq!(unused, [dir.path().join("shared/idle.wgsl")]);
+    assert_eq!(kernels[0].bindings, [(0, "values".to_string(), "ReadWrite")]);
     let table = build::table(&kernels);
-    assert!(
-        table.starts_with("pub const KERNELS: &[(&str, &str)] = &[\n    (\"advect\", \"const TWO = 2u;\\n"),
-        "{table}"
-    );
+    let start = "pub static KERNELS: &[KernelSource] = &[\nKernelSource { name: \"advect\", entry_point: \"main\", \
+        bindings: &[Binding { index: 0, name: \"values\", access: Access::ReadWrite }, ], overrides: &[], \
+        source: \"const TWO = 2u;\\n";
+    assert!(table.starts_with(start), "{table}");
 }
 
 #[test]
 fn without_shaders_the_table_is_empty() {
     let (kernels, unused) = build::kernels(Path::new("no/such/folder")).unwrap();
     assert!(unused.is_empty());
-    assert_eq!(build::table(&kernels), "pub const KERNELS: &[(&str, &str)] = &[\n];\n");
+    assert_eq!(build::table(&kernels), "pub static KERNELS: &[KernelSource] = &[\n];\n");
 }
 
 #[test]
