@@ -53,10 +53,18 @@ fn packed_distance2(a: u32, b: u32) -> i32 {
 // per axis, and (128 + sqrt(3))^2 < 16831.
 const PACKED_REACH2: i32 = 16831;
 
+// The cell of a point up to 2^30 quanta (half the longest side of the grid, or more) outside the grid on
+// either side. Positions in the grid reach up to 2^31, so the sign bit alone does not tell the two sides.
+const MARGIN: u32 = 0x40000000;
+
+fn signed_cell(p: vec3<u32>) -> vec3<i32> {
+    return (bitcast<vec3<i32>>(p - vec3<u32>(MARGIN)) >> vec3<u32>(CELL_BITS)) + vec3<i32>(i32(MARGIN >> CELL_BITS));
+}
+
 // The cell of a point that may lie outside the grid (the mid-step point of a fast particle beyond a
 // wall): the nearest cell that has all its neighbours. Only the cell is moved, never the particle.
 fn nearest_cell(p: vec3<u32>) -> vec3<u32> {
-    let c = bitcast<vec3<i32>>(p) >> vec3<u32>(CELL_BITS);
+    let c = signed_cell(p);
     let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 2;
     return vec3<u32>(clamp(c, vec3<i32>(1), last));
 }

@@ -2,8 +2,10 @@
 //
 // A triangle stops a particle that moves against its normal and comes from the gas side. Rounding may
 // leave a particle less than TOLERANCE behind a wall; moving away it is let go, turning back it is
-// stopped at once. Triangles reach TOLERANCE beyond their edges, so that neighbours overlap and no
-// flight passes between them; of several hits the earliest counts, ties by triangle index.
+// stopped at once. A triangle stops flights that come nearer to it than TOLERANCE, so that neighbours
+// overlap and no flight passes between them: on its plane it reaches beyond its edges by TOLERANCE over
+// the sine of the flight's angle, as far as rounding may move the place of a grazing hit. Of several hits
+// the earliest counts, ties by triangle index.
 // The edge function is evaluated from the lower vertex id to the higher.
 
 struct Triangle {
@@ -47,12 +49,13 @@ fn class_of(cell: u32) -> u32 {
     return (cell_class[cell >> 4u] >> ((cell & 15u) * 2u)) & 3u;
 }
 
-fn within(triangle: Triangle, point: vec3<f32>, ab: vec3<f32>, ac: vec3<f32>) -> bool {
+// Whether a point of the triangle's plane (relative to corner a) is at most `reach` outside its edges.
+fn within(triangle: Triangle, point: vec3<f32>, ab: vec3<f32>, ac: vec3<f32>, reach: f32) -> bool {
     let bc = ac - ab;
     let n = triangle.normal * triangle.sense;
-    return dot(cross(ab, point), n) >= -TOLERANCE * length(ab)
-        && dot(cross(bc, point - ab), n) >= -TOLERANCE * length(bc)
-        && -dot(cross(ac, point), n) >= -TOLERANCE * length(ac);
+    return dot(cross(ab, point), n) >= -reach * length(ab)
+        && dot(cross(bc, point - ab), n) >= -reach * length(bc)
+        && -dot(cross(ac, point), n) >= -reach * length(ac);
 }
 
 // The cells that the box around the segment from p to q touches.
@@ -62,11 +65,11 @@ struct Cells {
 }
 
 fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
-    let a = bitcast<vec3<i32>>(p);
-    let b = bitcast<vec3<i32>>(q);
+    let a = signed_cell(p);
+    let b = signed_cell(q);
     let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 1;
-    let low = clamp(min(a, b) >> vec3<u32>(CELL_BITS), vec3<i32>(0), last);
-    let high = clamp(max(a, b) >> vec3<u32>(CELL_BITS), vec3<i32>(0), last);
+    let low = clamp(min(a, b), vec3<i32>(0), last);
+    let high = clamp(max(a, b), vec3<i32>(0), last);
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
@@ -90,17 +93,19 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
                 }
                 let a = between(triangle.a, from_point);
                 let distance = dot(a, triangle.normal);
-                let delay = distance / approach;
+                // From behind the wall it is hit where the flight starts: at a grazing flight the place on
+                // the plane, far back, may be on no triangle.
+                let delay = max(distance, 0.0) / approach;
                 if (distance < -TOLERANCE || delay > end - start) {
                     continue;
                 }
                 let ab = between(triangle.a, triangle.b);
                 let ac = between(triangle.a, triangle.c);
-                if (!within(triangle, a + v * delay, ab, ac)) {
+                if (!within(triangle, a + v * delay, ab, ac, TOLERANCE * length(v) / approach)) {
                     continue;
                 }
                 hit.overshoot = max(hit.overshoot, -distance);
-                let time = start + max(delay, 0.0);
+                let time = start + delay;
                 if (time < hit.time || (time == hit.time && index < hit.triangle)) {
                     hit.time = time;
                     hit.triangle = index;
@@ -145,7 +150,8 @@ fn blocked(p: vec3<u32>, q: vec3<u32>) -> bool {
                 }
                 let ab = between(triangle.a, triangle.b);
                 let ac = between(triangle.a, triangle.c);
-                if (within(triangle, a + along * (before / (before - after)), ab, ac)) {
+                let sine = abs(before - after) / length(along);
+                if (within(triangle, a + along * (before / (before - after)), ab, ac, TOLERANCE / sine)) {
                     return true;
                 }
             }

@@ -8,10 +8,10 @@
 //! | `InitialPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `InitialState`    | `[particle id, block, 0, 0]`                       | host     |
 //! | `Inflow`          | `[particle id, block, 0, 0]`                       | host     |
-//! | `Collision`       | `[time tick, round, lower id, higher id]`          | device   |
+//! | `Collision`       | `[step, 2 round + block, lower id, higher id]`     | device   |
 //!
-//! `block` counts the blocks of four words that one particle uses up, so the number of draws that a
-//! rejection method takes never shifts the draws of another particle.
+//! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
+//! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
 //!
 //! Host draws are f64 and go through crate `libm`: system mathematics libraries differ in the last bit.
 

@@ -62,6 +62,15 @@ impl Kernel {
             .iter()
             .find(|kernel| kernel.name == name)
             .ok_or_else(|| GpuError::Kernel { kernel: name.into(), reason: "no such shader".into() })?;
+        Kernel::of(device, source, constants)
+    }
+
+    /// Compiles a kernel that need not be in the table (a test's probe of a shared shader file).
+    ///
+    /// # Errors
+    /// As [`Kernel::new`], but for the name.
+    pub fn of(device: &Device, source: &'static KernelSource, constants: &Constants) -> Result<Kernel, GpuError> {
+        let name = source.name;
         let mut taken = Vec::new();
         for (constant, needed) in source.overrides {
             match constants.iter().find(|(given, _)| given == constant) {

@@ -15,16 +15,14 @@ pub const PLAN_FILE: &str = "plan.toml";
 pub const SCENE_FILE: &str = "scene.toml";
 pub const ENVIRONMENT_FILE: &str = "environment.json";
 pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
-/// The audit and the phase table as text.
-pub const REPORT_FILE: &str = "report.txt";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run writes at the top of its folder, apart from the snapshots.
-const RESULT_FILES: [&str; 7] =
-    [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE, REPORT_FILE];
+const RESULT_FILES: [&str; 6] =
+    [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE];
 
 /// A folder that exists, holds no earlier results, and carries the marker.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -149,7 +147,7 @@ mod tests {
     fn finished_run(path: &Path) {
         let folder = OutputFolder::create(path, false).unwrap();
         HistoryWriter::create(folder.path(), &[Column::new("time", "s")]).unwrap();
-        for name in [PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE, REPORT_FILE] {
+        for name in [PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE] {
             folder.write_text(name, "x").unwrap();
         }
         let mut snapshots = SnapshotWriter::create(folder.path()).unwrap();

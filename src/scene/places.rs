@@ -58,7 +58,7 @@ pub(super) fn opening(raw: &At<RawOpening>, chambers: &Names, units: UnitSystem)
     let area = positive(&opening.area, Quantity::Area, units)?;
     let length = match &opening.length {
         Some(length) => positive(length, Quantity::Length, units)?,
-        None => area.sqrt(),
+        None => (area / std::f64::consts::PI).sqrt(),
     };
     Ok(Opening { name: opening.name.value.clone(), between, area, length })
 }

@@ -172,7 +172,8 @@ pub struct Opening {
     pub between: [usize; 2],
     /// m2.
     pub area: f64,
-    /// The length of its Knudsen number, m (default 4 area / perimeter, for a declared one sqrt(area)).
+    /// The length of its Knudsen number, m: the radius of a round hole, 2 area / perimeter of another (of a
+    /// declared one, by default, the radius of a circle of this area).
     pub length: f64,
 }
 

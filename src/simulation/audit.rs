@@ -115,7 +115,8 @@ impl Account {
         }
         self.particles = u64::from(particles);
         self.steps += steps;
-        self.collisions += counters.collisions;
+        // A pair that a wall parted was settled without a collision.
+        self.collisions += counters.collisions - u64::from(counters.blocked);
         self.bounces += u64::from(counters.bounces);
         self.lost += u64::from(counters.lost);
         self.sampled += u64::from(counters.sampled);

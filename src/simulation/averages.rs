@@ -112,8 +112,8 @@ impl Averages {
             let ZoneSum { number, velocity, kinetic, .. } = *measured;
             sum.number += dt * number as f64;
             sum.kinetic += dt * kinetic as f64;
-            for axis in 0..3 {
-                sum.velocity[axis] += dt * velocity[axis] as f64;
+            for (total, velocity) in sum.velocity.iter_mut().zip(velocity) {
+                *total += dt * velocity as f64;
             }
         }
         for ((patch, received), measured) in self.patches.iter_mut().zip(&mut self.received).zip(&tallies.surfaces) {

@@ -80,7 +80,8 @@ impl Ladder {
     fn collision_rate(&self, gas: &BlockSum, volume: f64) -> f64 {
         let number = gas.number as f64;
         let kt = 2.0 / 3.0 * gas.energy as f64 / self.energy_unit / number;
-        self.rate * number / volume * kt.sqrt()
+        // Less one standard error: the noise of small blocks is no peak.
+        self.rate * (number - number.sqrt()) / volume * kt.sqrt()
     }
 
     /// What a measured state asks for.

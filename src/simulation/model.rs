@@ -69,7 +69,8 @@ fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
                 name: hole.name.clone(),
                 between: [a, b],
                 area: hole.area,
-                length: 4.0 * hole.area / hole.perimeter,
+                // The radius of a round hole: see `gas::discharge`.
+                length: 2.0 * hole.area / hole.perimeter,
             })
         })
         .collect()

@@ -12,11 +12,12 @@ use super::audit::Account;
 use super::averages::{Averages, Row};
 use super::clock::Clock;
 use super::interval::{InFlight, Interval};
-use super::ladder::Ladder;
+use super::ladder::{Demand, Ladder};
 use super::model::Model;
 use super::setup::{Setup, Shuffle, set_up};
 
-/// Intervals submitted before the oldest is read.
+/// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
+/// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
 
 /// What does not change a result.
@@ -83,6 +84,9 @@ pub struct Simulation<'a> {
     account: Account,
     timer: Option<PhaseTimer>,
     flying: VecDeque<InFlight>,
+    /// What the states read so far ask of the step and no interval has followed yet, oldest first.
+    demands: VecDeque<Demand>,
+    submitted: usize,
     spare: Vec<wgpu::Buffer>,
     next_row: f64,
     next_snapshot: u32,
@@ -112,6 +116,8 @@ impl<'a> Simulation<'a> {
             account: Account::new(plan),
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
+            demands: VecDeque::new(),
+            submitted: 0,
             spare: Vec::new(),
             next_row: plan.end_time / f64::from(scene.output.rows.max(1)),
             next_snapshot: 0,
@@ -128,21 +134,48 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// If the device fails, a particle, mass or energy is lost, or the observer stops the run.
     pub fn run(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
+        self.begin(observer)?;
+        while self.advance(observer)? {}
+        self.finish(observer)
+    }
+
+    /// Takes the account of the initial state; comes before the first [`Simulation::advance`].
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
         let at_start = self.measure()?;
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
-        self.snapshot(observer)?;
-        while !self.clock.done() && !self.stopped() {
-            self.submit_next()?;
-            if self.flying.len() >= AHEAD {
-                self.read_oldest(observer)?;
-            }
-            if self.snapshot_due() {
-                self.read_all(observer)?;
-                self.snapshot(observer)?;
-            }
+        self.snapshot(observer)
+    }
+
+    /// Reads an interval that is done and submits one; false, and nothing is done, where the run has
+    /// reached its end.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn advance(&mut self, observer: &mut dyn Observer) -> Result<bool, SimulationError> {
+        if self.clock.done() || self.stopped() {
+            return Ok(false);
         }
+        while self.flying.len() >= AHEAD {
+            self.read_oldest(observer)?;
+        }
+        self.submit_next()?;
+        if self.snapshot_due() {
+            self.read_all(observer)?;
+            self.snapshot(observer)?;
+        }
+        Ok(true)
+    }
+
+    /// Reads what is under way and closes the account.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
         if self.averages.ready() {
             self.emit_row(observer)?;
@@ -185,6 +218,13 @@ impl<'a> Simulation<'a> {
 
     fn submit_next(&mut self) -> Result<(), SimulationError> {
         let plan = &self.model.plan;
+        if self.submitted >= AHEAD
+            && let Some(demand) = self.demands.pop_front()
+        {
+            let time = self.clock.time();
+            self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+        }
+        self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
         let (start, first_step) = (self.clock.time(), self.clock.steps);
         self.clock.advance(level, steps);
@@ -226,9 +266,7 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, particles, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
-        let demand = self.ladder.demand(&tallies.blocks, &tallies.fast);
-        let time = self.read_until;
-        self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+        self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
         }
@@ -293,7 +331,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// The flights of the last step of the run so far, by id: for tests and studies of single steps.
+    /// The flights of the last step of the run so far, with ids, in the order of [`Simulation::particles`]: for tests and studies of single steps.
     ///
     /// # Errors
     /// If the device fails.
@@ -301,6 +339,14 @@ impl<'a> Simulation<'a> {
         let particles = self.subdomain.particles(self.device)?;
         let flights = self.subdomain.flights(self.device)?;
         Ok(particles.iter().map(GpuParticle::id).zip(flights).collect())
+    }
+
+    /// The particles, in the order of the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn particles(&self) -> Result<Vec<GpuParticle>, SimulationError> {
+        Ok(self.subdomain.particles(self.device)?)
     }
 
     pub fn scales(&self) -> Scales {

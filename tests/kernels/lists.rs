@@ -1,0 +1,75 @@
+//! `reset`, `inject` and `lost`: exactly.
+
+use corpuscle::subdomain::{GpuNewborn, GpuParticle, GpuStep};
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+/// `reset` empties the lists and their dispatches and touches no other counter.
+#[test]
+fn reset_empties_every_list_and_nothing_else() {
+    let mut rig = Rig::new(&World::plain());
+    let mut stream = Stream::new(1);
+    let noise: Vec<u32> = (0..3 * LISTS).map(|_| stream.word() | 1).collect();
+    rig.put("counters", &noise[..COUNTERS]);
+    rig.put("dispatches", &noise);
+    rig.put("rechoose_dispatches", &noise);
+    rig.run_groups("reset", [1, 1, 1]);
+    let counters: Vec<u32> = rig.get("counters", COUNTERS);
+    assert_eq!(counters[..LISTS], [0; LISTS]);
+    // The check can fail: what is not a list keeps its noise.
+    assert_eq!(counters[LISTS..], noise[LISTS..COUNTERS]);
+    let empty = [[0u32, 1, 1]; LISTS];
+    assert_eq!(rig.get::<[u32; 3]>("dispatches", LISTS), empty);
+    assert_eq!(rig.get::<[u32; 3]>("rechoose_dispatches", LISTS), empty);
+}
+
+/// `inject` appends the newborns of this step after the particles; those without room are counted.
+#[test]
+fn inject_appends_newborns_and_counts_those_without_room() {
+    let world = World::plain();
+    let mut stream = Stream::new(2);
+    let before = world.particles(&mut stream, 300, 400.0);
+    let born: Vec<GpuNewborn> = world
+        .particles(&mut stream, 500, 400.0)
+        .into_iter()
+        .map(|particle| GpuNewborn { particle, start: stream.uniform() as f32, pad: [0; 3] })
+        .collect();
+    for room in [900usize, 412] {
+        let mut rig = Rig::new(&world);
+        let mut slots = before.clone();
+        slots.resize(room, GpuParticle::default());
+        rig.put("particles", &slots);
+        rig.put("newborns", &born);
+        rig.set_counter(PARTICLES, 300);
+        rig.step(GpuStep { count: 300, newborns: 200, newborn_offset: 77, ..GpuStep::default() });
+        rig.run("inject", 200);
+        let found = 200.min(room - 300);
+        for (slot, born) in slots[300..300 + found].iter_mut().zip(&born[77..]) {
+            *slot = born.particle;
+        }
+        assert_eq!(rig.get::<GpuParticle>("particles", room), slots);
+        assert_eq!(rig.counter(PARTICLES), 300 + found as u32);
+        // The check can fail: of the two rooms the smaller one does.
+        assert_eq!(rig.counter(CAPACITY_FAILED), 200 - found as u32);
+    }
+}
+
+/// `lost` adds the pairs of the extra round, and the collisions of all others, to the sums.
+#[test]
+fn lost_adds_the_extra_round_to_the_sample() {
+    let mut stream = Stream::new(3);
+    let words: Vec<u32> = (0..COUNTERS).map(|_| stream.below(1 << 20)).collect();
+    for rounds in [1, 3, 8] {
+        let mut rig = Rig::new(&World::plain());
+        rig.put("counters", &words);
+        rig.constant("ROUNDS", rounds as f64);
+        rig.run_groups("lost", [1, 1, 1]);
+        let mut expected = words.clone();
+        expected[LOST] += words[rounds];
+        expected[SAMPLED] += words[..rounds].iter().sum::<u32>();
+        let found: Vec<u32> = rig.get("counters", COUNTERS);
+        assert_eq!(found, expected);
+        assert_ne!(found, words, "the check can fail");
+    }
+}

@@ -1,0 +1,50 @@
+//! Every kernel of `shaders/` alone, on random inputs and a device, against the f64 reference: integer
+//! results exactly, floating-point ones within bounds derived from f32 rounding (u = 2^-24 per operation).
+
+#[allow(dead_code)] // Each test binary uses its own part.
+#[path = "../oracle/mod.rs"]
+mod oracle;
+
+mod blocks;
+mod bounce;
+mod choose;
+mod closed;
+mod fly;
+mod lists;
+mod match_pairs;
+mod neighbours;
+mod philox;
+mod rig;
+mod scan;
+mod screen;
+mod settle;
+mod sort;
+mod tally;
+
+/// No kernel goes untested: the table of kernels is the list of those the files here run.
+#[test]
+fn every_kernel_has_its_test() {
+    let tested = [
+        "advect",
+        "bin",
+        "blocks",
+        "bounce",
+        "choose",
+        "inject",
+        "lost",
+        "match_pairs",
+        "neighbours",
+        "order",
+        "reset",
+        "scan_cells",
+        "scan_chunks",
+        "scan_sums",
+        "scatter",
+        "screen",
+        "settle",
+        "tally",
+        "wall_times",
+    ];
+    let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
+    assert_eq!(known, tested);
+}

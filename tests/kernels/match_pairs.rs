@@ -1,0 +1,74 @@
+//! `match_pairs`: the mutual choices, exactly.
+
+use std::collections::BTreeSet;
+
+use corpuscle::subdomain::{GpuParticle, GpuStep};
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 2000;
+const ROUNDS: u32 = 3;
+
+/// A pair is found once, lower id first, if and only if its choices are mutual and at least one of the two has
+/// just chosen; after the last round it is only counted.
+#[test]
+fn pairs_are_the_mutual_choices_of_those_that_chose() {
+    let world = World::plain();
+    let mut stream = Stream::new(31);
+    let particles: Vec<GpuParticle> = world.particles(&mut stream, COUNT, 1.0);
+    let mut order: Vec<usize> = (0..COUNT).collect();
+    stream.shuffle(&mut order);
+    // A third is mutual, a third chooses one that does not choose back, a third chooses nobody.
+    let mut choices = vec![[NOBODY, 0u32]; COUNT];
+    for pair in order.chunks(2) {
+        match stream.below(3) {
+            0 => {
+                choices[pair[0]] = [pair[1] as u32, 5];
+                choices[pair[1]] = [pair[0] as u32, 5];
+            }
+            1 => choices[pair[0]] = [pair[1] as u32, 5],
+            _ => {}
+        }
+    }
+    let id = |s: usize| particles[s].id();
+    for round in [0, 1, ROUNDS] {
+        let chose: BTreeSet<u32> = (0..COUNT as u32).filter(|_| round == 0 || stream.below(3) == 0).collect();
+        let touched: Vec<u32> =
+            (0..COUNT as u32).map(|s| if chose.contains(&s) { round } else { round.saturating_sub(1) }).collect();
+        let mut entries: Vec<u32> = chose.iter().copied().collect();
+        stream.shuffle(&mut entries);
+        let mut expected: Vec<[u32; 2]> = Vec::new();
+        for (s, choice) in choices.iter().enumerate() {
+            let other = choice[0];
+            let mutual = other != NOBODY && choices[other as usize][0] == s as u32 && id(s) < id(other as usize);
+            if mutual && (chose.contains(&(s as u32)) || chose.contains(&other)) {
+                expected.push([s as u32, other]);
+            }
+        }
+        let mut rig = Rig::new(&world);
+        rig.constant("ROUNDS", f64::from(ROUNDS));
+        rig.put("sorted", &particles);
+        rig.put("choices", &choices);
+        rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
+        rig.put("touched", &touched);
+        rig.put("rechoose", &entries);
+        rig.set_counter(LIST_RECHOOSE + round as usize, if round == 0 { 0 } else { entries.len() as u32 });
+        rig.step(GpuStep { count: COUNT as u32, round, ..GpuStep::default() });
+        rig.run("match_pairs", if round == 0 { COUNT } else { entries.len() });
+        assert_eq!(rig.counter(round as usize), expected.len() as u32, "round {round}");
+        let mut found: Vec<[u32; 2]> = rig.get("pairs", expected.len());
+        found.sort_unstable();
+        let dispatch: Vec<u32> = rig.get::<u32>("dispatches", 3 * (round as usize + 1)).split_off(3 * round as usize);
+        if round < ROUNDS {
+            assert_eq!(found, expected);
+            assert_eq!(dispatch[..2], [expected.len().div_ceil(64) as u32, 1], "the dispatch covers the list");
+        } else {
+            assert!(found.iter().all(|pair| *pair == [NOBODY; 2]), "the extra round only counts");
+            assert_eq!(dispatch[0], 0);
+        }
+        // The check can fail: there are pairs, and choices that are not mutual.
+        let chosen = choices.iter().filter(|choice| choice[0] != NOBODY).count();
+        assert!(!expected.is_empty() && 2 * expected.len() < chosen);
+    }
+}

@@ -1,0 +1,119 @@
+//! `neighbours` against a search of all pairs: exactly.
+
+use std::collections::BTreeSet;
+
+use corpuscle::subdomain::GpuStep;
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 1500;
+
+struct Crowd {
+    world: World,
+    /// Mid-step points by (cell, order), some beyond the grid.
+    middles: Vec<[u32; 3]>,
+    rig: Rig,
+}
+
+fn crowd(seed: u32) -> Crowd {
+    let world = World::plain();
+    let cells = world.cells();
+    let mut stream = Stream::new(seed);
+    let cell = world.grid.cell;
+    let mut middles: Vec<[u32; 3]> = (0..COUNT)
+        .map(|k| {
+            let beyond = if k % 50 == 0 { 4.0 * cell } else { 0.0 };
+            world.fixed(std::array::from_fn(|a| stream.between(world.low[a] - beyond, world.high[a] + beyond)))
+        })
+        .collect();
+    middles.sort_by_key(|&p| cells.index(cells.cell(p)));
+    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
+    let packed: Vec<u32> = middles
+        .iter()
+        .zip(&of)
+        .map(|(p, &c)| {
+            let part = |k: usize| (p[k] >> (cells.bits - 7) & 1023) << (10 * k);
+            part(0) | part(1) | part(2) | u32::from(world.class(c) != CLEAR) << 31
+        })
+        .collect();
+    let mut rig = Rig::new(&world);
+    rig.put("cell_start", &start);
+    rig.put("middles", &packed);
+    rig.put("cells", &of);
+    rig.put("neighbour_count", &vec![9u32; COUNT]);
+    rig.put("screened", &vec![0u32; COUNT]);
+    rig.step(GpuStep { count: COUNT as u32, ..GpuStep::default() });
+    Crowd { world, middles, rig }
+}
+
+impl Crowd {
+    fn run(&mut self, room: usize) -> Vec<Vec<u32>> {
+        self.rig.constant("LIST", room as f64);
+        self.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
+        self.rig.run("neighbours", COUNT);
+        let flat: Vec<u32> = self.rig.get("neighbours", room * COUNT);
+        let counts: Vec<u32> = self.rig.get("neighbour_count", COUNT);
+        (0..COUNT).map(|s| (0..counts[s] as usize).map(|k| flat[k * COUNT + s]).collect()).collect()
+    }
+
+    fn all_pairs(&self) -> Vec<BTreeSet<u32>> {
+        let cells = self.world.cells();
+        let near = |i: usize, j: usize| {
+            let (p, q) = (self.middles[i], self.middles[j]);
+            i != j && cells.touching(p, q) && cells.packed_near(p, q)
+        };
+        (0..COUNT).map(|i| (0..COUNT).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect()
+    }
+}
+
+/// Each list is the set that a search of all pairs finds by the packed rule, and holds every other particle
+/// nearer than the edge of a cell.
+#[test]
+fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
+    let mut crowd = crowd(12);
+    let lists = crowd.run(64);
+    let expected = crowd.all_pairs();
+    let cells = crowd.world.cells();
+    let mut beyond = 0;
+    for (s, list) in lists.iter().enumerate() {
+        let set: BTreeSet<u32> = list.iter().copied().collect();
+        assert_eq!(set.len(), list.len(), "each once");
+        assert_eq!(set, expected[s], "particle {s}");
+        for j in (0..COUNT).filter(|&j| j != s) {
+            let near = cells.nearer_than_a_cell(crowd.middles[s], crowd.middles[j]);
+            assert!(!near || set.contains(&(j as u32)), "{s} misses {j}");
+            beyond += usize::from(!near && set.contains(&(j as u32)));
+        }
+    }
+    assert_eq!(crowd.rig.counter(MOST_NEIGHBOURS), 0);
+    // Those with a neighbour, of which one or they themselves are near a wall.
+    let near_wall = |s: u32| crowd.world.class(cells.index(cells.cell(crowd.middles[s as usize]))) != CLEAR;
+    let to_screen = |s: &u32| {
+        let list = &expected[*s as usize];
+        !list.is_empty() && (near_wall(*s) || list.iter().any(|&j| near_wall(j)))
+    };
+    let screened: Vec<u32> = (0..COUNT as u32).filter(to_screen).collect();
+    assert_eq!(crowd.rig.list("screened", LIST_SCREEN), screened);
+    assert!(screened.len() < COUNT, "some are clear of walls");
+    // The check can fail: the packed rule is wider than the edge of a cell, but by few pairs.
+    let total: usize = lists.iter().map(Vec::len).sum();
+    assert!(beyond > 0 && beyond < total / 10, "{beyond} of {total}");
+}
+
+/// Lists that are too short keep what fits and report the longest that was wanted.
+#[test]
+fn a_list_too_short_is_reported_with_the_length_it_needs() {
+    let mut crowd = crowd(13);
+    let room = 12;
+    let lists = crowd.run(room);
+    let expected = crowd.all_pairs();
+    let longest = expected.iter().map(BTreeSet::len).max().unwrap();
+    assert!(longest > room, "the check can fail only if some list is too short");
+    assert_eq!(crowd.rig.counter(MOST_NEIGHBOURS), longest as u32);
+    for (list, expected) in lists.iter().zip(&expected) {
+        assert_eq!(list.len(), expected.len().min(room));
+        assert!(list.iter().all(|j| expected.contains(j)));
+    }
+}

@@ -1,0 +1,62 @@
+//! The device's Philox, alone in a probe, is the published function.
+
+use std::sync::OnceLock;
+
+use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, TimedPass};
+
+use crate::oracle::random::{Stream, philox};
+use crate::rig::device;
+
+const PROBE: &str = "
+@group(0) @binding(0) var<storage, read> inputs: array<u32>;
+@group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+    let at = 6u * id.x;
+    let counter = vec4<u32>(inputs[at], inputs[at + 1u], inputs[at + 2u], inputs[at + 3u]);
+    outputs[id.x] = philox(counter, vec2<u32>(inputs[at + 4u], inputs[at + 5u]));
+}
+";
+
+fn source() -> &'static KernelSource {
+    static TEXT: OnceLock<String> = OnceLock::new();
+    static SOURCE: OnceLock<KernelSource> = OnceLock::new();
+    SOURCE.get_or_init(|| KernelSource {
+        name: "probe",
+        entry_point: "probe",
+        bindings: &[
+            Binding { index: 0, name: "inputs", access: Access::Read },
+            Binding { index: 1, name: "outputs", access: Access::ReadWrite },
+        ],
+        overrides: &[("SEED_LOW", true), ("SEED_HIGH", true)],
+        source: TEXT.get_or_init(|| include_str!("../../shaders/shared/philox.wgsl").to_owned() + PROBE),
+    })
+}
+
+#[test]
+fn the_device_draws_the_published_philox() {
+    let count = 64 * 64;
+    let mut stream = Stream::new(40);
+    let mut inputs: Vec<u32> = (0..6 * count).map(|_| stream.word()).collect();
+    // The extremes: carries of the split multiplication.
+    inputs[..6].fill(0);
+    inputs[6..12].fill(u32::MAX);
+    inputs[12..18].copy_from_slice(&[0xffff, 0xffff_0000, 0x1_0000, 0x8000_8000, 1, u32::MAX]);
+    let buffers = [
+        device().storage_of("inputs", &inputs).expect("memory"),
+        device().storage::<[u32; 4]>("outputs", count as u64).expect("memory"),
+    ];
+    let kernel = Kernel::of(device(), source(), &[("SEED_LOW", 0.0), ("SEED_HIGH", 0.0)]).expect("a kernel");
+    let find = |name: &str| buffers.get(usize::from(name == "outputs"));
+    let bound = kernel.bind(device(), find).expect("its buffers");
+    let mut encoder = device().encoder();
+    bound.dispatch(TimedPass::new(&mut encoder, None).phase("probe"), 0, [64, 1, 1]);
+    device().submit(encoder);
+    let outputs: Vec<[u32; 4]> = device().read(&buffers[1], count).expect("the device's answer");
+    for (input, output) in inputs.chunks_exact(6).zip(outputs) {
+        let (counter, key) = ([input[0], input[1], input[2], input[3]], [input[4], input[5]]);
+        assert_eq!(output, philox(counter, key), "{counter:?} {key:?}");
+        assert_ne!(output, philox(counter, [key[0] ^ 1, key[1]]), "the check can fail");
+    }
+}

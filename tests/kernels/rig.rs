@@ -1,0 +1,231 @@
+//! What a kernel needs to run alone: a device, a world of walls on a grid, and buffers that the test owns.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
+use corpuscle::gpu::{Device, Kernel, TimedPass};
+use corpuscle::scene::{GasSide, Shape, Wall};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, Walls};
+
+use crate::oracle::cells::Cells;
+use crate::oracle::random::Stream;
+use crate::oracle::vector::Vector;
+use crate::oracle::walls::Triangle;
+
+/// Counters of `shaders/shared/counters.wgsl` and lists of `lists.wgsl`.
+pub const COUNTERS: usize = 45;
+pub const LISTS: usize = 32;
+pub const LIST_NEAR_WALLS: usize = 9;
+pub const LIST_SCREEN: usize = 10;
+pub const LIST_BOUNCE: usize = 11;
+pub const LIST_RECHOOSE: usize = 16;
+pub const LOST: usize = 34;
+pub const SAMPLED: usize = 35;
+pub const MOST_NEIGHBOURS: usize = 36;
+pub const OUTSIDE: usize = 37;
+pub const OVERSHOOT: usize = 38;
+pub const TRUNCATED: usize = 39;
+pub const TALLY_OVERFLOW: usize = 40;
+pub const CAPACITY_FAILED: usize = 41;
+pub const BOUNCES: usize = 42;
+pub const BLOCKED: usize = 43;
+pub const PARTICLES: usize = 44;
+
+pub const NOBODY: u32 = u32::MAX;
+pub const NEVER: f32 = 1e30;
+/// Cell classes of `shaders/shared/grid.wgsl`.
+pub const CLEAR: u32 = 0;
+pub const SOLID: u32 = 3;
+
+/// Unit roundoff of f32.
+pub const U: f64 = 1.0 / 16_777_216.0;
+
+pub fn device() -> &'static Device {
+    static DEVICE: OnceLock<Device> = OnceLock::new();
+    DEVICE.get_or_init(|| Device::open(None).expect("a device (install Mesa's lavapipe where there is no GPU)"))
+}
+
+/// Walls on a grid. Positions in f64 are in metres from the grid's corner.
+pub struct World {
+    pub grid: Grid,
+    pub walls: Walls,
+    pub triangles: Vec<Triangle>,
+    /// Corners of the box around the walls, m from the grid's corner.
+    pub low: Vector,
+    pub high: Vector,
+}
+
+pub fn wall(shape: Shape, gas: GasSide) -> Wall {
+    Wall { name: "wall".into(), shape, gas }
+}
+
+/// A box of gas from the origin.
+pub fn tank(size: Vector) -> Wall {
+    wall(Shape::Box { min: [0.0; 3], max: size, thickness: None, holes: vec![] }, GasSide::Inside)
+}
+
+impl World {
+    pub fn new(walls: &[Wall], cell: f64) -> World {
+        let vessel = Vessel::build(walls).expect("closed walls");
+        let (low, high) = vessel.bounds;
+        let grid = Grid::around(low, high, cell).expect("a grid");
+        let fixed = TriangleGrid::build(&vessel, &grid, Walls::tolerance(&grid)).expect("triangles on the grid");
+        let metres = |corner: [i32; 3]| corner.map(|q| f64::from(q) * grid.quantum());
+        let triangles = fixed.triangles.iter().map(|t| t.corners.map(metres)).collect();
+        let from_corner = |p: Vector| std::array::from_fn(|k| p[k] - grid.origin[k]);
+        let patch: Vec<u32> = (0..vessel.triangles.len() as u32).map(|k| k % 3).collect();
+        World {
+            walls: Walls::new(&fixed, &grid, &patch),
+            triangles,
+            low: from_corner(low),
+            high: from_corner(high),
+            grid,
+        }
+    }
+
+    /// A tank of 6 x 7 x 8 cells.
+    pub fn plain() -> World {
+        World::new(&[tank([0.06, 0.07, 0.08])], 0.01)
+    }
+
+    pub fn cells(&self) -> Cells {
+        Cells {
+            counts: self.grid.cells,
+            bits: self.grid.cell_bits,
+            quanta_per_metre: (1.0 / self.grid.quantum()) as f32,
+        }
+    }
+
+    pub fn class(&self, cell: u32) -> u32 {
+        self.walls.class[cell as usize / 16] >> (2 * (cell % 16)) & 3
+    }
+
+    pub fn metres(&self, p: [u32; 3]) -> Vector {
+        p.map(|q| Cells::signed(q) as f64 * self.grid.quantum())
+    }
+
+    pub fn fixed(&self, p: Vector) -> [u32; 3] {
+        p.map(|x| (x / self.grid.quantum()).round() as i64 as u32)
+    }
+
+    /// Uniform in the box around the walls.
+    pub fn place(&self, stream: &mut Stream) -> [u32; 3] {
+        let at: Vector = std::array::from_fn(|k| stream.between(self.low[k], self.high[k]));
+        self.fixed(at)
+    }
+
+    /// `count` particles of random tags (ids all different, two gases), uniform, with normal velocities of this
+    /// many m/s per axis.
+    pub fn particles(&self, stream: &mut Stream, count: usize, speed: f64) -> Vec<GpuParticle> {
+        let mut ids: Vec<u32> = (0..2 * count as u32).collect();
+        stream.shuffle(&mut ids);
+        ids.truncate(count);
+        ids.iter()
+            .map(|&id| GpuParticle {
+                position: self.place(stream),
+                tag: GpuParticle::tag((stream.word() & 1) as u8, id),
+                velocity: stream.normals().map(|v| (v * speed) as f32),
+                spin: stream.half_chi_square(2) as f32 * (speed * speed) as f32,
+            })
+            .collect()
+    }
+}
+
+/// Flights that start at 0 and meet no wall.
+pub fn free_flights(count: usize) -> Vec<GpuFlight> {
+    vec![GpuFlight { start: 0.0, wall: NEVER, partner: NOBODY, collisions: 0 }; count]
+}
+
+/// Buffers and constants for kernels on one world.
+pub struct Rig {
+    buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    constants: Vec<(&'static str, f64)>,
+}
+
+impl Rig {
+    pub fn new(world: &World) -> Rig {
+        let grid = &world.grid;
+        let constants = vec![
+            ("CELLS_X", f64::from(grid.cells[0])),
+            ("CELLS_Y", f64::from(grid.cells[1])),
+            ("CELLS_Z", f64::from(grid.cells[2])),
+            ("CELL_BITS", f64::from(grid.cell_bits)),
+            ("QUANTUM", grid.quantum()),
+            ("QUANTA", 1.0 / grid.quantum()),
+            ("TOLERANCE", world.walls.tolerance),
+        ];
+        let mut rig = Rig { buffers: BTreeMap::new(), constants };
+        rig.put("wall_start", &world.walls.start);
+        rig.put("wall_list", &world.walls.list);
+        rig.put("triangles", &world.walls.triangles);
+        rig.put("cell_class", &world.walls.class);
+        rig.put("counters", &[0u32; COUNTERS]);
+        rig.put("dispatches", &[0u32; 3 * LISTS]);
+        rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
+        rig.put("newborns", &[0u32; 12]);
+        rig
+    }
+
+    pub fn constant(&mut self, name: &'static str, value: f64) {
+        self.constants.retain(|(known, _)| *known != name);
+        self.constants.push((name, value));
+    }
+
+    /// A storage buffer; its length is rounded up to 16 bytes, with zeros.
+    pub fn put<T: bytemuck::Pod>(&mut self, name: &'static str, data: &[T]) {
+        self.buffers.insert(name, device().storage_of(name, data).expect("memory"));
+    }
+
+    pub fn uniform<T: bytemuck::Pod>(&mut self, name: &'static str, data: &[T]) {
+        let buffer = device().uniform(name, size_of_val(data) as u64).expect("memory");
+        device().write(&buffer, 0, data);
+        self.buffers.insert(name, buffer);
+    }
+
+    pub fn step(&mut self, step: GpuStep) {
+        self.uniform("step", &[step]);
+    }
+
+    pub fn gases(&mut self, gases: &[GpuGas]) {
+        let mut table = [GpuGas::default(); 16];
+        table[..gases.len()].copy_from_slice(gases);
+        self.uniform("gases", &table);
+    }
+
+    /// Sets one counter, the others as they are.
+    pub fn set_counter(&self, slot: usize, value: u32) {
+        device().write(&self.buffers["counters"], 4 * slot as u64, &[value]);
+    }
+
+    pub fn counter(&self, slot: usize) -> u32 {
+        self.get::<u32>("counters", COUNTERS)[slot]
+    }
+
+    /// Runs a kernel over workgroups.
+    pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
+        let compiled = Kernel::new(device(), kernel, &self.constants).expect("a kernel");
+        let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
+        let mut encoder = device().encoder();
+        let mut pass = TimedPass::new(&mut encoder, None);
+        bound.dispatch(pass.phase("test"), 0, groups);
+        pass.end();
+        device().submit(encoder);
+    }
+
+    /// Runs a kernel over threads.
+    pub fn run(&self, kernel: &str, threads: usize) {
+        self.run_groups(kernel, [threads.div_ceil(64) as u32, 1, 1]);
+    }
+
+    pub fn get<T: bytemuck::Pod>(&self, name: &str, items: usize) -> Vec<T> {
+        device().read(&self.buffers[name], items).expect("the device's answer")
+    }
+
+    /// The entries of a list, in ascending order: which thread appends first is not determined.
+    pub fn list(&self, buffer: &str, list: usize) -> Vec<u32> {
+        let mut entries = self.get::<u32>(buffer, self.counter(list) as usize);
+        entries.sort_unstable();
+        entries
+    }
+}

@@ -1,0 +1,82 @@
+//! `scan_sums`, `scan_chunks` and `scan_cells`: the parts of an exclusive prefix sum, exactly.
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const CHUNK: usize = 64;
+
+fn rig() -> Rig {
+    let mut rig = Rig::new(&World::plain());
+    rig.constant("CHUNK", CHUNK as f64);
+    rig.step(corpuscle::subdomain::GpuStep::default());
+    rig
+}
+
+fn counts(stream: &mut Stream, cells: usize) -> Vec<u32> {
+    (0..cells).map(|_| stream.below(9)).collect()
+}
+
+/// The sum of the counts before each entry, and after the last.
+fn prefix(counts: &[u32]) -> Vec<u32> {
+    let mut total = 0;
+    let mut sums = vec![0];
+    sums.extend(counts.iter().map(|count| {
+        total += count;
+        total
+    }));
+    sums
+}
+
+/// Numbers of cells around whole chunks and workgroups of chunks; a buffer holds a multiple of four.
+const CELLS: [usize; 4] = [4, 64, 64 * 64 + 4, 30_000];
+
+#[test]
+fn scan_sums_adds_each_chunk() {
+    let mut stream = Stream::new(4);
+    for cells in CELLS {
+        let mut rig = rig();
+        let counts = counts(&mut stream, cells);
+        let chunks = cells.div_ceil(CHUNK);
+        rig.put("cell_count", &counts);
+        rig.put("chunk_sums", &vec![7u32; chunks]);
+        rig.run("scan_sums", chunks);
+        let sums: Vec<u32> = counts.chunks(CHUNK).map(|chunk| chunk.iter().sum()).collect();
+        let found: Vec<u32> = rig.get("chunk_sums", chunks);
+        assert_eq!(found, sums);
+        // The check can fail: the last count matters.
+        assert_ne!(found[chunks - 1], sums[chunks - 1] + 1);
+    }
+}
+
+#[test]
+fn scan_chunks_is_an_exclusive_prefix_sum() {
+    let mut stream = Stream::new(5);
+    for chunks in [4, 128, 132, 5000] {
+        let mut rig = rig();
+        let sums = counts(&mut stream, chunks);
+        rig.put("chunk_sums", &sums);
+        rig.run_groups("scan_chunks", [1, 1, 1]);
+        let found: Vec<u32> = rig.get("chunk_sums", chunks);
+        assert_eq!(found, prefix(&sums)[..chunks]);
+        // The check can fail: it is not the inclusive sum.
+        assert_ne!(found, prefix(&sums)[1..]);
+    }
+}
+
+#[test]
+fn scan_cells_starts_each_cell_and_clears_the_counts() {
+    let mut stream = Stream::new(6);
+    for cells in CELLS {
+        let mut rig = rig();
+        let counts = counts(&mut stream, cells);
+        let starts = prefix(&counts);
+        let chunk_starts: Vec<u32> = starts[..cells].iter().step_by(CHUNK).copied().collect();
+        rig.put("cell_count", &counts);
+        rig.put("chunk_sums", &chunk_starts);
+        rig.put("cell_start", &vec![7u32; cells + 1]);
+        rig.run("scan_cells", chunk_starts.len());
+        assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
+        assert_eq!(rig.get::<u32>("cell_count", cells), vec![0; cells]);
+        assert_ne!(starts[cells], 0, "the check can fail: there were particles");
+    }
+}

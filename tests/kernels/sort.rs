@@ -1,0 +1,168 @@
+//! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly.
+
+use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep};
+
+use crate::oracle::cells::Cells;
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 2000;
+/// A typical flight is a third of a cell; some leave the grid.
+const SPEED: f64 = 400.0;
+const DT: f32 = 1e-5;
+
+struct Sorted {
+    world: World,
+    cells: Cells,
+    particles: Vec<GpuParticle>,
+    /// The cell of each particle's mid-step point.
+    cell: Vec<u32>,
+    start: Vec<u32>,
+}
+
+fn sorted(seed: u32) -> Sorted {
+    let world = World::plain();
+    let cells = world.cells();
+    let mut stream = Stream::new(seed);
+    let mut particles = world.particles(&mut stream, COUNT, SPEED);
+    for fast in particles.iter_mut().step_by(100) {
+        fast.velocity = fast.velocity.map(|v| 30.0 * v);
+    }
+    let cell: Vec<u32> =
+        particles.iter().map(|p| cells.index(cells.cell(cells.middle(p.position, p.velocity, DT)))).collect();
+    let mut start = vec![0u32; cells.count() + 1];
+    for &c in &cell {
+        for later in &mut start[c as usize + 1..] {
+            *later += 1;
+        }
+    }
+    Sorted { world, cells, particles, cell, start }
+}
+
+fn step() -> GpuStep {
+    GpuStep { count: COUNT as u32, dt: DT, newborn_first_id: u32::MAX, ..GpuStep::default() }
+}
+
+#[test]
+fn bin_counts_every_particle_in_the_cell_of_its_mid_step_point() {
+    let Sorted { world, cells, particles, cell, start } = sorted(7);
+    let mut rig = Rig::new(&world);
+    rig.put("particles", &particles);
+    rig.put("bins", &vec![[NOBODY; 2]; COUNT]);
+    rig.put("cell_count", &vec![0u32; cells.count()]);
+    rig.step(step());
+    rig.run("bin", COUNT);
+    let counts: Vec<u32> = start.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(rig.get::<u32>("cell_count", cells.count()), counts);
+    let bins: Vec<[u32; 2]> = rig.get("bins", COUNT);
+    assert_eq!(bins.iter().map(|bin| bin[0]).collect::<Vec<_>>(), cell);
+    // The slots of a cell are 0, 1, .. in some order.
+    let mut places: Vec<u32> = bins.iter().map(|bin| start[bin[0] as usize] + bin[1]).collect();
+    places.sort_unstable();
+    assert_eq!(places, (0..COUNT as u32).collect::<Vec<_>>());
+    // The check can fail: the cell at the start of the step is another one for many.
+    let at_start = particles.iter().map(|p| cells.index(cells.cell(p.position)));
+    assert!(at_start.zip(&cell).filter(|(a, b)| a != *b).count() > COUNT / 20);
+}
+
+#[test]
+fn scatter_puts_each_particle_into_its_slot() {
+    let Sorted { world, particles, cell, start, .. } = sorted(8);
+    let mut stream = Stream::new(9);
+    // Slots as another order of threads would give them.
+    let mut arrival: Vec<usize> = (0..COUNT).collect();
+    stream.shuffle(&mut arrival);
+    let mut next = start.clone();
+    let mut bins = vec![[0u32; 2]; COUNT];
+    let mut expected = vec![[0u32; 2]; COUNT];
+    for &k in &arrival {
+        let place = next[cell[k] as usize];
+        next[cell[k] as usize] += 1;
+        bins[k] = [cell[k], place - start[cell[k] as usize]];
+        expected[place as usize] = [k as u32, particles[k].id()];
+    }
+    let mut rig = Rig::new(&world);
+    rig.put("particles", &particles);
+    rig.put("bins", &bins);
+    rig.put("cell_start", &start);
+    rig.put("slots", &vec![[NOBODY; 2]; COUNT]);
+    rig.step(step());
+    rig.run("scatter", COUNT);
+    let found: Vec<[u32; 2]> = rig.get("slots", COUNT);
+    assert_eq!(found, expected);
+    assert_ne!(found[0], [0, particles[0].id()], "the check can fail: nothing was in order before");
+}
+
+/// `order` gives the particles by (cell, id) whatever the order within the slots was, with flights that start
+/// at a newborn's entry, and lists exactly those that may meet a wall.
+#[test]
+fn order_is_canonical() {
+    let Sorted { world, cells, mut particles, cell, start } = sorted(10);
+    let mut stream = Stream::new(11);
+    // The last 100 were born in this step.
+    let (first_id, born) = (1_000_000, 100u32);
+    let entries: Vec<GpuNewborn> =
+        (0..born + 5).map(|_| GpuNewborn { start: DT * stream.uniform() as f32, ..GpuNewborn::default() }).collect();
+    for (k, particle) in particles[COUNT - born as usize..].iter_mut().enumerate() {
+        particle.tag = GpuParticle::tag(1, first_id + k as u32);
+    }
+    let begin = |p: &GpuParticle| match p.id().checked_sub(first_id) {
+        Some(k) => entries[5 + k as usize].start,
+        None => 0.0,
+    };
+    let mut canonical: Vec<usize> = (0..COUNT).collect();
+    canonical.sort_by_key(|&k| (cell[k], particles[k].id()));
+    let expected: Vec<GpuParticle> = canonical.iter().map(|&k| particles[k]).collect();
+    let near_walls: Vec<u32> = (0..COUNT as u32)
+        .filter(|&s| {
+            let p = expected[s as usize];
+            let at = cells.index(cells.cell(cells.shifted(p.position, p.velocity.map(|v| v * begin(&p)))));
+            let fastest = p.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
+            let reach = fastest * (DT - begin(&p)) * cells.quanta_per_metre;
+            world.class(at) != CLEAR || reach >= (1u32 << cells.bits) as f32
+        })
+        .collect();
+    for shuffle in 0..2 {
+        let mut slots: Vec<[u32; 2]> = canonical.iter().map(|&k| [k as u32, particles[k].id()]).collect();
+        for pair in start.windows(2) {
+            stream.shuffle(&mut slots[pair[0] as usize..pair[1] as usize]);
+        }
+        let mut rig = Rig::new(&world);
+        rig.put("particles", &particles);
+        rig.put("newborns", &entries);
+        rig.put("bins", &cell.iter().map(|&c| [c, 0u32]).collect::<Vec<_>>());
+        rig.put("cell_start", &start);
+        rig.put("slots", &slots);
+        rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
+        rig.put("flights", &vec![GpuFlight::default(); COUNT]);
+        for buffer in ["middles", "cells", "touched", "near_walls"] {
+            rig.put(buffer, &vec![9u32; COUNT]);
+        }
+        rig.step(GpuStep {
+            count: COUNT as u32 - born,
+            newborns: born,
+            newborn_offset: 5,
+            newborn_first_id: first_id,
+            dt: DT,
+            ..GpuStep::default()
+        });
+        rig.run("order", COUNT);
+        assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "shuffle {shuffle}");
+        let flights = rig.get::<GpuFlight>("flights", COUNT);
+        let new = |p: &GpuParticle| GpuFlight { start: begin(p), wall: NEVER, partner: NOBODY, collisions: 0 };
+        assert_eq!(flights, expected.iter().map(new).collect::<Vec<_>>());
+        assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
+        assert_eq!(rig.get::<u32>("touched", COUNT), vec![0; COUNT]);
+        let middles: Vec<u32> = rig.get("middles", COUNT);
+        for (s, p) in expected.iter().enumerate() {
+            let middle = cells.middle(p.position, p.velocity, DT);
+            let part = |k: usize| (middle[k] >> (cells.bits - 7) & 1023) << (10 * k);
+            let flag = u32::from(world.class(cell[canonical[s]]) != CLEAR) << 31;
+            assert_eq!(middles[s], part(0) | part(1) | part(2) | flag);
+        }
+        assert_eq!(rig.list("near_walls", LIST_NEAR_WALLS), near_walls);
+        assert!(near_walls.len() < COUNT - 50 && near_walls.len() > 50, "{}", near_walls.len());
+        // The check can fail: the particles came in another order.
+        assert_ne!(particles, expected);
+    }
+}

@@ -1,0 +1,130 @@
+//! Law: every Rust twin of a shader's struct has naga's offset for each member and naga's size, in every
+//! kernel that declares the struct, and every struct that a buffer holds has a twin.
+
+use std::collections::BTreeSet;
+use std::mem::offset_of;
+
+use corpuscle::gpu::KERNELS;
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuTriangle, GpuZone};
+use naga::{Module, TypeInner};
+
+/// A Rust struct as the shaders should see it.
+struct Twin {
+    name: &'static str,
+    size: usize,
+    members: Vec<(&'static str, usize)>,
+}
+
+macro_rules! twin {
+    ($name:literal, $rust:ty, $($member:ident),+) => {
+        Twin { name: $name, size: size_of::<$rust>(), members: vec![$((stringify!($member), offset_of!($rust, $member))),+] }
+    };
+}
+
+fn twins() -> Vec<Twin> {
+    vec![
+        twin!("Step", GpuStep, count, newborns, newborn_offset, newborn_first_id, index, dt, round, pad),
+        twin!("Particle", GpuParticle, position, tag, velocity, spin),
+        // The tail padding is not named in the shader.
+        twin!("Newborn", GpuNewborn, particle, start),
+        twin!("Flight", GpuFlight, start, wall, partner, collisions),
+        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, pad, normal, pad2),
+        twin!("Zone", GpuZone, low, kind, high, radius, axis, height),
+        twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
+    ]
+}
+
+/// What differs between a twin and the struct of its name in a module, if the module has it.
+fn differences(module: &Module, twin: &Twin) -> Option<Vec<String>> {
+    let (_, declared) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(twin.name))?;
+    let TypeInner::Struct { members, span } = &declared.inner else { return None };
+    let mut found = Vec::new();
+    if *span as usize != twin.size {
+        found.push(format!("{}: {span} bytes in the shader, {} in Rust", twin.name, twin.size));
+    }
+    let in_shader: Vec<(String, usize)> =
+        members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect();
+    let in_rust: Vec<(String, usize)> = twin.members.iter().map(|(name, at)| ((*name).into(), *at)).collect();
+    if in_shader != in_rust {
+        found.push(format!("{}: {in_shader:?} in the shader, {in_rust:?} in Rust", twin.name));
+    }
+    Some(found)
+}
+
+fn modules() -> Vec<(&'static str, Module)> {
+    let parse = |source| naga::front::wgsl::parse_str(source).expect("the build has parsed it");
+    KERNELS.iter().map(|kernel| (kernel.name, parse(kernel.source))).collect()
+}
+
+/// The structs that the buffers of a module hold, by name, those within structs and arrays included.
+fn held(module: &Module) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    let mut open: Vec<naga::Handle<naga::Type>> = module
+        .global_variables
+        .iter()
+        .filter(|(_, global)| global.binding.is_some())
+        .map(|(_, global)| global.ty)
+        .collect();
+    while let Some(handle) = open.pop() {
+        match &module.types[handle].inner {
+            TypeInner::Struct { members, .. } => {
+                names.insert(module.types[handle].name.clone().unwrap_or_default());
+                open.extend(members.iter().map(|member| member.ty));
+            }
+            TypeInner::Array { base, .. } => open.push(*base),
+            _ => {}
+        }
+    }
+    names
+}
+
+#[test]
+fn every_twin_has_the_offsets_of_its_struct_in_every_kernel() {
+    let modules = modules();
+    for twin in twins() {
+        let mut seen = 0;
+        for (kernel, module) in &modules {
+            if let Some(found) = differences(module, &twin) {
+                assert!(found.is_empty(), "{kernel}: {}", found.join("; "));
+                seen += 1;
+            }
+        }
+        assert!(seen > 0, "no kernel declares {}", twin.name);
+    }
+}
+
+#[test]
+fn every_struct_in_a_buffer_has_a_twin() {
+    let known: BTreeSet<String> = twins().iter().map(|twin| twin.name.to_string()).collect();
+    let held: BTreeSet<String> = modules().iter().flat_map(|(_, module)| held(module)).collect();
+    assert_eq!(held, known);
+}
+
+/// The check can fail: a member left out, swapped or of another size is found.
+#[test]
+fn a_wrong_twin_is_found() {
+    #[repr(C)]
+    #[allow(dead_code)] // Only its layout is used.
+    struct Swapped {
+        position: [u32; 3],
+        velocity: [f32; 3],
+        tag: u32,
+        spin: f32,
+    }
+    #[repr(C)]
+    #[allow(dead_code)] // Only its layout is used.
+    struct Short {
+        start: f32,
+        wall: f32,
+        partner: u32,
+    }
+    let modules = modules();
+    let (_, order) = modules.iter().find(|(name, _)| *name == "order").expect("the kernel");
+    let swapped = twin!("Particle", Swapped, position, velocity, tag, spin);
+    assert_eq!(differences(order, &swapped).map(|found| found.len()), Some(1));
+    let same_names = twin!("Particle", Swapped, position, tag, velocity, spin);
+    assert_eq!(differences(order, &same_names).map(|found| found.len()), Some(1));
+    let short = twin!("Flight", Short, start, wall, partner);
+    assert_eq!(differences(order, &short).map(|found| found.len()), Some(2));
+    assert!(differences(order, &twin!("NoSuchStruct", Short, start)).is_none());
+}

@@ -1,0 +1,17 @@
+//! Whole runs against closed forms: the reference cases of the specification, section 8.
+//!
+//! Each case states its law, takes its tolerance from the statistics of the run (a fixed seed makes the
+//! outcome of each the same every time), and shows that the check fails where the law does not hold.
+
+mod collision_rate;
+mod effusion;
+mod energy_drift;
+mod equilibrium_box;
+mod equipartition;
+mod filling;
+mod statistics;
+mod two_chambers;
+mod vessels;
+mod wall_pressure;
+#[path = "../whole_run/mod.rs"]
+mod whole_run;

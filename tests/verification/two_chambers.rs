@@ -1,0 +1,34 @@
+//! Law: both pressures of the tank test follow the control volume with the discharge coefficient of the
+//! run's own Knudsen number, and the late mean is that of U0 + integral h dm (issue "The tank test": within
+//! 2 % at the end).
+
+use corpuscle::simulation::{Options, reference};
+
+use crate::whole_run::{Run, published, run};
+
+/// Relative deviation of the pressure of a chamber from the reference, by row.
+fn deviations(run: &Run, expected: &[f64], chamber: usize) -> Vec<f64> {
+    run.rows.iter().zip(expected).map(|(row, expected)| row.chambers[chamber].pressure / expected - 1.0).collect()
+}
+
+#[test]
+#[ignore = "the whole tank takes minutes on a CPU; ./scripts/test.sh --long runs it"]
+fn both_pressures_follow_the_control_volume() {
+    let model = published("tank.toml", 4000, 0.1);
+    let run = run(&model, Options::default());
+    let times: Vec<f64> = run.rows.iter().map(|row| row.time).collect();
+    let states = reference(&model, &times);
+    let late = |values: &[f64]| {
+        let late: Vec<f64> =
+            values.iter().zip(&times).filter(|(_, time)| **time > 0.08).map(|(value, _)| *value).collect();
+        late.iter().sum::<f64>() / late.len() as f64
+    };
+    for (chamber, name) in ["inner", "tank"].iter().enumerate() {
+        let expected: Vec<f64> = states.iter().map(|state| state[chamber].pressure).collect();
+        let off = deviations(&run, &expected, chamber);
+        println!("{name}: late {:.4}, {off:.3?}", late(&off));
+        // N particles in a chamber show p to sqrt(2 / (3N)) at one time; the inner one has 150, in some ten
+        // independent states.
+        assert!(late(&off).abs() < 0.02, "{name}: {:.4}", late(&off));
+    }
+}

@@ -1,0 +1,68 @@
+//! Whole runs for tests: the text of a scene becomes a model, a run and all that an observer sees of it.
+
+use std::path::Path;
+
+use corpuscle::gpu::Device;
+use corpuscle::scene;
+use corpuscle::simulation::{Model, Observer, Options, Outcome, Row, Simulation, SimulationError};
+use corpuscle::subdomain::GpuParticle;
+
+pub fn device() -> Device {
+    Device::open(None).expect("an adapter")
+}
+
+/// The model of a scene; mesh files are looked for from `folder`.
+pub fn model_in(text: &str, folder: &Path) -> Model {
+    let scene = scene::parse(text, "test.toml", folder).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+    Model::new(scene).expect("a model")
+}
+
+pub fn model(text: &str) -> Model {
+    model_in(text, Path::new(""))
+}
+
+/// A scene of the repository, with `[model] particles` and `end_time` (s) replaced.
+pub fn published(name: &str, particles: u64, end_time: f64) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let mut scene = scene::load(&path).expect("a published scene");
+    scene.model.particles = Some(particles);
+    scene.end_time = end_time;
+    scene.output.rows = 40;
+    scene.output.snapshots = 0;
+    Model::new(scene).expect("a model")
+}
+
+/// What a run told, and what it left.
+pub struct Run {
+    pub rows: Vec<Row>,
+    /// Time, s, and the particles by id.
+    pub snapshots: Vec<(f64, Vec<GpuParticle>)>,
+    pub outcome: Outcome,
+}
+
+/// Keeps all it is told.
+#[derive(Default)]
+pub struct Witness {
+    pub rows: Vec<Row>,
+    pub snapshots: Vec<(f64, Vec<GpuParticle>)>,
+}
+
+impl Observer for Witness {
+    fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
+        self.rows.push(row.clone());
+        Ok(())
+    }
+
+    fn snapshot(&mut self, time: f64, particles: &[GpuParticle]) -> Result<(), SimulationError> {
+        self.snapshots.push((time, particles.to_vec()));
+        Ok(())
+    }
+}
+
+pub fn run(model: &Model, options: Options<'_>) -> Run {
+    let device = device();
+    let mut witness = Witness::default();
+    let simulation = Simulation::new(model, &device, options).expect("a simulation");
+    let outcome = simulation.run(&mut witness).expect("a run");
+    Run { rows: witness.rows, snapshots: witness.snapshots, outcome }
+}
