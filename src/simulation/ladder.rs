@@ -89,10 +89,13 @@ impl Ladder {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
         let mut rates = Vec::with_capacity(blocks.len());
         let (mut slivers, mut slivers_volume) = (BlockSum { number: 0, energy: 0 }, 0.0);
-        for (block, &volume) in blocks.iter().zip(&self.volumes).filter(|(block, _)| block.number > 0) {
+        for (block, &volume) in blocks.iter().zip(&self.volumes) {
             if volume > LEAST_VOLUME * self.full {
-                rates.push((self.collision_rate(block, volume), block.number));
+                if block.number > 0 {
+                    rates.push((self.collision_rate(block, volume), block.number));
+                }
             } else {
+                // Empty ones too: with the few particles of a sliver, those that chance filled are too dense.
                 slivers.number += block.number;
                 slivers.energy += block.energy;
                 slivers_volume += volume;
@@ -181,6 +184,7 @@ mod tests {
         let surely = |number: f64| number - number.sqrt();
         assert_eq!(demand(&[0.01, 0.03], &[60, 20]), surely(80.0) / 0.04);
         assert_eq!(demand(&[0.0, 0.04], &[60, 20]), surely(80.0) / 0.04);
+        assert_eq!(demand(&[0.01, 0.03], &[80, 0]), surely(80.0) / 0.04);
         // A few particles in a sliver do not set the step of all.
         assert_eq!(demand(&[1.0, 1e-6], &[1000, 2]), surely(1000.0));
         assert_eq!(demand(&[1.0, 1e-6], &[0, 0]), 0.0);

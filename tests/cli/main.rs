@@ -170,17 +170,20 @@ fn an_unknown_device_is_3_and_touches_no_earlier_results() {
     assert_eq!(names_below(folder.path()), before);
 }
 
-/// A step so long that the whole ladder does not reach down to what the gas needs.
+/// A step so long that flights bounce more often than is followed: all is written, and what failed is said.
 #[test]
-fn a_run_that_cannot_be_trusted_is_4() {
+fn a_failed_audit_is_4_and_leaves_its_results() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = scene_with(&folder, "particles = 8000", "particles = 2000\ntime_step = 1.0");
+    let scene = scene_with(&folder, "particles = 8000", "particles = 1000\ntime_step = 1.0");
     let text = fs::read_to_string(&scene).unwrap().replace("end_time = 0.0044", "end_time = 1.0");
     fs::write(&scene, text).unwrap();
     let out = folder.path().join("out");
-    let (code, _, err) = outcome(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert!(code == 4 && err.contains("the gas needs a step of"), "{code} {err}");
-    assert!(out.join("pressure.svg").exists());
+    let (code, text, err) = outcome(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(code == 4 && err.contains("the audit failed:") && err.contains("flights had more bounces"), "{code} {err}");
+    assert_eq!(text.lines().last(), out.to_str());
+    for file in FILES {
+        assert!(out.join(file).exists(), "{file}");
+    }
 }
 
 const FILES: [&str; 10] = [
