@@ -23,8 +23,7 @@ pub use chart::{PALETTE, Series, line_chart};
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
-    SNAPSHOT_FOLDER,
+    ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
 };
 pub use history::{Column, History, HistoryWriter};
 pub use phases::PhaseTable;

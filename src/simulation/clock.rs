@@ -8,7 +8,8 @@ pub struct Clock {
     now: u64,
     end: u64,
     levels: u32,
-    tick: f64,
+    /// s.
+    end_time: f64,
     /// Steps done.
     pub steps: u64,
 }
@@ -19,11 +20,16 @@ impl Clock {
         let per_top = 1u64 << (levels - 1);
         let top_steps = (plan.end_time / plan.time_step).round().max(1.0) as u64;
         let end = top_steps * per_top;
-        Clock { now: 0, end, levels, tick: plan.end_time / end as f64, steps: 0 }
+        Clock { now: 0, end, levels, end_time: plan.end_time, steps: 0 }
     }
 
     pub fn time(&self) -> f64 {
-        self.now as f64 * self.tick
+        self.seconds(self.now)
+    }
+
+    /// The ratio first: it is one at the end, where a sum of rounded ticks may miss the end time by a bit.
+    fn seconds(&self, ticks: u64) -> f64 {
+        self.end_time * (ticks as f64 / self.end as f64)
     }
 
     pub fn done(&self) -> bool {
@@ -36,7 +42,7 @@ impl Clock {
 
     /// Length of a step of this level, s.
     pub fn dt(&self, level: u32) -> f64 {
-        self.ticks(level) as f64 * self.tick
+        self.seconds(self.ticks(level))
     }
 
     /// The level and number of steps of the next interval: as asked, or finer where the end is nearer
@@ -67,7 +73,7 @@ mod tests {
     use super::*;
 
     fn clock() -> Clock {
-        Clock { now: 0, end: 10 * 8, levels: 4, tick: 0.125e-6, steps: 0 }
+        Clock { now: 0, end: 10 * 8, levels: 4, end_time: 10.0e-6, steps: 0 }
     }
 
     /// Whatever levels are taken on the way, the clock stops at its end and not beyond.

@@ -26,8 +26,7 @@ struct Rate {
 }
 
 fn collision_rate(device: &Device, rounds: u32, step_over_tau: f64, steps: u32) -> Rate {
-    let gas =
-        EquilibriumBox { particles: 8000, rounds, step_over_tau, steps, ..EquilibriumBox::default() };
+    let gas = EquilibriumBox { particles: 8000, rounds, step_over_tau, steps, ..EquilibriumBox::default() };
     let mut model = model(&gas.toml());
     // Intervals of one step, so that every step's flights can be read, and no finer steps.
     model.plan.steps_per_interval = 1;

@@ -17,8 +17,15 @@ const HELIUM: &str = "[[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.
 /// Relative change of the energy, and the collisions per particle.
 fn drift(gases: &str, particles: u64, steps: u32) -> (f64, f64) {
     let (mixture, molar_mass) = if gases == HELIUM { ("\"helium\"", 0.004) } else { ("\"nitrogen\"", 0.028) };
-    let gas =
-        EquilibriumBox { particles, steps, step_over_tau: 0.15, gases, mixture, molar_mass, ..EquilibriumBox::default() };
+    let gas = EquilibriumBox {
+        particles,
+        steps,
+        step_over_tau: 0.15,
+        gases,
+        mixture,
+        molar_mass,
+        ..EquilibriumBox::default()
+    };
     let mut model = model(&gas.toml());
     // Noise of few particles in a block must not shorten the steps.
     model.plan.collision_limit = 1.0;
@@ -52,7 +59,8 @@ fn energy_does_not_drift_in_a_hundred_thousand_steps() {
 #[test]
 fn a_small_gain_of_one_particle_is_over_the_limit() {
     let energy = |particles: &[GpuParticle]| -> f64 {
-        let of = |p: &GpuParticle| 0.5 * p.velocity.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>() + f64::from(p.spin);
+        let of =
+            |p: &GpuParticle| 0.5 * p.velocity.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>() + f64::from(p.spin);
         particles.iter().map(of).sum()
     };
     let gas = EquilibriumBox { particles: 500, steps: 32, ..EquilibriumBox::default() };

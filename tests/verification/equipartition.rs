@@ -70,7 +70,10 @@ fn spin_and_both_gases_come_to_one_temperature() {
     let start = [0, 1].map(|gas| temperatures(&run.snapshots[0].1, gas, [1.0 / 7.0, 1.0][usize::from(gas)]));
     assert!(start[0][0] > 8.0 * start[1][0] && start[0][1] == 0.0, "the start is unequal");
     let [spin, gases] = ratios(&run);
-    println!("T_int/T_tr {:.4} +- {:.4}, T1/T2 {:.4} +- {:.4}, lost {:?}", spin.0, spin.1, gases.0, gases.1, run.outcome.audit.lost_collision_fraction);
+    println!(
+        "T_int/T_tr {:.4} +- {:.4}, T1/T2 {:.4} +- {:.4}, lost {:?}",
+        spin.0, spin.1, gases.0, gases.1, run.outcome.audit.lost_collision_fraction
+    );
     for (name, (ratio, error)) in [("T_int/T_tr", spin), ("T1/T2", gases)] {
         assert!(error <= 0.01 / 2.0, "{name}: the run is too short, {error:.4}");
         assert!((ratio - 1.0).abs() < 0.01 + 1e-9, "{name} = {ratio:.4} +- {error:.4}");

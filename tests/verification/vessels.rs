@@ -93,7 +93,10 @@ fn checked(name: &str, model: &Model) -> Run {
     let run = run(model, Options { shuffle: Some(&with_a_fast_one), ..Options::default() });
     let audit = &run.outcome.audit;
     let limits = AuditLimits { wall_overshoot: Walls::tolerance(&model.plan.grid), ..AuditLimits::default() };
-    println!("{name}: {} steps of {:?}, {} bounces, overshoot {:.1e}", run.outcome.steps, run.outcome.step_range, run.outcome.bounces, audit.wall_overshoot);
+    println!(
+        "{name}: {} steps of {:?}, {} bounces, overshoot {:.1e}",
+        run.outcome.steps, run.outcome.step_range, run.outcome.bounces, audit.wall_overshoot
+    );
     assert_eq!(audit.verdict(&limits), Vec::<String>::new(), "{name}");
     assert_eq!(audit.particles_inside, 1500, "{name}");
     let gas = run.outcome.particles.iter().map(|particle| model.plan.grid.to_metres(particle.position));
