@@ -180,22 +180,13 @@ mod tests {
             let blocks: Vec<BlockSum> = numbers.iter().map(|&number| block(number)).collect();
             ladder(volumes.to_vec()).demand(&blocks, &[0]).collision
         };
-        let expected = |number: f64, volume: f64| (number - number.sqrt()) / volume;
         // A vessel thinner than a block: its density is that of all its blocks, however they share the volume.
-<<<<<<< HEAD
         let surely = |number: f64| number - number.sqrt();
         assert_eq!(demand(&[0.01, 0.03], &[60, 20]), surely(80.0) / 0.04);
         assert_eq!(demand(&[0.0, 0.04], &[60, 20]), surely(80.0) / 0.04);
         assert_eq!(demand(&[0.01, 0.03], &[80, 0]), surely(80.0) / 0.04);
         // A few particles in a sliver do not set the step of all.
         assert_eq!(demand(&[1.0, 1e-6], &[1000, 2]), surely(1000.0));
-=======
-        assert_eq!(demand(&[0.01, 0.03], &[60, 20]), expected(80.0, 0.04));
-        assert_eq!(demand(&[0.0, 0.04], &[60, 20]), expected(80.0, 0.04));
-        assert_eq!(demand(&[0.01, 0.03], &[80, 0]), expected(80.0, 0.04));
-        // A few particles in a sliver do not set the step of all.
-        assert_eq!(demand(&[1.0, 1e-6], &[1000, 2]), expected(1000.0, 1.0));
->>>>>>> scene-2
         assert_eq!(demand(&[1.0, 1e-6], &[0, 0]), 0.0);
     }
 }
