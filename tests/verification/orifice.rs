@@ -78,9 +78,9 @@ fn gas_leaves_a_hole_at_the_discharge_coefficient_of_its_knudsen_number() {
     let (resolved, error) = discharge(0.1);
     println!("Cd at Kn .1: {resolved:.3} +- {error:.3}");
     assert!((resolved - 0.78).abs() < 2.5 * error + 0.02, "{resolved:.3} +- {error:.3}");
-    // Thin gas flows less, between the kinetic limit and the .71 of Kn .3; and so the check can fail.
-    let (thin, error) = discharge(1.0);
-    println!("Cd at Kn 1: {thin:.3} +- {error:.3}");
+    // Thin gas flows less, between the kinetic limit and the .71 of Kn .3, and so the check can fail.
+    let (thin, error) = discharge(0.4);
+    println!("Cd at Kn .4: {thin:.3} +- {error:.3}");
     assert!(thin > 0.583 - 2.5 * error && thin < 0.71 + 2.5 * error, "{thin:.3} +- {error:.3}");
     assert!((thin - 0.78).abs() > 2.5 * error + 0.02, "{thin:.3} +- {error:.3}");
 }
