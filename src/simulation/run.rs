@@ -12,7 +12,7 @@ use super::audit::Account;
 use super::averages::{Averages, Row};
 use super::clock::Clock;
 use super::interval::{InFlight, Interval};
-use super::ladder::Ladder;
+use super::ladder::{Demand, Ladder};
 use super::model::Model;
 use super::setup::{Setup, Shuffle, set_up};
 
@@ -83,6 +83,8 @@ pub struct Simulation<'a> {
     account: Account,
     timer: Option<PhaseTimer>,
     flying: VecDeque<InFlight>,
+    /// What the interval submitted last asked of the step, where it was read before the next was submitted.
+    held: Option<(f64, Demand)>,
     spare: Vec<wgpu::Buffer>,
     next_row: f64,
     next_snapshot: u32,
@@ -112,6 +114,7 @@ impl<'a> Simulation<'a> {
             account: Account::new(plan),
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
+            held: None,
             spare: Vec::new(),
             next_row: plan.end_time / f64::from(scene.output.rows.max(1)),
             next_snapshot: 0,
@@ -155,7 +158,8 @@ impl<'a> Simulation<'a> {
             return Ok(false);
         }
         self.submit_next()?;
-        if self.flying.len() >= AHEAD {
+        // More than one where an interval was run again: the next must not know less than without that.
+        while self.flying.len() >= AHEAD {
             self.read_oldest(observer)?;
         }
         if self.snapshot_due() {
@@ -217,7 +221,16 @@ impl<'a> Simulation<'a> {
         self.clock.advance(level, steps);
         let end = self.clock.time();
         let interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps)?;
-        self.submit(interval)
+        self.submit(interval)?;
+        if let Some((time, demand)) = self.held.take() {
+            self.follow(time, demand)?;
+        }
+        Ok(())
+    }
+
+    fn follow(&mut self, time: f64, demand: Demand) -> Result<(), SimulationError> {
+        self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+        Ok(())
     }
 
     fn submit(&mut self, interval: Interval) -> Result<(), SimulationError> {
@@ -254,8 +267,12 @@ impl<'a> Simulation<'a> {
         self.account.add(plan, &tallies, &interval, samples, particles, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
         let demand = self.ladder.demand(&tallies.blocks, &tallies.fast);
-        let time = self.read_until;
-        self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+        if self.flying.is_empty() {
+            // Read early, for a snapshot: the next interval must not depend on that.
+            self.held = Some((self.read_until, demand));
+        } else {
+            self.follow(self.read_until, demand)?;
+        }
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
         }
