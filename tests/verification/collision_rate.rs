@@ -52,6 +52,7 @@ fn collision_rate(device: &Device, rounds: u32, step_over_tau: f64, steps: u32) 
     let gbar = (16.0 / PI * temperature).sqrt() * gas.thermal_speed();
     let density = (gas.particles - 1) as f64 / EDGE.powi(3);
     let expected = density * PI * model.plan.diameter.powi(2) * gbar * gas.time_step();
+    assert_eq!(2 * outcome.collisions, ends[0] + ends[1], "the count is that of the flights");
     let ratio = |k: usize| ends[k] as f64 / visits[k] as f64 / expected;
     assert_eq!(outcome.steps, u64::from(steps), "every step is as long as asked");
     Rate { core: ratio(0), error: (2.0 / ends[0] as f64).sqrt(), layer: ratio(1), outcome }
