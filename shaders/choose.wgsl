@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl lists.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl lists.wgsl chooser.wgsl
 // Each particle picks its earliest possible collision (closest approach, specification, section 2).
 //
 // Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
@@ -16,20 +16,12 @@ override DIAMETER: f32;
 @group(0) @binding(13) var<storage, read> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
-@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    var s = linear(id, groups);
-    if (step.round == 0u) {
-        if (s >= step.count + step.newborns) {
-            return;
-        }
-    } else {
-        if (s >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
-            return;
-        }
-        s = rechoose[s];
+    let s = chooser(linear(id, groups));
+    if (s == NOBODY) {
+        return;
     }
     var best = vec2<u32>(NOBODY, 0u);
     var best_time = NEVER;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl lists.wgsl
+//! uses: step.wgsl particle.wgsl lists.wgsl chooser.wgsl
 // Settle, part 1: the pairs whose choices are mutual.
 //
 // Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.
@@ -13,20 +13,12 @@ override ROUNDS: u32;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
 @group(0) @binding(28) var<storage, read> touched: array<u32>;
-@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    var s = linear(id, groups);
-    if (step.round == 0u) {
-        if (s >= step.count + step.newborns) {
-            return;
-        }
-    } else {
-        if (s >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
-            return;
-        }
-        s = rechoose[s];
+    let s = chooser(linear(id, groups));
+    if (s == NOBODY) {
+        return;
     }
     let other = choices[s].x;
     if (other == NOBODY || choices[other].x != s) {

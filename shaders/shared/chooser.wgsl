@@ -1,0 +1,15 @@
+// Who chooses in a round: all particles in the first, in later ones those of `rechoose`, which a collision
+// may have made choose otherwise.
+
+@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
+
+// The particle of a thread, or NOBODY.
+fn chooser(thread: u32) -> u32 {
+    if (step.round == 0u) {
+        return select(NOBODY, thread, thread < step.count + step.newborns);
+    }
+    if (thread >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
+        return NOBODY;
+    }
+    return rechoose[thread];
+}
