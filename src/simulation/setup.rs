@@ -17,7 +17,7 @@ pub struct Setup {
 }
 
 /// The order in which the initial particles are handed to the device; results must not depend on it.
-pub type Shuffle = dyn Fn(&mut Vec<GpuParticle>);
+pub type Shuffle = dyn Fn(&mut [GpuParticle]);
 
 pub fn set_up(model: &Model, device: &Device, shuffle: Option<&Shuffle>) -> Result<Setup, SimulationError> {
     let plan = &model.plan;

@@ -75,7 +75,7 @@ fn assert_same(name: &str, a: &Bits, b: &Bits) {
 }
 
 /// An order of the particles that depends on `salt` in no regular way.
-fn shuffled<const SALT: u64>(particles: &mut Vec<GpuParticle>) {
+fn shuffled<const SALT: u64>(particles: &mut [GpuParticle]) {
     particles.sort_by_key(|particle| {
         let mut hasher = DefaultHasher::new();
         (SALT, particle.id()).hash(&mut hasher);
@@ -83,7 +83,7 @@ fn shuffled<const SALT: u64>(particles: &mut Vec<GpuParticle>) {
     });
 }
 
-fn reversed(particles: &mut Vec<GpuParticle>) {
+fn reversed(particles: &mut [GpuParticle]) {
     particles.reverse();
 }
 

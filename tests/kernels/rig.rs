@@ -76,7 +76,7 @@ impl World {
         let from_corner = |p: Vector| std::array::from_fn(|k| p[k] - grid.origin[k]);
         let patch: Vec<u32> = (0..vessel.triangles.len() as u32).map(|k| k % 3).collect();
         World {
-            walls: Walls::new(&fixed, &grid, &patch),
+            walls: Walls::new(&fixed, &grid, &patch, |_| true),
             triangles,
             low: from_corner(low),
             high: from_corner(high),

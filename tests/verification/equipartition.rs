@@ -42,7 +42,7 @@ fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
     let mut model = model(&gas.toml());
     model.plan.steps_per_interval = 16;
     model.plan.collision_limit = 1.0;
-    let unequal = |particles: &mut Vec<GpuParticle>| {
+    let unequal = |particles: &mut [GpuParticle]| {
         for particle in particles {
             let factor = if particle.gas() == 0 { 1.5 } else { 0.5 };
             particle.velocity = particle.velocity.map(|v| factor * v);
@@ -107,7 +107,7 @@ fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> 
     };
     let mut model = model(&gas.toml());
     model.plan.collision_limit = 1.0;
-    let without_spin = |particles: &mut Vec<GpuParticle>| particles.iter_mut().for_each(|particle| particle.spin = 0.0);
+    let without_spin = |particles: &mut [GpuParticle]| particles.iter_mut().for_each(|particle| particle.spin = 0.0);
     let run = run(&model, Options { shuffle: Some(&without_spin), ..Options::default() });
     let [translation, spin] = temperatures(&run.outcome.particles, 0, 1.0);
     // All energy was in translation: 3/2 T0 = 3/2 T_tr + T_int.

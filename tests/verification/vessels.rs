@@ -83,7 +83,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 /// A particle in 1500 has 15 times the speed of the others.
-fn with_a_fast_one(particles: &mut Vec<GpuParticle>) {
+fn with_a_fast_one(particles: &mut [GpuParticle]) {
     let particle = &mut particles[17];
     let speed = particle.velocity.iter().map(|v| v * v).sum::<f32>().sqrt();
     particle.velocity = particle.velocity.map(|v| v * 6000.0 / speed);
@@ -149,7 +149,7 @@ fn a_particle_behind_a_wall_is_found() {
     let model = model_in(&scene(walls, 1e-4, ""), Path::new(""));
     let device = crate::whole_run::device();
     let behind = model.plan.grid.to_fixed([0.0503, 0.02, 0.02]).expect("in the grid");
-    let outside = move |particles: &mut Vec<GpuParticle>| {
+    let outside = move |particles: &mut [GpuParticle]| {
         particles[3].position = behind;
         particles[3].velocity = [0.0; 3];
     };
