@@ -16,8 +16,8 @@ use crate::whole_run::{published, run};
 
 const PARTICLES: u64 = 100_000;
 /// s.
-const DURATION: f64 = 0.0028;
-const DIAMETER: f64 = 0.02;
+const DURATION: f64 = 0.00125;
+const DIAMETER: f64 = 0.03;
 
 /// `scenes/effusion.toml` with a hole of another diameter; the particles that left the inner box over those
 /// that should have through a hole of [`DIAMETER`], and the standard error.
@@ -31,7 +31,7 @@ fn flow_ratio(diameter: f64) -> (f64, f64) {
             }
         }
     }
-    scene.model.time_step = Some(2e-5);
+    scene.model.time_step = Some(5e-6);
     let model = Model::new(scene).expect("a model");
     let inner = model.scene.chambers[0].region.clone().expect("the inner box");
     let inside = |point| corpuscle::geometry::region_contains(&inner, point);

@@ -80,10 +80,11 @@ fn spin_and_both_gases_come_to_one_temperature() {
     }
 }
 
-/// The check can fail: one round at x = 1 leaves the light gas 5 % hotter (specification, section 2).
+/// The check can fail: one round leaves the light gas hotter by 2 % at x = .2 and by 5 % at x = 1
+/// (specification, section 2).
 #[test]
 fn one_round_at_long_steps_breaks_equipartition() {
-    let [_, gases] = ratios(&mixture(1, 1.0, 320));
+    let [_, gases] = ratios(&mixture(1, 0.5, 480));
     println!("R 1: T1/T2 {:.4} +- {:.4}", gases.0, gases.1);
     assert!(gases.0 - 1.0 > 0.01 + 2.0 * gases.1, "{gases:?}");
 }
@@ -93,10 +94,17 @@ fn one_round_at_long_steps_breaks_equipartition() {
 /// The start has D = T_tr - T_int without noise. At a = (1 + zeta/3) s / Z thermal noise gives D an error of
 /// sqrt(5/(3N)) sqrt(1 - exp(-2a)) T, T = 3/5 of that at the start: relative to D and to a = .83, 1.5
 /// sqrt(5/(3N)).
-fn measured_collision_number(asked: f64, occupancy: f64) -> (f64, f64) {
+fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> (f64, f64) {
     let particles = 50_000u64;
-    let steps = (0.5 * asked / 0.1).round() as u32;
-    let gas = EquilibriumBox { particles, occupancy, steps, collision_number: asked, ..EquilibriumBox::default() };
+    let steps = (0.5 * asked / step_over_tau).round() as u32;
+    let gas = EquilibriumBox {
+        particles,
+        occupancy,
+        step_over_tau,
+        steps,
+        collision_number: asked,
+        ..EquilibriumBox::default()
+    };
     let mut model = model(&gas.toml());
     model.plan.collision_limit = 1.0;
     let without_spin = |particles: &mut [GpuParticle]| particles.iter_mut().for_each(|particle| particle.spin = 0.0);
@@ -113,7 +121,7 @@ fn measured_collision_number(asked: f64, occupancy: f64) -> (f64, f64) {
 #[test]
 fn spin_relaxes_in_the_collision_number_asked_for() {
     for asked in [2.0, 5.0] {
-        let (found, error) = measured_collision_number(asked, 0.003);
+        let (found, error) = measured_collision_number(asked, 0.003, 0.05);
         println!("Z {asked}: {found:.3} +- {error:.3}");
         assert!(error <= 0.01 * asked);
         assert!((found - asked).abs() < 0.05 * asked, "Z = {found:.3} +- {error:.3}, asked {asked}");
@@ -128,7 +136,7 @@ fn spin_relaxes_in_the_collision_number_asked_for() {
 /// at f = .001, .01 and .1 (all +- .01), while the rate of collisions is the theory's at each.
 #[test]
 fn spin_relaxes_slower_by_a_few_per_cent_in_dense_gas() {
-    let (found, error) = measured_collision_number(5.0, 0.1);
+    let (found, error) = measured_collision_number(5.0, 0.1, 0.1);
     println!("Z 5, f .1: {found:.3} +- {error:.3}");
     assert!(found > 5.0 + 2.0 * error && found < 5.0 * 1.08 + 2.0 * error, "Z = {found:.3} +- {error:.3}");
 }

@@ -127,14 +127,14 @@ fn every_shape(end_time: f64, extra: &str) {
 
 #[test]
 fn no_particle_passes_a_wall_with_collisions() {
-    every_shape(5e-4, "");
+    every_shape(3e-4, "");
 }
 
 /// The shells here are thinner than a flight in one step by far.
 #[test]
 fn no_particle_passes_a_wall_at_long_steps() {
     every_shape(1e-3, "time_step = 2e-5\noccupancy = 0.02");
-    every_shape(8e-3, "time_step = 4e-4\nmethod = \"none\"");
+    every_shape(3e-3, "time_step = 4e-4\nmethod = \"none\"");
 }
 
 #[test]
