@@ -1,6 +1,6 @@
 //! Law: both pressures of the tank test follow the control volume with the discharge coefficient of the
-//! run's own Knudsen number, and the late mean is that of U0 + integral h dm (issue "The tank test": within
-//! 2 % at the end).
+//! run's own Knudsen number, and the late mean is that of U0 + integral h dm (within
+//! 2 %; on the way the inner box has few particles, and the coefficient is known to some 10 %).
 
 use corpuscle::simulation::{Options, reference};
 
@@ -14,7 +14,7 @@ fn deviations(run: &Run, expected: &[f64], chamber: usize) -> Vec<f64> {
 #[test]
 #[ignore = "the whole tank takes minutes on a CPU; ./scripts/test.sh --long runs it"]
 fn both_pressures_follow_the_control_volume() {
-    let model = published("tank.toml", 4000, 0.1);
+    let mut model = published("tank.toml", 4000, 0.1);
     let run = run(&model, Options::default());
     let times: Vec<f64> = run.rows.iter().map(|row| row.time).collect();
     let states = reference(&model, &times);
@@ -31,4 +31,10 @@ fn both_pressures_follow_the_control_volume() {
         // independent states.
         assert!(late(&off).abs() < 0.02, "{name}: {:.4}", late(&off));
     }
+    // The check can fail: gas of a tenth less temperature would have left the tank some 7 % lower.
+    for point in &mut model.scene.orifices[0].temperature.points {
+        point[1] *= 0.9;
+    }
+    let colder: Vec<f64> = reference(&model, &times).iter().map(|state| state[1].pressure).collect();
+    assert!(late(&deviations(&run, &colder, 1)) > 0.04);
 }
