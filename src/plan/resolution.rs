@@ -42,8 +42,8 @@ pub struct Resolution {
     pub flight_over_cell: f64,
 }
 
-/// Largest x with at most 2 % of the events lost: specification, section 2, for up to four rounds; beyond,
-/// measured in `tests/verification` (eight rounds at x = .5), between them by steps.
+/// Largest x with at most 2 % of the events lost: specification, section 2, for up to four rounds; for
+/// eight, measured in `tests/verification`; between them by steps.
 fn collision_limit(rounds: u32) -> f64 {
     match rounds {
         1 => 0.02,

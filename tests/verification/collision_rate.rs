@@ -86,3 +86,17 @@ fn fewer_rounds_lose_more_collisions_and_say_so() {
     // The check of the law can fail: one round does not pass it.
     assert!((rates[0].core - 1.0).abs() > 0.015 + 3.0 * rates[0].error);
 }
+
+/// The plan's limit for eight rounds: at most 2 % of the collisions are lost at x = .5.
+#[test]
+fn eight_rounds_lose_at_most_two_per_cent_at_half_a_collision_time() {
+    let device = device();
+    let rate = collision_rate(&device, 8, 0.5, 80);
+    println!("R 8 x .5: {:.4} +- {:.4}", rate.core, rate.error);
+    assert!(rate.error < 0.005, "too few collisions: {}", rate.error);
+    assert!(rate.core > 0.98 - 2.0 * rate.error && rate.core < 1.0 + 2.0 * rate.error, "{:.4}", rate.core);
+    // The check can fail: two rounds lose some 14 % there.
+    let two = collision_rate(&device, 2, 0.5, 20);
+    println!("R 2 x .5: {:.4} +- {:.4}", two.core, two.error);
+    assert!(two.core < 0.98 - 2.0 * two.error);
+}
