@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use super::GpuError;
 
-/// How long a submission may take before the device counts as hung.
+/// How long a submission may take before a GPU counts as hung, and before a CPU adapter does, which is slow
+/// but does not hang.
 const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
 /// What `corpuscle adapters` lists, and what a run records.
 #[derive(Debug, Clone)]
@@ -156,7 +158,8 @@ impl Device {
     /// # Errors
     /// If the device hangs, is lost, ran out of memory or refused a command.
     pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<(), GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(PATIENCE) };
+        let patience = if self.adapter.is_cpu() { PATIENCE_WITH_CPU } else { PATIENCE };
+        let poll = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(patience) };
         let polled = self.device.poll(poll);
         // What was refused says more than that waiting for it failed.
         self.check()?;
