@@ -97,6 +97,18 @@ impl World {
         }
     }
 
+    /// Whether a triangle is listed in one of the 27 cells around.
+    pub fn near_triangle(&self, cell: u32) -> bool {
+        let [nx, ny, nz] = self.grid.cells.map(|n| n as i64);
+        let (x, y, z) = (i64::from(cell) % nx, i64::from(cell) / nx % ny, i64::from(cell) / (nx * ny));
+        (0..27i64).any(|k| {
+            let (x, y, z) = (x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
+            let inside = (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
+            let at = ((z * ny + y) * nx + x) as usize;
+            inside && self.walls.start[at] < self.walls.start[at + 1]
+        })
+    }
+
     pub fn class(&self, cell: u32) -> u32 {
         self.walls.class[cell as usize / 16] >> (2 * (cell % 16)) & 3
     }
@@ -160,6 +172,7 @@ impl Rig {
         rig.put("wall_list", &world.walls.list);
         rig.put("triangles", &world.walls.triangles);
         rig.put("cell_class", &world.walls.class);
+        rig.put("parting", &world.walls.parting);
         rig.put("counters", &[0u32; COUNTERS]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);

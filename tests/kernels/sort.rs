@@ -157,7 +157,7 @@ fn order_is_canonical() {
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);
             let part = |k: usize| (middle[k] >> (cells.bits - 7) & 1023) << (10 * k);
-            let flag = u32::from(world.class(cell[canonical[s]]) != CLEAR) << 31;
+            let flag = u32::from(world.near_triangle(cell[canonical[s]])) << 31;
             assert_eq!(middles[s], part(0) | part(1) | part(2) | flag);
         }
         assert_eq!(rig.list("near_walls", LIST_NEAR_WALLS), near_walls);
@@ -165,4 +165,20 @@ fn order_is_canonical() {
         // The check can fail: the particles came in another order.
         assert_ne!(particles, expected);
     }
+}
+
+/// Only walls that can part two points of the gas have neighbours screened; the surface of a convex cavity
+/// cannot. (`World` takes every wall for one that can.)
+#[test]
+fn only_walls_that_part_the_gas_are_marked() {
+    let world = World::plain();
+    let vessel = corpuscle::geometry::Vessel::build(&[tank([0.06, 0.07, 0.08])]).unwrap();
+    let margin = corpuscle::subdomain::Walls::tolerance(&world.grid);
+    let fixed = corpuscle::geometry::TriangleGrid::build(&vessel, &world.grid, margin).unwrap();
+    let none = corpuscle::subdomain::Walls::new(&fixed, &world.grid, &[], |_| false);
+    assert!(none.parting.iter().all(|&bits| bits == 0));
+    let marked = |cell: u32| world.walls.parting[cell as usize / 32] >> (cell % 32) & 1 == 1;
+    let cells = world.grid.cell_count() as u32;
+    assert!((0..cells).all(|cell| marked(cell) == world.near_triangle(cell)));
+    assert!((0..cells).any(marked) && !(0..cells).all(marked), "some cells are near a wall and some are not");
 }
