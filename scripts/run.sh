@@ -31,8 +31,9 @@ fi
 "$root/scripts/setup.sh"
 cargo build --release --locked --manifest-path "$root/Cargo.toml"
 
-# Silences a warning of Mesa's device selection layer.
+# Silences warnings of Mesa's device selection layer and of the Vulkan loader.
 export NODEVICE_SELECT=1
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 status=0
 cargo run --quiet --release --locked --manifest-path "$root/Cargo.toml" -- \
   run "$@" ${options[@]+"${options[@]}"} || status=$?

@@ -26,8 +26,9 @@ for component in rustfmt clippy; do
   fi
 done
 
-# Silences a warning of Mesa's device selection layer.
+# Silences warnings of Mesa's device selection layer and of the Vulkan loader.
 export NODEVICE_SELECT=1
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 cargo fmt --check
 cargo clippy --release --locked --all-targets -- -D warnings
 cargo test --release --locked ${tests[@]+"${tests[@]}"}
