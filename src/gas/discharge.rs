@@ -6,9 +6,9 @@
 //!   fm(Q) = fm(0) (1 - Q), fm(0) = .583 for gamma 1.4;
 //! - continuum: .84 x isentropic(Q), the upstream mixture with the upstream enthalpy.
 //!
-//! The length of Kn is the hole's radius. The specification does not say; with the diameter this solver finds
-//! Cd .72 at Kn .1 (`tests/verification`), which is also what kinetic theory has there (W = 1.2 times the
-//! effusion), and with the radius .77 against the specification's .78.
+//! The length of Kn is the hole's radius. The specification does not say. With the radius this solver finds
+//! Cd .77 at Kn .1 (`tests/verification/orifice.rs`) against the table's .78; with the diameter the table would
+//! ask for .78 at lambda = .2 radii, where kinetic theory has 1.2 times the effusion, Cd .70.
 //!
 //! The share w of the continuum is fitted to the measured discharge coefficients
 //! Cd = (1 - w) fm + .84 w isentropic/choked, at Q = 0 and at Q = .8, linear in ln Kn between the figures and
