@@ -166,15 +166,6 @@ impl Device {
         polled.map(|_| ()).map_err(|error| GpuError::Trouble { reason: error.to_string() })
     }
 
-    /// Lets finished work be cleaned up and callbacks run, without waiting.
-    ///
-    /// # Errors
-    /// As [`Device::wait`].
-    pub fn poll(&self) -> Result<(), GpuError> {
-        self.device.poll(wgpu::PollType::Poll).map_err(|error| GpuError::Trouble { reason: error.to_string() })?;
-        self.check()
-    }
-
     fn check(&self) -> Result<(), GpuError> {
         let trouble = self.trouble.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |text| text.clone());
         trouble.map_or(Ok(()), |reason| Err(GpuError::Trouble { reason }))

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, TimedPass};
 use crate::output::{Audit, PhaseTable};
-use crate::subdomain::{GpuFlight, GpuParticle, Scales, Subdomain, Tallies};
+use crate::subdomain::{GpuFlight, GpuParticle, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::audit::Account;
@@ -347,9 +347,5 @@ impl<'a> Simulation<'a> {
     /// If the device fails.
     pub fn particles(&self) -> Result<Vec<GpuParticle>, SimulationError> {
         Ok(self.subdomain.particles(self.device)?)
-    }
-
-    pub fn scales(&self) -> Scales {
-        Scales::new(&self.model.plan)
     }
 }

@@ -51,7 +51,6 @@ pub struct Remembered {
 pub struct Subdomain {
     plan: Plan,
     features: Features,
-    walls_tolerance: f64,
     constants: Vec<(&'static str, f64)>,
     compiled: Compiled,
     kernels: Kernels<BoundKernel>,
@@ -92,7 +91,6 @@ impl Subdomain {
         Ok(Subdomain {
             plan: plan.clone(),
             features,
-            walls_tolerance: input.walls.tolerance,
             constants,
             compiled,
             kernels,
@@ -113,11 +111,6 @@ impl Subdomain {
 
     pub fn features(&self) -> Features {
         self.features
-    }
-
-    /// m; see [`Walls::tolerance`].
-    pub fn walls_tolerance(&self) -> f64 {
-        self.walls_tolerance
     }
 
     /// Bytes of the buffers that grow with the particles.
