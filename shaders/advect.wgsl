@@ -1,8 +1,8 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
 // Reads `sorted`, `flights` (without collisions `particles`, `newborns`) and the classes of the cells;
-// writes `particles` (in canonical order), and appends those that meet a wall, or without collisions may
+// writes `particles` (in canonical order; dead slots in place of ghosts), and appends those that meet a wall, or without collisions may
 // meet one, to `bouncing`. One thread per particle, which writes its own slot.
 
 override COLLISIONS: bool = true;
@@ -12,17 +12,22 @@ override ORIFICES: bool = true;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(32) var<storage, read> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
-    if (s >= step.count + step.newborns) {
+    if (s >= step.total) {
         return;
     }
     var particle: Particle;
     var meets_wall: bool;
     if (COLLISIONS) {
+        if ((layers[s] & LAYER) != 0u) {
+            particles[s].tag = NOBODY;
+            return;
+        }
         particle = sorted[s];
         meets_wall = flights[s].wall < step.dt;
     } else {

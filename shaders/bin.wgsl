@@ -1,21 +1,40 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl
-// Counts the particles of each cell, by their mid-step position.
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl
+// Counts the particles of each cell, by their mid-step position, and finds those that other devices need.
 //
-// Reads `particles`; writes `bins` (cell, slot within the cell) and `cell_count`. One thread per
-// particle. The slot depends on the order of the threads; `order` replaces it by the rank of the id.
+// Reads `particles`; writes `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
+// owned here nor lies in the halo) and `cell_count`, and appends the earlier particles in cells that
+// others own or have in their halo to `border` (slot, cell). One thread per slot. The slot within the cell
+// depends on the order of the threads; `order` replaces it by the rank of the id.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read_write> cell_count: array<atomic<u32>>;
+@group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = linear(id, groups);
-    if (i >= step.count + step.newborns) {
+    let i = step.first + linear(id, groups);
+    if (i >= step.count + step.newborns + step.arrivals) {
+        return;
+    }
+    if (particles[i].tag == NOBODY) {
+        bins[i] = vec2<u32>(NOBODY, 0u);
+        atomicAdd(&counters[COUNT_DROPPED], 1u);
         return;
     }
     let middle = shifted(particles[i].position, particles[i].velocity * (0.5 * step.dt));
-    let cell = cell_index(nearest_cell(middle));
-    bins[i] = vec2<u32>(cell, atomicAdd(&cell_count[cell], 1u));
+    let cell = nearest_cell(middle);
+    // The border layer of the box has no bins to fill.
+    if (all(cell - step.low - 1u < step.size - 2u)) {
+        let index = local_index(cell);
+        bins[i] = vec2<u32>(index, atomicAdd(&cell_count[index], 1u));
+    } else {
+        bins[i] = vec2<u32>(NOBODY, 0u);
+        atomicAdd(&counters[COUNT_DROPPED], 1u);
+    }
+    // Every device has the newborns of its own cells and halo by itself; arrivals are sent by no other.
+    if (step.depth > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
+        border[append(LIST_BORDER)] = vec2<u32>(i, cell_index(cell));
+    }
 }

@@ -26,10 +26,13 @@ override BLOCK_ENERGY_SCALE: f32;
 @compute @workgroup_size(WORKGROUP)
 fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear(id, groups);
-    if (i >= step.count + step.newborns) {
+    if (i >= step.total) {
         return;
     }
     let particle = particles[i];
+    if (particle.tag == NOBODY) {
+        return;
+    }
     let cell = nearest_cell(particle.position);
     let b = cell >> vec3<u32>(BLOCK_BITS);
     let slot = ((b.z * BLOCKS_Y + b.y) * BLOCKS_X + b.x) * 4u;

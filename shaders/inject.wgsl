@@ -20,5 +20,4 @@ fn inject(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     particles[slot] = newborns[step.newborn_offset + k].particle;
-    atomicAdd(&counters[PARTICLES], 1u);
 }

@@ -13,4 +13,6 @@ fn lost() {
     for (var round = 0u; round < ROUNDS; round++) {
         atomicAdd(&counters[SAMPLED], atomicLoad(&counters[PAIRS + round]));
     }
+    // The sampled step is the first since the last read.
+    atomicSub(&counters[SAMPLED], atomicLoad(&counters[FOREIGN]));
 }

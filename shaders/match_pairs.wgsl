@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl lists.wgsl chooser.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl chooser.wgsl
 // Settle, part 1: the pairs whose choices are mutual.
 //
 // Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.
@@ -13,6 +13,7 @@ override ROUNDS: u32;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
 @group(0) @binding(28) var<storage, read> touched: array<u32>;
+@group(0) @binding(32) var<storage, read> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -30,9 +31,20 @@ fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
     if (both && !first) {
         return;
     }
+    // Farther from the own cells the choices of this round may lack what other devices know.
+    let own_layer = layers[s] & LAYER;
+    let other_layer = layers[other] & LAYER;
+    if (min(own_layer, other_layer) > step.reach) {
+        return;
+    }
+    // The owner of the lower id counts the pair.
+    let counted = select(other_layer, own_layer, first) == 0u;
     if (step.round < ROUNDS) {
+        if (!counted) {
+            atomicAdd(&counters[FOREIGN], 1u);
+        }
         pairs[append(step.round)] = vec2<u32>(select(other, s, first), select(s, other, first));
-    } else {
+    } else if (counted) {
         atomicAdd(&counters[step.round], 1u);
     }
 }

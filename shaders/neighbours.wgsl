@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl lists.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than the cell edge (which the plan makes at least
 // sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more.
@@ -8,8 +8,6 @@
 // particle, which writes its own list. Where a list is too short, the longest one wanted is kept, and the
 // host runs the interval again with longer lists.
 
-override LIST: u32;
-
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
@@ -17,35 +15,41 @@ override LIST: u32;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(25) var<storage, read_write> screened: array<u32>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
+@group(0) @binding(32) var<storage, read> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
-    if (s >= step.count + step.newborns) {
+    if (s >= step.total) {
+        return;
+    }
+    // The outermost ghosts have no neighbours beyond them here, and choose nobody.
+    if (step.depth > 0u && (layers[s] & LAYER) >= step.depth) {
+        neighbour_count[s] = 0u;
         return;
     }
     let middle = middles[s];
-    let corner = cells[s] - CELLS_X * CELLS_Y - CELLS_X - 1u;
+    let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
     let stride = arrayLength(&neighbour_count);
     var found = 0u;
     var flags = middle;
     for (var row = 0u; row < 9u; row++) {
         // Rows of three cells, neighbours in memory; the border layer makes every index valid.
-        let first = corner + (row / 3u) * CELLS_X * CELLS_Y + (row % 3u) * CELLS_X;
+        let first = corner + (row / 3u) * step.size.x * step.size.y + (row % 3u) * step.size.x;
         let end = cell_start[first + 3u];
         for (var j = cell_start[first]; j < end; j++) {
             let other = middles[j];
             if (packed_distance2(middle, other) < PACKED_REACH2 && j != s) {
                 flags |= other;
-                if (found < LIST) {
+                if (found < step.list) {
                     neighbours[found * stride + s] = j;
                 }
                 found++;
             }
         }
     }
-    neighbour_count[s] = min(found, LIST);
-    if (found > LIST) {
+    neighbour_count[s] = min(found, step.list);
+    if (found > step.list) {
         atomicMax(&counters[MOST_NEIGHBOURS], found);
     }
     if (found > 0u && (flags & NEAR_WALL) != 0u) {

@@ -1,9 +1,9 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl
 // Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
 // the step.
 //
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns` and the classes of the cells; writes
-// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), clears what the
+// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), `layers`, clears what the
 // search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
 // the number of lower ids in the cell: a function of the set, not of any order.
 
@@ -17,6 +17,7 @@
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(28) var<storage, read_write> touched: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 override ORIFICES: bool = true;
@@ -24,7 +25,7 @@ override ORIFICES: bool = true;
 @compute @workgroup_size(WORKGROUP)
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
-    if (s >= step.count + step.newborns) {
+    if (s >= step.total) {
         return;
     }
     let slot = slots[s];
@@ -41,12 +42,22 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         start = birth_time(slot.y);
     }
     sorted[place] = particle;
-    let flag = select(0u, NEAR_WALL, may_part(cell));
+    let place_in_grid = cell_of(cell);
+    let flag = select(0u, NEAR_WALL, may_part(cell_index(place_in_grid)));
+    var mark = 0u;
+    if (step.depth > 0u) {
+        mark = layer_of(place_in_grid);
+        if (mark == 0u && !in_box(place_in_grid, step.inner_low, step.inner_high)) {
+            mark = SHARED;
+        }
+    }
     middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     cells[place] = cell;
     touched[place] = 0u;
     flights[place] = Flight(start, NEVER, NOBODY, 0u);
     if (may_hit(particle.position, particle.velocity, start, step.dt)) {
         near_walls[append(LIST_NEAR_WALLS)] = place;
+        mark |= NEAR;
     }
+    layers[place] = mark;
 }

@@ -6,6 +6,7 @@
 
 override CHUNK: u32;
 
+@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(6) var<storage, read_write> cell_count: array<u32>;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<u32>;
@@ -13,11 +14,11 @@ override CHUNK: u32;
 @compute @workgroup_size(WORKGROUP)
 fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let chunk = linear(id, groups);
-    if (chunk >= arrayLength(&chunk_sums)) {
+    if (chunk * CHUNK >= step.bins) {
         return;
     }
     let begin = chunk * CHUNK;
-    let end = min(begin + CHUNK, arrayLength(&cell_count));
+    let end = min(begin + CHUNK, step.bins);
     var before = chunk_sums[chunk];
     for (var cell = begin; cell < end; cell++) {
         let own = cell_count[cell];
@@ -25,7 +26,7 @@ fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
         cell_count[cell] = 0u;
         before += own;
     }
-    if (begin < end && end == arrayLength(&cell_count)) {
+    if (begin < end && end == step.bins) {
         cell_start[end] = before;
     }
 }

@@ -1,16 +1,19 @@
+//! uses: step.wgsl
 // Scan, part 2: the sums of the chunks become their exclusive prefix sums.
 //
 // Reads and writes `chunk_sums`. One workgroup; each thread takes one contiguous share.
 
+override CHUNK: u32;
 override SCAN_THREADS: u32 = 128;
 
+@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
 
 var<workgroup> shares: array<u32, SCAN_THREADS>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn scan_chunks(@builtin(local_invocation_index) thread: u32) {
-    let count = arrayLength(&chunk_sums);
+    let count = (step.bins + CHUNK - 1u) / CHUNK;
     let share = (count + SCAN_THREADS - 1u) / SCAN_THREADS;
     let begin = min(thread * share, count);
     let end = min(begin + share, count);

@@ -6,17 +6,18 @@
 
 override CHUNK: u32;
 
+@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(6) var<storage, read> cell_count: array<u32>;
 @group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn scan_sums(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let chunk = linear(id, groups);
-    if (chunk >= arrayLength(&chunk_sums)) {
+    if (chunk * CHUNK >= step.bins) {
         return;
     }
     let begin = chunk * CHUNK;
-    let end = min(begin + CHUNK, arrayLength(&cell_count));
+    let end = min(begin + CHUNK, step.bins);
     var sum = 0u;
     for (var cell = begin; cell < end; cell++) {
         sum += cell_count[cell];

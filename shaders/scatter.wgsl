@@ -13,9 +13,12 @@
 @compute @workgroup_size(WORKGROUP)
 fn scatter(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear(id, groups);
-    if (i >= step.count + step.newborns) {
+    if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
     let bin = bins[i];
+    if (bin.x == NOBODY) {
+        return;
+    }
     slots[cell_start[bin.x] + bin.y] = vec2<u32>(i, id_of(particles[i].tag));
 }

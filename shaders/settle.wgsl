@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl philox.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl walls.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
@@ -7,7 +7,8 @@
 // pair's energy goes into spin.
 //
 // Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
-// and appends the particles that this may make choose otherwise to `rechoose`. One thread per pair. Pairs are
+// and appends the particles that this may make choose otherwise to `rechoose`, and those that other
+// devices must be told of to `changed`. One thread per pair. Pairs are
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 
 override DIAMETER: f32;
@@ -21,8 +22,8 @@ override SPIN: bool = true;
 @group(0) @binding(13) var<storage, read> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(16) var<storage, read> pairs: array<vec2<u32>>;
-@group(0) @binding(28) var<storage, read_write> touched: array<atomic<u32>>;
-@group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(37) var<storage, read_write> changed: array<u32>;
 
 // A unit vector perpendicular to the unit vector u.
 fn perpendicular(u: vec3<f32>) -> vec3<f32> {
@@ -81,10 +82,12 @@ fn collide(miss: vec3<f32>, g: vec3<f32>, i: Particle, j: Particle, mu: f32, dra
     return outcome;
 }
 
-// Lets particle s choose again in the next round.
-fn touch(s: u32) {
-    if (atomicMax(&touched[s], step.round + 1u) <= step.round) {
-        rechoose[append(LIST_RECHOOSE + step.round + 1u)] = s;
+// Notes a particle that other devices have as a ghost.
+fn tell(s: u32) {
+    let mark = layers[s];
+    if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
+        layers[s] = mark | LISTED;
+        changed[append(LIST_CHANGED)] = s;
     }
 }
 
@@ -125,7 +128,11 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         && blocked(place_i, shifted(j.position, j.velocity * time))) {
         flights[pair.x].partner = j.tag;
         flights[pair.y].partner = i.tag;
-        atomicAdd(&counters[BLOCKED], 1u);
+        if ((layers[pair.x] & LAYER) == 0u) {
+            atomicAdd(&counters[BLOCKED], 1u);
+        }
+        tell(pair.x);
+        tell(pair.y);
         touch(pair.x);
         touch(pair.y);
         return;
@@ -156,6 +163,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             j.spin += residual;
         }
     }
+    tell(pair.x);
+    tell(pair.y);
     // The two are in each other's lists.
     touch_neighbours(pair.x);
     touch_neighbours(pair.y);

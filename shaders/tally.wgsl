@@ -96,7 +96,7 @@ fn tally(
     workgroupBarrier();
     let zone = group.y;
     let gas = group.z;
-    let count = step.count + step.newborns;
+    let count = step.total;
     var number = 0u;
     var x = vec2<u32>(0u);
     var y = vec2<u32>(0u);
@@ -109,7 +109,7 @@ fn tally(
             break;
         }
         let particle = particles[i];
-        if (gas_of(particle.tag) != gas || !holds(zone, particle.position)) {
+        if (particle.tag == NOBODY || gas_of(particle.tag) != gas || !holds(zone, particle.position)) {
             continue;
         }
         let velocity = particle.velocity * VELOCITY_SCALE;

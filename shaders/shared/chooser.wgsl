@@ -6,7 +6,7 @@
 // The particle of a thread, or NOBODY.
 fn chooser(thread: u32) -> u32 {
     if (step.round == 0u) {
-        return select(NOBODY, thread, thread < step.count + step.newborns);
+        return select(NOBODY, thread, thread < step.total);
     }
     if (thread >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
         return NOBODY;

@@ -3,11 +3,18 @@
 // every thread.) The order of a list depends on the order of the threads; entries are independent.
 
 // Lists 0 .. 8 are the pairs of the rounds; list ROUNDS counts the pairs that the rounds lost. Lists
-// LIST_RECHOOSE + r are the particles that choose again in round r >= 1.
+// LIST_RECHOOSE + r are the particles that choose again in round r >= 1. LIST_BORDER are the particles
+// that other devices may need, LIST_CHANGED those of them that a round has changed; COUNT_OUTBOX and
+// COUNT_UPDATES count what is sent, COUNT_DROPPED the slots that hold no particle of this device or its halo.
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
+const LIST_BORDER: u32 = 12;
+const LIST_CHANGED: u32 = 13;
+const COUNT_OUTBOX: u32 = 14;
+const COUNT_UPDATES: u32 = 15;
 const LIST_RECHOOSE: u32 = 16;
+const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
 
 // Workgroups per dimension of an indirect dispatch.

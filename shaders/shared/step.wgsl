@@ -1,7 +1,8 @@
 // The parameters of one step, and the index of a thread.
 
 struct Step {
-    // Particles on the device before this step's newborns.
+    // Slots of `particles` in use before this step's newborns. On a device among others some of them are
+    // dead (their tag is NOBODY): ghosts of the step before.
     count: u32,
     newborns: u32,
     // Where this step's newborns start in the batch's list.
@@ -14,6 +15,34 @@ struct Step {
     dt: f32,
     // Round of this dispatch.
     round: u32,
+    // Particles that came from other devices, after the newborns.
+    arrivals: u32,
+    // The box of cells that have bins here: the own ones, the halo, and a border layer that stays empty.
+    low: vec3<u32>,
+    // Entries of `sorted`.
+    total: u32,
+    size: vec3<u32>,
+    // Cells in that box.
+    bins: u32,
+    // The cells whose particles this device owns.
+    own_low: vec3<u32>,
+    // Layers of cells around them with ghosts; 0 on a device alone.
+    depth: u32,
+    own_high: vec3<u32>,
+    // Layers, counted from the own cells, up to which the pairs of this round are settled here.
+    reach: u32,
+    // Cells that no other device has in its halo.
+    inner_low: vec3<u32>,
+    // The first slot to bin.
+    first: u32,
+    inner_high: vec3<u32>,
+    // Updates of ghosts that came in for this round.
+    updates: u32,
+    // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
+    peers: u32,
+    near_peers: u32,
+    // Most entries of a neighbour list.
+    list: u32,
     pad: u32,
 }
 

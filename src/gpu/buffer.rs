@@ -34,7 +34,10 @@ impl Device {
     /// # Errors
     /// If the device has no memory for it.
     pub fn indirect(&self, name: &'static str, items: u64) -> Result<wgpu::Buffer, GpuError> {
-        let usage = wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let usage = wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST;
         self.create(name, items * 12, usage)
     }
 

@@ -8,7 +8,7 @@ mod timer;
 pub use buffer::Readback;
 pub use device::{AdapterDescription, Device, adapters};
 pub use kernel::{Access, Binding, BoundKernel, Constants, KERNELS, Kernel, KernelSource, STEP_BYTES, fold};
-pub use timer::{PhaseTimer, TimedPass};
+pub use timer::{PhaseTimer, Recording};
 
 /// Trouble with the device: exit code 3.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@
 use super::{Device, GpuError};
 
 /// Room for the phases of one timed step.
-const SLOTS: u32 = 64;
+const SLOTS: u32 = 128;
 
 /// The timestamps of one timed stretch of commands.
 pub struct PhaseTimer {
@@ -54,23 +54,42 @@ impl PhaseTimer {
     }
 }
 
-/// A compute pass, cut into phases where it is timed.
-pub struct TimedPass<'a> {
-    encoder: &'a mut wgpu::CommandEncoder,
+/// Commands on their way to the device: one open compute pass, cut into phases where it is timed.
+pub struct Recording<'a> {
+    device: &'a Device,
     timer: Option<&'a PhaseTimer>,
+    encoder: Option<wgpu::CommandEncoder>,
     pass: Option<wgpu::ComputePass<'static>>,
     names: Vec<&'static str>,
 }
 
-impl<'a> TimedPass<'a> {
-    pub fn new(encoder: &'a mut wgpu::CommandEncoder, timer: Option<&'a PhaseTimer>) -> TimedPass<'a> {
-        TimedPass { encoder, timer, pass: None, names: Vec::new() }
+impl<'a> Recording<'a> {
+    pub fn new(device: &'a Device) -> Recording<'a> {
+        Recording { device, timer: None, encoder: None, pass: None, names: Vec::new() }
     }
 
-    /// The pass in which the dispatches of `name` go.
+    pub fn device(&self) -> &'a Device {
+        self.device
+    }
+
+    /// Times the phases from here on, or no longer.
+    pub fn time(&mut self, timer: Option<&'a PhaseTimer>) {
+        self.pass = None;
+        self.timer = timer;
+    }
+
+    /// The names of the phases timed so far, in order.
+    pub fn timed(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// The pass in which the dispatches of `name` go; a phase goes on until another is named.
     pub fn phase(&mut self, name: &'static str) -> &mut wgpu::ComputePass<'static> {
         let slot = self.names.len() as u32;
-        if let Some(timer) = self.timer.filter(|_| slot < SLOTS) {
+        let goes_on = self.pass.is_some() && self.names.last() == Some(&name);
+        let device = self.device;
+        let encoder = self.encoder.get_or_insert_with(|| device.encoder());
+        if let Some(timer) = self.timer.filter(|_| slot < SLOTS && !goes_on) {
             self.pass = None;
             self.names.push(name);
             let writes = wgpu::ComputePassTimestampWrites {
@@ -79,16 +98,24 @@ impl<'a> TimedPass<'a> {
                 end_of_pass_write_index: Some(2 * slot + 1),
             };
             let descriptor = wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes: Some(writes) };
-            self.pass = Some(self.encoder.begin_compute_pass(&descriptor).forget_lifetime());
+            self.pass = Some(encoder.begin_compute_pass(&descriptor).forget_lifetime());
         }
-        let encoder = &mut *self.encoder;
         self.pass.get_or_insert_with(|| {
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()).forget_lifetime()
         })
     }
 
-    /// Ends the pass; the names of the timed phases in order.
-    pub fn end(self) -> Vec<&'static str> {
-        self.names
+    /// For commands outside passes.
+    pub fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        self.pass = None;
+        let device = self.device;
+        self.encoder.get_or_insert_with(|| device.encoder())
+    }
+
+    /// Submits what was recorded; recording goes on with a new encoder.
+    pub fn submit(&mut self) -> wgpu::SubmissionIndex {
+        self.pass = None;
+        let encoder = self.encoder.take().unwrap_or_else(|| self.device.encoder());
+        self.device.submit(encoder)
     }
 }

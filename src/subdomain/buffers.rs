@@ -1,10 +1,12 @@
 //! The buffers of a subdomain, named as the shaders name them.
 
 use crate::gpu::{Device, GpuError};
-use crate::plan::Plan;
 
+use super::constants::Features;
 use super::counters;
-use super::layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuTriangle, GpuZone};
+use super::layout::{
+    GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+};
 use super::walls::Walls;
 
 /// Cells per thread of the scan.
@@ -19,31 +21,39 @@ pub const BLOCK_WORDS: usize = 4;
 /// First length of the neighbour lists; they grow when a device finds one too short.
 pub const FIRST_LIST: u64 = 16;
 
-/// What does not grow with the number of particles.
-pub struct FixedBuffers {
-    pub step: wgpu::Buffer,
+/// What all subdomains of a device share: the gases, the walls and the zones.
+pub struct DomainBuffers {
     pub gases: wgpu::Buffer,
-    pub counters: wgpu::Buffer,
-    pub cell_count: wgpu::Buffer,
-    pub chunk_sums: wgpu::Buffer,
-    pub cell_start: wgpu::Buffer,
     pub wall_start: wgpu::Buffer,
     pub wall_list: wgpu::Buffer,
     pub triangles: wgpu::Buffer,
     pub cell_class: wgpu::Buffer,
     pub parting: wgpu::Buffer,
     pub zones: wgpu::Buffer,
-    pub zone_sums: wgpu::Buffer,
-    pub surface_sums: wgpu::Buffer,
-    pub block_sums: wgpu::Buffer,
-    /// Sizes of the indirect dispatches over lists, and those over the particles that choose again: a
-    /// dispatch may not write the buffer that it takes its size from.
-    pub dispatches: wgpu::Buffer,
-    pub rechoose_dispatches: wgpu::Buffer,
 }
 
-/// Lists of a step (`shaders/shared/lists.wgsl`).
-const LISTS: u64 = 32;
+impl DomainBuffers {
+    pub fn new(
+        device: &Device,
+        walls: &Walls,
+        zones: &[GpuZone],
+        gases: &[GpuGas],
+    ) -> Result<DomainBuffers, GpuError> {
+        let mut table = [GpuGas::default(); 16];
+        table[..gases.len()].copy_from_slice(gases);
+        let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
+        device.write(&gas_buffer, 0, &table);
+        Ok(DomainBuffers {
+            gases: gas_buffer,
+            wall_start: device.storage_of("wall_start", &walls.start)?,
+            wall_list: device.storage_of("wall_list", &walls.list)?,
+            triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
+            cell_class: device.storage_of("cell_class", &walls.class)?,
+            parting: device.storage_of("parting", &walls.parting)?,
+            zones: device.storage_of("zones", zones)?,
+        })
+    }
+}
 
 /// Words of the tallies of one interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,41 +63,31 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
+/// What grows neither with the number of particles nor with that of cells.
+pub struct FixedBuffers {
+    pub step: wgpu::Buffer,
+    pub counters: wgpu::Buffer,
+    pub zone_sums: wgpu::Buffer,
+    pub surface_sums: wgpu::Buffer,
+    pub block_sums: wgpu::Buffer,
+    /// Sizes of the indirect dispatches over lists, and those over the particles that choose again: a
+    /// dispatch may not write the buffer that it takes its size from.
+    pub dispatches: wgpu::Buffer,
+    pub rechoose_dispatches: wgpu::Buffer,
+    pub weights: wgpu::Buffer,
+}
+
 impl FixedBuffers {
-    pub fn new(
-        device: &Device,
-        plan: &Plan,
-        walls: &Walls,
-        zones: &[GpuZone],
-        gases: &[GpuGas],
-        words: TallyWords,
-        step_slots: u64,
-    ) -> Result<FixedBuffers, GpuError> {
-        // Without collisions nothing is binned.
-        let cells = if plan.method == crate::scene::Method::None { 4 } else { plan.grid.cell_count() as u64 };
-        let cells = cells.next_multiple_of(4);
-        let mut table = [GpuGas::default(); 16];
-        table[..gases.len()].copy_from_slice(gases);
-        let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
-        device.write(&gas_buffer, 0, &table);
+    pub fn new(device: &Device, words: TallyWords, step_slots: u64) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
-            gases: gas_buffer,
             counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
-            cell_count: device.storage::<u32>("cell_count", cells)?,
-            chunk_sums: device.storage::<u32>("chunk_sums", cells.div_ceil(CHUNK))?,
-            cell_start: device.storage::<u32>("cell_start", cells + 1)?,
-            wall_start: device.storage_of("wall_start", &walls.start)?,
-            wall_list: device.storage_of("wall_list", &walls.list)?,
-            triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
-            cell_class: device.storage_of("cell_class", &walls.class)?,
-            parting: device.storage_of("parting", &walls.parting)?,
-            zones: device.storage_of("zones", zones)?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
-            dispatches: device.indirect("dispatches", LISTS)?,
-            rechoose_dispatches: device.indirect("rechoose_dispatches", LISTS)?,
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
+            dispatches: device.indirect("dispatches", counters::LISTS as u64)?,
+            rechoose_dispatches: device.indirect("rechoose_dispatches", counters::LISTS as u64)?,
+            weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
         })
     }
 }
@@ -96,6 +96,68 @@ impl FixedBuffers {
 pub fn step_stride(device: &Device) -> u64 {
     let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
     crate::gpu::STEP_BYTES.next_multiple_of(alignment.max(1))
+}
+
+/// What grows with the number of cells that have bins. `cell_count` is zero between steps.
+pub struct CellBuffers {
+    pub capacity: u64,
+    pub cell_count: wgpu::Buffer,
+    pub chunk_sums: wgpu::Buffer,
+    pub cell_start: wgpu::Buffer,
+}
+
+impl CellBuffers {
+    pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
+        Ok(CellBuffers {
+            capacity: bins,
+            cell_count: device.storage::<u32>("cell_count", bins)?,
+            chunk_sums: device.storage::<u32>("chunk_sums", bins.div_ceil(CHUNK))?,
+            cell_start: device.storage::<u32>("cell_start", bins + 1)?,
+        })
+    }
+}
+
+/// What is sent to other devices and received from them, and the cuts that particles are weighed by.
+/// Small on a device alone.
+pub struct ExchangeBuffers {
+    /// Particles.
+    pub room: u64,
+    /// Updates.
+    pub update_room: u64,
+    pub peers: wgpu::Buffer,
+    pub outbox: wgpu::Buffer,
+    pub outbox_peer: wgpu::Buffer,
+    pub updates_out: wgpu::Buffer,
+    pub updates_in: wgpu::Buffer,
+    pub cuts: wgpu::Buffer,
+    pub histogram: wgpu::Buffer,
+}
+
+/// Sizes of the exchange buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExchangeRoom {
+    pub particles: u64,
+    pub updates: u64,
+    pub received: u64,
+    pub peers: u64,
+    pub cuts: u64,
+    pub planes: u64,
+}
+
+impl ExchangeBuffers {
+    pub fn new(device: &Device, room: &ExchangeRoom) -> Result<ExchangeBuffers, GpuError> {
+        Ok(ExchangeBuffers {
+            room: room.particles,
+            update_room: room.updates,
+            peers: device.storage::<GpuPeer>("peers", room.peers)?,
+            outbox: device.storage::<GpuParticle>("outbox", room.particles)?,
+            outbox_peer: device.storage::<u32>("outbox_peer", room.particles)?,
+            updates_out: device.storage::<GpuUpdate>("updates_out", room.updates)?,
+            updates_in: device.storage::<GpuUpdate>("updates_in", room.received)?,
+            cuts: device.storage::<[u32; 4]>("cuts", room.cuts)?,
+            histogram: device.storage::<[u32; 2]>("histogram", room.planes)?,
+        })
+    }
 }
 
 /// What grows with the number of particles.
@@ -120,6 +182,10 @@ pub struct ParticleBuffers {
     pub cells: wgpu::Buffer,
     pub touched: wgpu::Buffer,
     pub rechoose: wgpu::Buffer,
+    pub layers: wgpu::Buffer,
+    /// On a device among others.
+    pub border: wgpu::Buffer,
+    pub changed: wgpu::Buffer,
 }
 
 impl ParticleBuffers {
@@ -129,11 +195,12 @@ impl ParticleBuffers {
         capacity: u64,
         newborns: u64,
         list: u64,
-        collisions: bool,
+        features: Features,
     ) -> Result<ParticleBuffers, GpuError> {
         let capacity = capacity.max(64).next_multiple_of(64);
         // Without collisions the particles are flown in place.
-        let scratch = if collisions { capacity } else { 4 };
+        let scratch = if features.collisions { capacity } else { 4 };
+        let exchange = if features.halo { capacity } else { 4 };
         Ok(ParticleBuffers {
             capacity,
             list,
@@ -154,6 +221,9 @@ impl ParticleBuffers {
             near_walls: device.storage::<u32>("near_walls", scratch)?,
             screened: device.storage::<u32>("screened", scratch)?,
             bouncing: device.storage::<u32>("bouncing", capacity)?,
+            layers: device.storage::<u32>("layers", scratch)?,
+            border: device.storage::<[u32; 2]>("border", exchange)?,
+            changed: device.storage::<u32>("changed", exchange)?,
         })
     }
 
@@ -161,7 +231,7 @@ impl ParticleBuffers {
         self.buffers().iter().map(|buffer| buffer.size()).sum()
     }
 
-    fn buffers(&self) -> [&wgpu::Buffer; 17] {
+    fn buffers(&self) -> [&wgpu::Buffer; 20] {
         [
             &self.particles,
             &self.newborns,
@@ -180,6 +250,9 @@ impl ParticleBuffers {
             &self.cells,
             &self.touched,
             &self.rechoose,
+            &self.layers,
+            &self.border,
+            &self.changed,
         ]
     }
 }
@@ -190,48 +263,68 @@ pub fn most_particles(bytes: u64) -> u64 {
     bytes / (FIRST_LIST * size_of::<u32>() as u64)
 }
 
-/// The buffer that a shader calls `name`. Three kernels call their own tally `sums`.
-pub fn by_name<'a>(
-    fixed: &'a FixedBuffers,
-    particle: &'a ParticleBuffers,
-    kernel: &str,
-    name: &str,
-) -> Option<&'a wgpu::Buffer> {
-    Some(match (kernel, name) {
-        ("tally", "sums") => &fixed.zone_sums,
-        ("bounce", "sums") => &fixed.surface_sums,
-        ("blocks", "sums") => &fixed.block_sums,
-        (_, "step") => &fixed.step,
-        (_, "gases") => &fixed.gases,
-        (_, "counters") => &fixed.counters,
-        (_, "cell_count") => &fixed.cell_count,
-        (_, "chunk_sums") => &fixed.chunk_sums,
-        (_, "cell_start") => &fixed.cell_start,
-        (_, "wall_start") => &fixed.wall_start,
-        (_, "wall_list") => &fixed.wall_list,
-        (_, "triangles") => &fixed.triangles,
-        (_, "cell_class") => &fixed.cell_class,
-        (_, "parting") => &fixed.parting,
-        ("settle", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
-        (_, "dispatches") => &fixed.dispatches,
-        (_, "zones") => &fixed.zones,
-        (_, "particles") => &particle.particles,
-        (_, "newborns") => &particle.newborns,
-        (_, "bins") => &particle.bins,
-        (_, "slots") => &particle.slots,
-        (_, "sorted") => &particle.sorted,
-        (_, "flights") => &particle.flights,
-        (_, "middles") => &particle.middles,
-        (_, "neighbours") => &particle.neighbours,
-        (_, "neighbour_count") => &particle.neighbour_count,
-        (_, "choices") => &particle.choices,
-        (_, "pairs") => &particle.pairs,
-        (_, "near_walls") => &particle.near_walls,
-        (_, "screened") => &particle.screened,
-        (_, "cells") => &particle.cells,
-        (_, "touched") => &particle.touched,
-        (_, "rechoose") => &particle.rechoose,
-        (_, "bouncing") => &particle.bouncing,
-        _ => return None,
-    })
+/// All buffers of a subdomain.
+#[derive(Clone, Copy)]
+pub struct Buffers<'a> {
+    pub domain: &'a DomainBuffers,
+    pub fixed: &'a FixedBuffers,
+    pub cell: &'a CellBuffers,
+    pub particle: &'a ParticleBuffers,
+    pub exchange: &'a ExchangeBuffers,
+}
+
+impl<'a> Buffers<'a> {
+    /// The buffer that a shader calls `name`. Four kernels call their own tally `sums`.
+    pub fn by_name(&self, kernel: &str, name: &str) -> Option<&'a wgpu::Buffer> {
+        let Buffers { domain, fixed, cell, particle, exchange } = *self;
+        Some(match (kernel, name) {
+            ("tally", "sums") => &fixed.zone_sums,
+            ("bounce", "sums") => &fixed.surface_sums,
+            ("blocks", "sums") => &fixed.block_sums,
+            ("weigh", "sums") => &exchange.histogram,
+            (_, "step") => &fixed.step,
+            (_, "gases") => &domain.gases,
+            (_, "counters") => &fixed.counters,
+            (_, "cell_count") => &cell.cell_count,
+            (_, "chunk_sums") => &cell.chunk_sums,
+            (_, "cell_start") => &cell.cell_start,
+            (_, "wall_start") => &domain.wall_start,
+            (_, "wall_list") => &domain.wall_list,
+            (_, "triangles") => &domain.triangles,
+            (_, "cell_class") => &domain.cell_class,
+            (_, "parting") => &domain.parting,
+            ("settle", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
+            ("receive", "dispatches") => &fixed.rechoose_dispatches,
+            (_, "dispatches") => &fixed.dispatches,
+            (_, "weights") => &fixed.weights,
+            (_, "zones") => &domain.zones,
+            (_, "particles") => &particle.particles,
+            (_, "newborns") => &particle.newborns,
+            (_, "bins") => &particle.bins,
+            (_, "slots") => &particle.slots,
+            (_, "sorted") => &particle.sorted,
+            (_, "flights") => &particle.flights,
+            (_, "middles") => &particle.middles,
+            (_, "neighbours") => &particle.neighbours,
+            (_, "neighbour_count") => &particle.neighbour_count,
+            (_, "choices") => &particle.choices,
+            (_, "pairs") => &particle.pairs,
+            (_, "near_walls") => &particle.near_walls,
+            (_, "screened") => &particle.screened,
+            (_, "cells") => &particle.cells,
+            (_, "touched") => &particle.touched,
+            (_, "rechoose") => &particle.rechoose,
+            (_, "bouncing") => &particle.bouncing,
+            (_, "layers") => &particle.layers,
+            (_, "border") => &particle.border,
+            (_, "changed") => &particle.changed,
+            (_, "peers") => &exchange.peers,
+            (_, "outbox") => &exchange.outbox,
+            (_, "outbox_peer") => &exchange.outbox_peer,
+            (_, "updates_out") => &exchange.updates_out,
+            (_, "updates_in") => &exchange.updates_in,
+            (_, "cuts") => &exchange.cuts,
+            _ => return None,
+        })
+    }
 }

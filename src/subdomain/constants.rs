@@ -20,15 +20,18 @@ pub struct Features {
     pub spin: bool,
     pub orifices: bool,
     pub surfaces: bool,
+    /// Other devices own particles that may collide with this one's.
+    pub halo: bool,
 }
 
 impl Features {
-    pub fn of(plan: &Plan, surfaces: usize) -> Features {
+    pub fn of(plan: &Plan, surfaces: usize, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
             spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
             orifices: plan.injected_particles > 0,
             surfaces: surfaces > 0,
+            halo: among_others && plan.method != Method::None,
         }
     }
 }
@@ -38,7 +41,6 @@ pub fn constants(
     features: Features,
     walls: &Walls,
     scales: &Scales,
-    list: u64,
 ) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
     let flag = |on: bool| f64::from(u8::from(on));
@@ -53,7 +55,6 @@ pub fn constants(
         ("QUANTA", 1.0 / grid.quantum()),
         ("TOLERANCE", walls.tolerance),
         ("CHUNK", CHUNK as f64),
-        ("LIST", list as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),

@@ -1,11 +1,15 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words of the buffer.
-pub const WORDS: usize = 45;
-/// Words that are cleared after each read: all but the particle count.
-pub const CLEARED: usize = 44;
-/// The word that counts the particles on the device.
-pub const PARTICLES: usize = 44;
+pub const WORDS: usize = 48;
+/// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
+pub const LISTS: usize = 32;
+pub const NEAR_WALLS: usize = 9;
+pub const BORDER: usize = 12;
+pub const CHANGED: usize = 13;
+pub const OUTBOX: usize = 14;
+pub const UPDATES: usize = 15;
+pub const DROPPED: usize = 31;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
@@ -26,13 +30,20 @@ pub struct Counters {
     pub bounces: u32,
     /// Pairs parted by a wall where they would have met.
     pub blocked: u32,
-    pub particles: u32,
+    /// Particles whose owner was none of the peers: the interval must be run again with more peers.
+    pub strays: u32,
+    /// Updates of ghosts that were not there.
+    pub missing: u32,
+    /// Of the last step: entries of all neighbour lists, and particles that may meet a wall.
+    pub candidates: u32,
+    pub near_walls: u32,
 }
 
 impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
         Counters {
-            collisions: u64::from(words[32]) | (u64::from(words[33]) << 32),
+            // Less those that another device counts.
+            collisions: (u64::from(words[32]) | (u64::from(words[33]) << 32)) - u64::from(words[44]),
             lost: words[34],
             sampled: words[35],
             most_neighbours: words[36],
@@ -43,7 +54,10 @@ impl Counters {
             capacity_failed: words[41],
             bounces: words[42],
             blocked: words[43],
-            particles: words[PARTICLES],
+            strays: words[45],
+            missing: words[46],
+            candidates: words[47],
+            near_walls: words[NEAR_WALLS],
         }
     }
 }

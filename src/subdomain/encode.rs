@@ -1,11 +1,11 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
-use crate::gpu::{BoundKernel, Device, TimedPass, fold};
-use crate::plan::Plan;
+use crate::gpu::{BoundKernel, Device, Recording, fold};
 
 use super::buffers::{CHUNK, step_stride};
 use super::constants::WORKGROUP;
 use super::layout::{GpuNewborn, GpuStep};
+use super::place::Cells;
 use super::{GpuError, Subdomain};
 
 /// One step of an interval, as its dispatches see it.
@@ -13,9 +13,16 @@ use super::{GpuError, Subdomain};
 pub struct StepSlot {
     /// Place in the interval.
     slot: u32,
-    newborns: u32,
-    /// Particles, newborns included.
-    total: u32,
+    index: u32,
+    dt: f32,
+    pub(super) count: u32,
+    pub(super) newborns: u32,
+    newborn_offset: u32,
+    first_id: u32,
+    pub(super) arrivals: u32,
+    /// Entries of `sorted`.
+    pub(super) total: u32,
+    pub(super) updates: u32,
 }
 
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
@@ -28,8 +35,9 @@ const LIST_RECHOOSE: u32 = 16;
 const TALLY_CHUNK: u64 = 64 * 32;
 
 impl Subdomain {
-    /// Uploads the parameters and newborns of the steps of one interval and returns their slots.
-    /// `newborns_of` gives the number of newborns of each step, in order; the first has `first_id`.
+    /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
+    /// the steps' slots. `newborns_of` gives the number of newborns of each step, in order; the first has
+    /// `first_id`.
     ///
     /// # Errors
     /// If room must be made and the device has none.
@@ -42,115 +50,191 @@ impl Subdomain {
         newborns: &[GpuNewborn],
         first_id: u32,
     ) -> Result<Vec<StepSlot>, GpuError> {
-        self.make_room(device, newborns.len(), 0)?;
+        self.make_room(device, newborns.len() as u64, newborns.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, newborns);
-        let rounds = self.plan.rounds + 1;
-        let stride = step_stride(device) as usize;
-        let mut bytes = vec![0u8; stride * newborns_of.len() * rounds as usize];
         let mut slots = Vec::with_capacity(newborns_of.len());
+        let mut bytes = Vec::new();
         let mut entered = 0;
         for (k, &born) in newborns_of.iter().enumerate() {
-            for round in 0..rounds {
-                let step = GpuStep {
-                    count: self.count,
-                    newborns: born,
-                    newborn_offset: entered,
-                    newborn_first_id: first_id + entered,
-                    index: (first_step + k as u64) as u32,
-                    dt: dt as f32,
-                    round,
-                    pad: 0,
-                };
-                let at = stride * (k * rounds as usize + round as usize);
-                bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
-            }
+            let slot = StepSlot {
+                slot: k as u32,
+                index: (first_step + k as u64) as u32,
+                dt: dt as f32,
+                count: self.count,
+                newborns: born,
+                newborn_offset: entered,
+                first_id: first_id + entered,
+                arrivals: 0,
+                total: self.count + born,
+                updates: 0,
+            };
             entered += born;
-            self.count += born;
-            slots.push(StepSlot { slot: k as u32, newborns: born, total: self.count });
+            if self.place.depth == 0 {
+                bytes.extend(self.parameters(device, &slot));
+                self.count += born;
+            }
+            slots.push(slot);
         }
         device.write(&self.fixed.step, 0, &bytes);
         Ok(slots)
     }
 
+    /// Starts a step of a device among others, whose number of particles is known only now.
+    pub fn begin_step(&mut self, device: &Device, slot: &mut StepSlot) {
+        if self.place.depth > 0 {
+            slot.count = self.count;
+            slot.total = self.count + slot.newborns;
+            self.write_parameters(device, slot);
+        }
+    }
+
+    pub(super) fn write_parameters(&self, device: &Device, slot: &StepSlot) {
+        let stride = step_stride(device) * u64::from(self.domain.plan.rounds + 1);
+        device.write(&self.fixed.step, stride * u64::from(slot.slot), &self.parameters(device, slot));
+    }
+
+    /// The uniforms of all rounds of a step.
+    fn parameters(&self, device: &Device, slot: &StepSlot) -> Vec<u8> {
+        let rounds = self.domain.plan.rounds + 1;
+        let stride = step_stride(device) as usize;
+        let mut bytes = vec![0u8; stride * rounds as usize];
+        let (low, size) = self.place.bins(self.domain.plan.grid.cells);
+        let Cells { low: inner_low, high: inner_high } = self.place.inner(self.domain.plan.grid.cells);
+        for round in 0..rounds {
+            let step = GpuStep {
+                count: slot.count,
+                newborns: slot.newborns,
+                newborn_offset: slot.newborn_offset,
+                newborn_first_id: slot.first_id,
+                index: slot.index,
+                dt: slot.dt,
+                round,
+                arrivals: slot.arrivals,
+                low,
+                total: slot.total,
+                size,
+                bins: size.iter().product(),
+                own_low: self.place.own.low,
+                depth: self.place.depth,
+                own_high: self.place.own.high,
+                reach: self.place.reach(round),
+                inner_low,
+                // The arrivals are binned after the others.
+                first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
+                inner_high,
+                updates: slot.updates,
+                peers: self.place.peers.len() as u32,
+                near_peers: self.place.near as u32,
+                list: self.particle.list as u32,
+                pad: 0,
+            };
+            let at = stride * round as usize;
+            bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
+        }
+        bytes
+    }
+
     /// The particles as they are, for tallies outside a step.
     pub fn at_rest(&self, device: &Device) -> StepSlot {
-        let step = GpuStep { count: self.count, ..GpuStep::default() };
-        device.write(&self.fixed.step, 0, bytemuck::bytes_of(&step));
-        StepSlot { slot: 0, newborns: 0, total: self.count }
+        let slot = StepSlot {
+            slot: 0,
+            index: 0,
+            dt: 0.0,
+            count: self.count,
+            newborns: 0,
+            newborn_offset: 0,
+            first_id: 0,
+            arrivals: 0,
+            total: self.count,
+            updates: 0,
+        };
+        self.write_parameters(device, &slot);
+        slot
     }
 
-    fn offset(&self, device: &Device, step: StepSlot, round: u32) -> u32 {
-        (step_stride(device) as u32) * (step.slot * (self.plan.rounds + 1) + round)
+    pub(super) fn offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
+        (step_stride(device) as u32) * (step.slot * (self.domain.plan.rounds + 1) + round)
     }
 
-    pub fn inject(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
-        self.kernels.reset.dispatch(pass.phase("inject"), 0, [1, 1, 1]);
+    pub fn inject(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        let device = rec.device();
+        self.kernels.reset.dispatch(rec.phase("inject"), 0, [1, 1, 1]);
         if let (Some(kernel), true) = (&self.kernels.inject, step.newborns > 0) {
-            kernel.dispatch(
-                pass.phase("inject"),
-                self.offset(device, step, 0),
-                threads(device, u64::from(step.newborns)),
-            );
+            let newborns = threads(device, u64::from(step.newborns));
+            kernel.dispatch(rec.phase("inject"), self.offset(device, step, 0), newborns);
         }
     }
 
-    pub fn bin(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    /// The particles that are here; those that come from other devices are binned as they arrive.
+    pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        let slots = u64::from(step.count) + u64::from(step.newborns);
+        self.bin_slots(rec, step, slots);
+    }
+
+    pub(super) fn bin_slots(&self, rec: &mut Recording<'_>, step: &StepSlot, slots: u64) {
         if let Some(kernels) = &self.kernels.collisions {
-            kernels.bin.dispatch(pass.phase("bin"), self.offset(device, step, 0), self.all(device, step));
+            let device = rec.device();
+            kernels.bin.dispatch(rec.phase("bin"), self.offset(device, step, 0), threads(device, slots));
         }
     }
 
-    pub fn scan(&self, device: &Device, pass: &mut TimedPass<'_>) {
+    pub fn scan(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.collisions {
-            let chunks = threads(device, chunk_count(&self.plan));
-            let pass = pass.phase("scan");
-            kernels.scan_sums.dispatch(pass, 0, chunks);
-            kernels.scan_chunks.dispatch(pass, 0, [1, 1, 1]);
-            kernels.scan_cells.dispatch(pass, 0, chunks);
+            let device = rec.device();
+            let (_, size) = self.place.bins(self.domain.plan.grid.cells);
+            let bins: u64 = size.iter().map(|&n| u64::from(n)).product();
+            let chunks = threads(device, bins.div_ceil(CHUNK));
+            let offset = self.offset(device, step, 0);
+            let pass = rec.phase("scan");
+            kernels.scan_sums.dispatch(pass, offset, chunks);
+            kernels.scan_chunks.dispatch(pass, offset, [1, 1, 1]);
+            kernels.scan_cells.dispatch(pass, offset, chunks);
         }
     }
 
-    pub fn sort(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    pub fn sort(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.collisions {
-            let (offset, all) = (self.offset(device, step, 0), self.all(device, step));
-            let pass = pass.phase("sort");
-            kernels.scatter.dispatch(pass, offset, all);
-            kernels.order.dispatch(pass, offset, all);
+            let device = rec.device();
+            let offset = self.offset(device, step, 0);
+            let slots = u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals);
+            let pass = rec.phase("sort");
+            kernels.scatter.dispatch(pass, offset, threads(device, slots));
+            kernels.order.dispatch(pass, offset, all(device, step));
             kernels.wall_times.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_NEAR_WALLS);
         }
     }
 
-    pub fn neighbours(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    pub fn neighbours(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.collisions {
+            let device = rec.device();
             let offset = self.offset(device, step, 0);
-            let pass = pass.phase("neighbours");
-            kernels.neighbours.dispatch(pass, offset, self.all(device, step));
+            let pass = rec.phase("neighbours");
+            kernels.neighbours.dispatch(pass, offset, all(device, step));
             kernels.screen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_SCREEN);
         }
     }
 
-    pub fn choose(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot, round: u32) {
+    pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
-            self.choosing(&kernels.choose, device, pass.phase("choose"), step, round);
+            self.choosing(&kernels.choose, rec, "choose", step, round);
         }
     }
 
-    pub fn settle(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot, round: u32) {
+    pub fn settle(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
-            let offset = self.offset(device, step, round);
-            let pass = pass.phase("settle");
-            self.choosing(&kernels.match_pairs, device, pass, step, round);
-            kernels.settle.dispatch_indirect(pass, offset, &self.fixed.dispatches, round);
+            self.choosing(&kernels.match_pairs, rec, "settle", step, round);
+            let offset = self.offset(rec.device(), step, round);
+            kernels.settle.dispatch_indirect(rec.phase("settle"), offset, &self.fixed.dispatches, round);
         }
     }
 
     /// One more choice after the last round: pairs still mutual are collisions that the rounds lost.
-    pub fn count_lost(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    pub fn count_lost(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.collisions {
-            let pass = pass.phase("lost");
-            self.choosing(&kernels.choose, device, pass, step, self.plan.rounds);
-            self.choosing(&kernels.match_pairs, device, pass, step, self.plan.rounds);
-            kernels.lost.dispatch(pass, 0, [1, 1, 1]);
+            let rounds = self.domain.plan.rounds;
+            self.choosing(&kernels.choose, rec, "lost", step, rounds);
+            self.choosing(&kernels.match_pairs, rec, "lost", step, rounds);
+            kernels.lost.dispatch(rec.phase("lost"), 0, [1, 1, 1]);
         }
     }
 
@@ -158,46 +242,51 @@ impl Subdomain {
     fn choosing(
         &self,
         kernel: &BoundKernel,
-        device: &Device,
-        pass: &mut wgpu::ComputePass<'_>,
-        step: StepSlot,
+        rec: &mut Recording<'_>,
+        phase: &'static str,
+        step: &StepSlot,
         round: u32,
     ) {
+        let device = rec.device();
         let offset = self.offset(device, step, round);
+        let pass = rec.phase(phase);
         if round == 0 {
-            kernel.dispatch(pass, offset, self.all(device, step));
+            kernel.dispatch(pass, offset, all(device, step));
         } else {
             kernel.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
         }
     }
 
-    pub fn advect(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
+    pub fn advect(&mut self, rec: &mut Recording<'_>, step: &StepSlot) {
+        let device = rec.device();
         let offset = self.offset(device, step, 0);
-        let pass = pass.phase("advect");
-        self.kernels.advect.dispatch(pass, offset, self.all(device, step));
+        let pass = rec.phase("advect");
+        self.kernels.advect.dispatch(pass, offset, all(device, step));
         self.kernels.bounce.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_BOUNCE);
+        if self.place.depth > 0 {
+            self.count = step.total;
+        }
     }
 
-    pub fn tally(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
+    pub fn tally(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let chunks = u64::from(step.total).div_ceil(TALLY_CHUNK) as u32;
-        let groups = [chunks, self.zones as u32, self.plan.gases.len() as u32];
-        self.kernels.tally.dispatch(pass.phase("tally"), self.offset(device, step, 0), groups);
+        let groups = [chunks, self.domain.zones as u32, self.domain.plan.gases.len() as u32];
+        let offset = self.offset(rec.device(), step, 0);
+        self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
     }
 
     /// The blocks that the choice of the step size needs.
-    pub fn tally_blocks(&self, device: &Device, pass: &mut TimedPass<'_>, step: StepSlot) {
-        self.kernels.blocks.dispatch(pass.phase("tally"), self.offset(device, step, 0), self.all(device, step));
-    }
-
-    fn all(&self, device: &Device, step: StepSlot) -> [u32; 3] {
-        threads(device, u64::from(step.total))
+    pub fn tally_blocks(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        let device = rec.device();
+        self.kernels.blocks.dispatch(rec.phase("tally"), self.offset(device, step, 0), all(device, step));
     }
 }
 
-fn threads(device: &Device, items: u64) -> [u32; 3] {
+pub(super) fn threads(device: &Device, items: u64) -> [u32; 3] {
     fold(items, WORKGROUP, device.limits().max_compute_workgroups_per_dimension)
 }
 
-fn chunk_count(plan: &Plan) -> u64 {
-    (plan.grid.cell_count() as u64).next_multiple_of(4).div_ceil(CHUNK)
+pub(super) fn all(device: &Device, step: &StepSlot) -> [u32; 3] {
+    threads(device, u64::from(step.total))
 }

@@ -2,13 +2,14 @@
 
 use crate::gpu::{BoundKernel, Constants, Device, GpuError, Kernel};
 
-use super::buffers::{FixedBuffers, ParticleBuffers, by_name};
+use super::buffers::Buffers;
 use super::constants::Features;
 
 /// What a scene needs is there; what it lacks is not compiled.
 pub struct Kernels<K> {
     pub inject: Option<K>,
     pub collisions: Option<CollisionKernels<K>>,
+    pub exchange: Option<ExchangeKernels<K>>,
     pub reset: K,
     pub advect: K,
     pub bounce: K,
@@ -32,6 +33,14 @@ pub struct CollisionKernels<K> {
     pub lost: K,
 }
 
+/// On a device among others.
+pub struct ExchangeKernels<K> {
+    pub pack: K,
+    pub pack_updates: K,
+    pub receive: K,
+    pub weigh: K,
+}
+
 impl<K> Kernels<K> {
     fn build<E>(features: Features, mut make: impl FnMut(&'static str) -> Result<K, E>) -> Result<Kernels<K>, E> {
         let collisions = if features.collisions {
@@ -53,9 +62,20 @@ impl<K> Kernels<K> {
         } else {
             None
         };
+        let exchange = if features.halo {
+            Some(ExchangeKernels {
+                pack: make("pack")?,
+                pack_updates: make("pack_updates")?,
+                receive: make("receive")?,
+                weigh: make("weigh")?,
+            })
+        } else {
+            None
+        };
         Ok(Kernels {
             inject: if features.orifices { Some(make("inject")?) } else { None },
             collisions,
+            exchange,
             reset: make("reset")?,
             advect: make("advect")?,
             bounce: make("bounce")?,
@@ -82,15 +102,14 @@ impl Compiled {
         &self,
         device: &Device,
         features: Features,
-        fixed: &FixedBuffers,
-        particle: &ParticleBuffers,
+        buffers: &Buffers<'_>,
     ) -> Result<Kernels<BoundKernel>, GpuError> {
         Kernels::build(features, |name| {
             let kernel = self.0.iter().find(|(known, _)| *known == name).map(|(_, kernel)| kernel);
             let Some(kernel) = kernel else {
                 return Err(GpuError::Kernel { kernel: name.into(), reason: "not compiled".into() });
             };
-            kernel.bind(device, |buffer| by_name(fixed, particle, name, buffer))
+            kernel.bind(device, |buffer| buffers.by_name(name, buffer))
         })
     }
 }

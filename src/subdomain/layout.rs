@@ -13,6 +13,22 @@ pub struct GpuStep {
     pub index: u32,
     pub dt: f32,
     pub round: u32,
+    pub arrivals: u32,
+    pub low: [u32; 3],
+    pub total: u32,
+    pub size: [u32; 3],
+    pub bins: u32,
+    pub own_low: [u32; 3],
+    pub depth: u32,
+    pub own_high: [u32; 3],
+    pub reach: u32,
+    pub inner_low: [u32; 3],
+    pub first: u32,
+    pub inner_high: [u32; 3],
+    pub updates: u32,
+    pub peers: u32,
+    pub near_peers: u32,
+    pub list: u32,
     pub pad: u32,
 }
 
@@ -31,6 +47,8 @@ pub struct GpuParticle {
 }
 
 impl GpuParticle {
+    /// The tag of a slot that holds no particle.
+    pub const NOBODY: u32 = u32::MAX;
     pub const ID_MASK: u32 = (1 << 28) - 1;
 
     pub fn tag(gas: u8, id: u32) -> u32 {
@@ -101,4 +119,36 @@ pub struct GpuGas {
     pub exchange: f32,
     pub inverse_beta: f32,
     pub inverse_beta1: f32,
+}
+
+/// `Update` of `shaders/shared/update.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuUpdate {
+    pub particle: GpuParticle,
+    pub flight: GpuFlight,
+    pub cell: u32,
+    pub peer: u32,
+    pub pad: u32,
+    pub pad2: u32,
+}
+
+/// `Peer` of `shaders/shared/update.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuPeer {
+    pub low: [i32; 3],
+    pub pad: u32,
+    pub high: [i32; 3],
+    pub pad2: u32,
+}
+
+/// `Weights` of `shaders/weigh.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuWeights {
+    pub particle: u32,
+    pub candidate: u32,
+    pub wall: u32,
+    pub cuts: u32,
 }

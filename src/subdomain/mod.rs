@@ -7,40 +7,39 @@
 mod buffers;
 mod constants;
 mod counters;
+mod domain;
 mod encode;
+mod exchange;
 mod kernels;
 mod layout;
+mod place;
 mod scales;
 mod state;
 mod tallies;
 mod walls;
 
-use crate::gpu::{BoundKernel, Device, GpuError, Readback};
-use crate::plan::Plan;
+use std::sync::Arc;
+
+use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
 
 pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS, most_particles};
 pub use constants::{Features, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
+pub use domain::{Domain, DomainInput};
 pub use encode::StepSlot;
-pub use layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuTriangle, GpuZone};
+pub use exchange::{Messages, Outgoing};
+pub use layout::{
+    GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+};
+pub use place::{Cells, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
 pub use walls::Walls;
 
-use buffers::{FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords};
-use kernels::{Compiled, Kernels};
-
-/// What a subdomain is made from.
-pub struct SubdomainInput<'a> {
-    pub plan: &'a Plan,
-    pub walls: &'a Walls,
-    /// Zone 0 is everything, then the chambers, then the probes.
-    pub zones: &'a [GpuZone],
-    /// Patches of wall whose impulse is tallied.
-    pub patches: usize,
-    pub particles: &'a [GpuParticle],
-}
+use buffers::{Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords};
+use exchange::Guess;
+use kernels::Kernels;
 
 /// The particles before an interval, so that it can be run again with larger buffers.
 pub struct Remembered {
@@ -49,68 +48,83 @@ pub struct Remembered {
 }
 
 pub struct Subdomain {
-    plan: Plan,
-    features: Features,
-    constants: Vec<(&'static str, f64)>,
-    compiled: Compiled,
+    domain: Arc<Domain>,
+    place: Place,
     kernels: Kernels<BoundKernel>,
     fixed: FixedBuffers,
+    cell: CellBuffers,
     particle: ParticleBuffers,
-    words: TallyWords,
-    blocks: usize,
-    zones: usize,
-    /// Particles on the device once all encoded steps have run.
+    exchange: ExchangeBuffers,
+    exchange_room: ExchangeRoom,
+    outbox_guess: Guess,
+    update_guess: Guess,
+    /// Slots of `particles` in use once all encoded steps have run; among others some of them are dead.
     count: u32,
     staging: Vec<wgpu::Buffer>,
+    spare_staging: Vec<wgpu::Buffer>,
 }
 
 impl Subdomain {
+    /// A subdomain at `place` that starts with these particles.
+    ///
     /// # Errors
-    /// If the device refuses a kernel, or the scene is over its limits.
-    pub fn new(device: &Device, input: &SubdomainInput<'_>) -> Result<Subdomain, GpuError> {
-        let plan = input.plan;
-        let features = Features::of(plan, input.patches);
-        let gases = state::gas_table(plan);
-        let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
-        let words = TallyWords {
-            zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
-            surfaces: input.patches.max(1) * SURFACE_WORDS,
-            blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
-        };
+    /// If the particles or cells are over the device's limits.
+    pub fn new(
+        device: &Device,
+        domain: Arc<Domain>,
+        place: Place,
+        particles: &[GpuParticle],
+    ) -> Result<Subdomain, GpuError> {
+        let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(plan.rounds + 1);
-        let fixed = FixedBuffers::new(device, plan, input.walls, input.zones, &gases, words, slots)?;
+        let fixed = FixedBuffers::new(device, domain.words, slots)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
-        let capacity = input.particles.len() as u64 + (input.particles.len() as u64 / 8).max(1024);
-        let particle = ParticleBuffers::new(device, capacity, 1024, FIRST_LIST, features.collisions)?;
-        let constants = constants(plan, features, input.walls, &Scales::new(plan), particle.list);
-        let compiled = Compiled::new(device, features, &constants)?;
-        let kernels = compiled.bind(device, features, &fixed, &particle)?;
-        device.write(&particle.particles, 0, input.particles);
-        let count = input.particles.len() as u32;
-        device.write(&fixed.counters, 4 * counters::PARTICLES as u64, &[count]);
-        Ok(Subdomain {
-            plan: plan.clone(),
-            features,
-            constants,
-            compiled,
+        let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);
+        let particle = ParticleBuffers::new(device, capacity, 1024, FIRST_LIST, features)?;
+        // Without collisions nothing is binned.
+        let bins = if features.collisions { bins_of(&place, &domain) } else { 4 };
+        let cell = CellBuffers::new(device, bins)?;
+        let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
+        let exchange = ExchangeBuffers::new(device, &exchange_room)?;
+        let buffers = Buffers {
+            domain: &domain.buffers,
+            fixed: &fixed,
+            cell: &cell,
+            particle: &particle,
+            exchange: &exchange,
+        };
+        let kernels = domain.compiled.bind(device, features, &buffers)?;
+        device.write(&particle.particles, 0, particles);
+        let mut subdomain = Subdomain {
+            place: place.clone(),
             kernels,
             fixed,
+            cell,
             particle,
-            words,
-            blocks,
-            zones: input.zones.len(),
-            count,
+            exchange,
+            exchange_room,
+            outbox_guess: Guess::new(),
+            update_guess: Guess::new(),
+            count: particles.len() as u32,
             staging: Vec::new(),
-        })
+            spare_staging: Vec::new(),
+            domain,
+        };
+        subdomain.move_to(device, place)?;
+        Ok(subdomain)
     }
 
-    /// Particles once all encoded steps have run.
+    /// Slots of `particles` in use once all encoded steps have run.
     pub fn count(&self) -> u32 {
         self.count
     }
 
     pub fn features(&self) -> Features {
-        self.features
+        self.domain.features
+    }
+
+    pub fn place(&self) -> &Place {
+        &self.place
     }
 
     /// Bytes of the buffers that grow with the particles.
@@ -118,36 +132,78 @@ impl Subdomain {
         self.particle.bytes()
     }
 
-    /// Makes room for `newborns` more particles, and for neighbour lists of `wanted_list`. Particles are copied on the device, in order with the work already submitted.
+    /// Other cells and peers, from the next step on, whose exchange moves the particles there.
+    ///
+    /// # Errors
+    /// If the cells are over the device's limits.
+    pub fn move_to(&mut self, device: &Device, place: Place) -> Result<(), GpuError> {
+        self.place = place;
+        let peers = self.exchange_peers(device);
+        if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
+            let bins = bins_of(&self.place, &self.domain);
+            self.cell = CellBuffers::new(device, bins + bins / 8)?;
+            self.rebind(device)?;
+        }
+        if peers.len() as u64 > self.exchange_room.peers {
+            let wanted = 2 * peers.len() as u64;
+            self.make_exchange_room(device, |room| room.peers = wanted)?;
+        }
+        device.write(&self.exchange.peers, 0, &peers);
+        Ok(())
+    }
+
+    fn exchange_peers(&self, _device: &Device) -> Vec<GpuPeer> {
+        let signed = |corner: [u32; 3]| corner.map(|cell| cell as i32);
+        let peer = |cells: &Cells| GpuPeer { low: signed(cells.low), high: signed(cells.high), ..GpuPeer::default() };
+        self.place.peers.iter().map(peer).collect()
+    }
+
+    fn rebind(&mut self, device: &Device) -> Result<(), GpuError> {
+        let buffers = Buffers {
+            domain: &self.domain.buffers,
+            fixed: &self.fixed,
+            cell: &self.cell,
+            particle: &self.particle,
+            exchange: &self.exchange,
+        };
+        self.kernels = self.domain.compiled.bind(device, self.domain.features, &buffers)?;
+        Ok(())
+    }
+
+    /// Makes room for `more` particles in the slots after those in use, for `newborns` of an interval, and for
+    /// neighbour lists of `wanted_list`. Particles and bins are copied on the device, in order with the work
+    /// already submitted.
     ///
     /// # Errors
     /// If the larger buffers are over the device's limits.
-    pub fn make_room(&mut self, device: &Device, newborns: usize, wanted_list: u32) -> Result<(), GpuError> {
-        let needed = u64::from(self.count) + newborns as u64;
+    pub fn make_room(
+        &mut self,
+        device: &Device,
+        more: u64,
+        newborns: u64,
+        wanted_list: u32,
+    ) -> Result<(), GpuError> {
+        let needed = u64::from(self.count) + more;
         let longer = u64::from(wanted_list).next_multiple_of(8);
         let list = self.particle.list.max(longer);
         let room_for_newborns = self.particle.newborns.size() / size_of::<GpuNewborn>() as u64;
-        if needed <= self.particle.capacity && newborns as u64 <= room_for_newborns && list == self.particle.list {
+        if needed <= self.particle.capacity && newborns <= room_for_newborns && list == self.particle.list {
             return Ok(());
         }
         let capacity = if needed > self.particle.capacity { needed + needed / 4 } else { self.particle.capacity };
-        let newborn_room = room_for_newborns.max((newborns as u64).next_power_of_two());
-        let grown = ParticleBuffers::new(device, capacity, newborn_room, list, self.features.collisions)?;
+        let newborn_room = room_for_newborns.max(newborns.next_power_of_two());
+        let grown = ParticleBuffers::new(device, capacity, newborn_room, list, self.domain.features)?;
         let mut encoder = device.encoder();
-        let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
-        encoder.copy_buffer_to_buffer(&self.particle.particles, 0, &grown.particles, 0, bytes);
-        device.submit(encoder);
-        if grown.list != self.particle.list {
-            for constant in &mut self.constants {
-                if constant.0 == "LIST" {
-                    constant.1 = grown.list as f64;
-                }
-            }
-            self.compiled = Compiled::new(device, self.features, &self.constants)?;
+        for (old, new) in [
+            (&self.particle.particles, &grown.particles),
+            (&self.particle.bins, &grown.bins),
+            (&self.particle.newborns, &grown.newborns),
+        ] {
+            encoder.copy_buffer_to_buffer(old, 0, new, 0, old.size().min(new.size()));
         }
+        device.submit(encoder);
         self.particle = grown;
-        self.kernels = self.compiled.bind(device, self.features, &self.fixed, &self.particle)?;
-        Ok(())
+        self.rebind(device)
     }
 
     /// Copies the particles as they are before the next interval, into `spare` where it has the room.
@@ -175,16 +231,17 @@ impl Subdomain {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);
-        device.write(&self.fixed.counters, 4 * counters::PARTICLES as u64, &[remembered.count]);
         self.count = remembered.count;
     }
 
-    /// Every particle, in the order of the device; waits for the device.
+    /// The particles owned here, in the order of the device; waits for the device.
     ///
     /// # Errors
     /// If the device fails.
     pub fn particles(&self, device: &Device) -> Result<Vec<GpuParticle>, GpuError> {
-        device.read(&self.particle.particles, self.count as usize)
+        let mut particles: Vec<GpuParticle> = device.read(&self.particle.particles, self.count as usize)?;
+        particles.retain(|particle| particle.tag != GpuParticle::NOBODY);
+        Ok(particles)
     }
 
     /// The flights of the last step, in the order of [`Subdomain::particles`]; zeros without collisions.
@@ -192,7 +249,7 @@ impl Subdomain {
     /// # Errors
     /// If the device fails.
     pub fn flights(&self, device: &Device) -> Result<Vec<GpuFlight>, GpuError> {
-        device.read(&self.particle.flights, if self.features.collisions { self.count as usize } else { 0 })
+        device.read(&self.particle.flights, if self.domain.features.collisions { self.count as usize } else { 0 })
     }
 
     /// Copies the interval's tallies (and the timer's stamps) for a late read, and clears them.
@@ -201,24 +258,26 @@ impl Subdomain {
     /// If the device has no memory for the copy.
     pub fn encode_readback(
         &mut self,
-        device: &Device,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: Option<(&crate::gpu::PhaseTimer, usize)>,
+        rec: &mut Recording<'_>,
+        timer: Option<(&PhaseTimer, usize)>,
     ) -> Result<wgpu::Buffer, GpuError> {
+        let device = rec.device();
         let staging = match self.staging.pop() {
             Some(buffer) => buffer,
-            None => device.staging(self.tally_bytes() + crate::gpu::PhaseTimer::bytes())?,
+            None => device.staging(self.tally_bytes() + PhaseTimer::bytes())?,
         };
         let mut offset = 0;
-        for (buffer, words, cleared) in [
-            (&self.fixed.counters, counters::WORDS, counters::CLEARED),
-            (&self.fixed.zone_sums, self.words.zones, self.words.zones),
-            (&self.fixed.surface_sums, self.words.surfaces, self.words.surfaces),
-            (&self.fixed.block_sums, self.words.blocks, self.words.blocks),
+        let words = self.domain.words;
+        let encoder = rec.encoder();
+        for (buffer, words) in [
+            (&self.fixed.counters, counters::WORDS),
+            (&self.fixed.zone_sums, words.zones),
+            (&self.fixed.surface_sums, words.surfaces),
+            (&self.fixed.block_sums, words.blocks),
         ] {
             let bytes = 4 * words as u64;
             encoder.copy_buffer_to_buffer(buffer, 0, &staging, offset, bytes);
-            encoder.clear_buffer(buffer, 0, Some(4 * cleared as u64));
+            encoder.clear_buffer(buffer, 0, Some(bytes));
             offset += bytes;
         }
         if let Some((timer, phases)) = timer {
@@ -228,7 +287,8 @@ impl Subdomain {
     }
 
     fn tally_bytes(&self) -> u64 {
-        let words = counters::WORDS + self.words.zones + self.words.surfaces + self.words.blocks;
+        let TallyWords { zones, surfaces, blocks } = self.domain.words;
+        let words = counters::WORDS + zones + surfaces + blocks;
         (4 * words as u64).next_multiple_of(8)
     }
 
@@ -238,7 +298,7 @@ impl Subdomain {
     /// If the device fails.
     pub fn finish_readback(&mut self, device: &Device, readback: Readback) -> Result<(Tallies, Vec<u8>), GpuError> {
         let tally_bytes = self.tally_bytes() as usize;
-        let (words, blocks) = (self.words, self.blocks);
+        let (words, blocks) = (self.domain.words, self.domain.blocks);
         let (result, staging) = readback.finish(device, |bytes| {
             let all: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes[..tally_bytes]);
             (Tallies::decode(&all, words, blocks), bytes[tally_bytes..].to_vec())
@@ -246,4 +306,10 @@ impl Subdomain {
         self.staging.push(staging);
         Ok(result)
     }
+}
+
+/// Cells with bins.
+fn bins_of(place: &Place, domain: &Domain) -> u64 {
+    let (_, size) = place.bins(domain.plan.grid.cells);
+    size.iter().map(|&n| u64::from(n)).product()
 }

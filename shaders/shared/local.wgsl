@@ -1,0 +1,33 @@
+// The cells that have bins on this device: a box of the one global grid, in the grid's order, so that the
+// order by (cell, id) is the same on every device.
+
+// The bin of a cell; only for cells of the box.
+fn local_index(c: vec3<u32>) -> u32 {
+    let o = c - step.low;
+    return (o.z * step.size.y + o.y) * step.size.x + o.x;
+}
+
+// The cell of a bin.
+fn cell_of(bin: u32) -> vec3<u32> {
+    let row = bin / step.size.x;
+    return step.low + vec3<u32>(bin % step.size.x, row % step.size.y, row / step.size.y);
+}
+
+fn in_box(c: vec3<u32>, low: vec3<u32>, high: vec3<u32>) -> bool {
+    return all(c >= low) && all(c < high);
+}
+
+// Layers of cells between a cell and the own ones; 0 in them.
+fn layer_of(c: vec3<u32>) -> u32 {
+    let below = select(step.own_low - c, vec3<u32>(0u), c >= step.own_low);
+    let above = select(c + 1u - step.own_high, vec3<u32>(0u), c < step.own_high);
+    let away = max(below, above);
+    return max(away.x, max(away.y, away.z));
+}
+
+// `layers` holds a particle's layer and these marks: another device has it as a ghost; it is in the list
+// `changed`; it may meet a wall in this step.
+const LAYER: u32 = 0xff;
+const SHARED: u32 = 0x100;
+const LISTED: u32 = 0x200;
+const NEAR: u32 = 0x400;

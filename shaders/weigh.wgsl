@@ -1,0 +1,55 @@
+//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl add64.wgsl
+// Where the work of the last step was: sums of the particles' weights over the planes of cells of the boxes
+// that are to be cut (recursive coordinate bisection), and the entries of all neighbour lists.
+//
+// Reads `cells`, `layers`, `neighbour_count` and the tree of cuts so far, `cuts`; writes the integer tally `sums`,
+// two words a plane. One thread per particle, which descends the tree; ghosts are weighed by their owners.
+// Sums of integers do not depend on order.
+
+// A particle's weight, and what each entry of its neighbour list and a possible wall add.
+struct Weights {
+    particle: u32,
+    candidate: u32,
+    wall: u32,
+    // Entries of `cuts` to descend; 0: only count.
+    cuts: u32,
+}
+
+const OPEN: u32 = 3;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
+@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
+@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+@group(0) @binding(27) var<storage, read> cells: array<u32>;
+@group(0) @binding(32) var<storage, read> layers: array<u32>;
+@group(0) @binding(40) var<uniform> weights: Weights;
+// A cut: axis, plane, the entries below and above. An open box: OPEN, the axis to cut, its lowest plane, its
+// place in the histogram. A part: OPEN + 1.
+@group(0) @binding(41) var<storage, read> cuts: array<vec4<u32>>;
+
+@compute @workgroup_size(WORKGROUP)
+fn weigh(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let s = linear(id, groups);
+    if (s >= step.total) {
+        return;
+    }
+    let listed = neighbour_count[s];
+    let mark = layers[s];
+    if (weights.cuts == 0u) {
+        atomicAdd(&counters[CANDIDATES], listed);
+        return;
+    }
+    if ((mark & LAYER) != 0u) {
+        return;
+    }
+    let cell = cell_of(cells[s]);
+    var node = cuts[0];
+    while (node.x < OPEN) {
+        node = cuts[select(node.w, node.z, cell[node.x] < node.y)];
+    }
+    if (node.x == OPEN) {
+        let weight = weights.particle + weights.candidate * listed + select(0u, weights.wall, (mark & NEAR) != 0u);
+        add64(2u * (node.w + cell[node.y] - node.z), weight, 0u);
+    }
+}

@@ -1,0 +1,62 @@
+//! What all subdomains of one device share: the plan, the compiled kernels, the walls, the zones.
+
+use crate::gpu::{Device, GpuError};
+use crate::plan::Plan;
+
+use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_WORDS, TallyWords, ZONE_WORDS};
+use super::constants::{Features, block_counts, constants};
+use super::kernels::Compiled;
+use super::layout::GpuZone;
+use super::scales::Scales;
+use super::state::gas_table;
+use super::walls::Walls;
+
+/// What a domain is made from.
+pub struct DomainInput<'a> {
+    pub plan: &'a Plan,
+    pub walls: &'a Walls,
+    /// Zone 0 is everything, then the chambers, then the probes.
+    pub zones: &'a [GpuZone],
+    /// Patches of wall whose impulse is tallied.
+    pub patches: usize,
+    /// Whether other subdomains own particles too.
+    pub among_others: bool,
+}
+
+pub struct Domain {
+    pub(super) plan: Plan,
+    pub(super) features: Features,
+    pub(super) compiled: Compiled,
+    pub(super) buffers: DomainBuffers,
+    pub(super) words: TallyWords,
+    pub(super) blocks: usize,
+    pub(super) zones: usize,
+}
+
+impl Domain {
+    /// # Errors
+    /// If the device refuses a kernel, or the walls are over its limits.
+    pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
+        let plan = input.plan;
+        let features = Features::of(plan, input.patches, input.among_others);
+        let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
+        let words = TallyWords {
+            zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
+            surfaces: input.patches.max(1) * SURFACE_WORDS,
+            blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
+        };
+        Ok(Domain {
+            plan: plan.clone(),
+            features,
+            compiled: Compiled::new(device, features, &constants(plan, features, input.walls, &Scales::new(plan)))?,
+            buffers: DomainBuffers::new(device, input.walls, input.zones, &gas_table(plan))?,
+            words,
+            blocks,
+            zones: input.zones.len(),
+        })
+    }
+
+    pub fn features(&self) -> Features {
+        self.features
+    }
+}

@@ -1,0 +1,107 @@
+//! Where a subdomain lies in the global grid of cells, and among which others.
+
+use crate::plan::Plan;
+
+/// A box of cells, low <= c < high.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cells {
+    pub low: [u32; 3],
+    pub high: [u32; 3],
+}
+
+impl Cells {
+    /// The cells that particles can be in: all but the border layer of the grid.
+    pub fn inside(plan: &Plan) -> Cells {
+        Cells { low: [1; 3], high: plan.grid.cells.map(|cells| cells - 1) }
+    }
+}
+
+/// The cells of a subdomain, its halo, and the others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The cells whose particles it owns.
+    pub own: Cells,
+    /// Layers of cells around them whose particles it has as ghosts: twice the rounds between two exchanges.
+    pub depth: u32,
+    /// The cells that others own, in the order of the messages; the first `near` of them overlap with this
+    /// one's halo.
+    pub peers: Vec<Cells>,
+    pub near: usize,
+    /// Whether the particles may be anywhere (after a rebalance or a restart), not only near their owner.
+    pub scattered: bool,
+}
+
+impl Place {
+    /// A subdomain that owns all cells.
+    pub fn alone(plan: &Plan) -> Place {
+        Place { own: Cells::inside(plan), depth: 0, peers: Vec::new(), near: 0, scattered: false }
+    }
+
+    /// The cells that have bins: the own ones, the halo and an empty border layer, within the grid. Low corner
+    /// and size.
+    pub(super) fn bins(&self, grid: [u32; 3]) -> ([u32; 3], [u32; 3]) {
+        let around = self.depth + 1;
+        let low = self.own.low.map(|low| low.saturating_sub(around));
+        let size = std::array::from_fn(|axis| (self.own.high[axis] + around).min(grid[axis]) - low[axis]);
+        (low, size)
+    }
+
+    /// The own cells that no other subdomain has in its halo; none of them where particles are scattered.
+    pub(super) fn inner(&self, grid: [u32; 3]) -> Cells {
+        if self.scattered {
+            return Cells { low: [0; 3], high: [0; 3] };
+        }
+        let shrink = |axis: usize| {
+            let (low, high) = (self.own.low[axis], self.own.high[axis]);
+            let low = if low > 1 { (low + self.depth).min(high) } else { low };
+            let at_end = high + 1 == grid[axis];
+            (low, if at_end { high } else { high.saturating_sub(self.depth).max(low) })
+        };
+        let bounds: [(u32, u32); 3] = std::array::from_fn(shrink);
+        Cells { low: bounds.map(|bound| bound.0), high: bounds.map(|bound| bound.1) }
+    }
+
+    /// The layer up to which pairs are settled in a round: the knowledge of the ghosts shrinks by two layers a
+    /// round until the next exchange.
+    pub(super) fn reach(&self, round: u32) -> u32 {
+        match self.depth / 2 {
+            0 => 0,
+            rounds => 2 * (rounds - 1 - round % rounds),
+        }
+    }
+
+    /// Whether the ghosts must be brought up to date before this round.
+    pub fn stale(&self, round: u32) -> bool {
+        let rounds = self.depth / 2;
+        rounds > 0 && round > 0 && round.is_multiple_of(rounds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(depth: u32) -> Place {
+        let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
+        Place { own, depth, peers: Vec::new(), near: 0, scattered: false }
+    }
+
+    /// The halo ends at the border of the grid; faces without neighbours have no particles to send.
+    #[test]
+    fn the_halo_stays_within_the_grid() {
+        let grid = [10, 40, 40];
+        assert_eq!(place(4).bins(grid), ([0, 5, 0], [10, 20, 13]));
+        assert_eq!(place(4).inner(grid), Cells { low: [1, 14, 8], high: [9, 16, 8] });
+        assert_eq!(Place { scattered: true, ..place(4) }.inner(grid).high, [0; 3]);
+    }
+
+    /// The last round before an exchange settles only pairs with an own particle.
+    #[test]
+    fn knowledge_shrinks_by_two_layers_a_round() {
+        let reach: Vec<u32> = (0..6).map(|round| place(6).reach(round)).collect();
+        assert_eq!(reach, [4, 2, 0, 4, 2, 0]);
+        let stale: Vec<u32> = (0..9).filter(|&round| place(6).stale(round)).collect();
+        assert_eq!(stale, [3, 6]);
+        assert!((0..9).all(|round| place(0).reach(round) == 0 && !place(0).stale(round)));
+    }
+}
