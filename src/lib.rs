@@ -7,6 +7,7 @@ pub mod gas;
 pub mod geometry;
 pub mod gpu;
 pub mod output;
+pub mod partition;
 pub mod plan;
 pub mod scene;
 pub mod simulation;
