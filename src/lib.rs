@@ -9,6 +9,7 @@ pub mod gpu;
 pub mod output;
 pub mod partition;
 pub mod plan;
+pub mod ranks;
 pub mod scene;
 pub mod simulation;
 pub mod subdomain;

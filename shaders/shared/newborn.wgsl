@@ -10,7 +10,11 @@ struct Newborn {
 
 // When a particle's flight starts: at its entry if it is a newborn of this step.
 fn birth_time(id: u32) -> f32 {
-    let birth = id - step.newborn_first_id;
+    var birth = id - step.newborn_first_id;
+    if (step.stride > 1u) {
+        // Where particles are dealt out by id. (An older id wraps to far more than the newborns of a step.)
+        birth /= step.stride;
+    }
     if (birth < step.newborns) {
         return newborns[step.newborn_offset + birth].start;
     }

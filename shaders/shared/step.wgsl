@@ -43,7 +43,8 @@ struct Step {
     near_peers: u32,
     // Most entries of a neighbour list.
     list: u32,
-    pad: u32,
+    // Distance of the ids of two newborns.
+    stride: u32,
 }
 
 override WORKGROUP: u32 = 64;

@@ -61,13 +61,16 @@ impl CliError {
 
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Gpu(_) | CliError::Simulation(SimulationError::Gpu(_)) => DEVICE_TROUBLE,
+            CliError::Gpu(_) | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => {
+                DEVICE_TROUBLE
+            },
             CliError::Audit { .. }
             | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
             CliError::Simulation(
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
+                | SimulationError::Partition(_)
                 | SimulationError::Observer(_),
             )
             | CliError::Scene(_)

@@ -35,7 +35,11 @@ pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
     if !quiet {
         say(&heading(device.adapter(), model))?;
     }
-    let options = Options { batch: settings.batch, shuffle: None, stop_after_steps: settings.stop_after_steps };
+    let options = Options {
+        batch: settings.batch,
+        stop_after_steps: settings.stop_after_steps,
+        ..Options::default()
+    };
     let simulation = Simulation::new(model, &device, options)?;
     let folder = OutputFolder::create(&settings.folder, settings.force)?;
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;

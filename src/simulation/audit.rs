@@ -11,12 +11,17 @@ use super::averages::Averages;
 use super::interval::Interval;
 use super::model::Model;
 
+/// The same limit as that of the audit at the end.
+const ENERGY_ERROR: f64 = 1e-4;
+
 pub struct Account {
     scales: Scales,
     molar_masses: Vec<f64>,
     moles_per_particle: f64,
     start: State,
     injected_momentum: [f64; 3],
+    /// By the newborns of the intervals read, J.
+    energy_entered: f64,
     pub particles: u64,
     pub particle_steps: u64,
     pub collisions: u64,
@@ -48,6 +53,7 @@ impl Account {
             moles_per_particle: plan.moles_per_particle,
             start: State::default(),
             injected_momentum: [0.0; 3],
+            energy_entered: 0.0,
             particles: plan.initial_particles,
             particle_steps: 0,
             collisions: 0,
@@ -82,11 +88,23 @@ impl Account {
         self.start = self.state(tallies);
     }
 
-    /// What must hold after every interval.
-    pub fn check(&self, tallies: &Tallies, expected: u32) -> Result<(), String> {
+    /// What must hold after every interval, of all ranks together.
+    pub fn check(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval) -> Result<(), String> {
         let counters = &tallies.counters;
-        if counters.capacity_failed > 0 || counters.particles != expected {
-            return Err(format!("{} particles are on the device, {expected} should be", counters.particles));
+        let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
+        if counters.capacity_failed > 0 || found != interval.particles {
+            return Err(format!("{found} particles are there, {} should be", interval.particles));
+        }
+        if counters.missing > 0 {
+            return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
+        }
+        let (since, brought) = interval.energy_tallied(plan);
+        let samples = f64::from(interval.samples(plan));
+        let expected = samples * (self.start.energy + self.energy_entered) + since;
+        self.energy_entered += brought;
+        let energy = self.state(tallies).energy;
+        if (energy - expected).abs() > ENERGY_ERROR * expected {
+            return Err(format!("the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"));
         }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
@@ -103,17 +121,16 @@ impl Account {
         tallies: &Tallies,
         interval: &Interval,
         samples: u32,
-        particles: u32,
         timed: &[(&'static str, f64)],
     ) {
         let counters = &tallies.counters;
         let steps = u64::from(interval.steps);
-        let mut present = u64::from(particles) - interval.newborns.len() as u64;
-        for born in &interval.newborns_of {
+        let mut present = interval.particles - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
+        for born in &interval.entering {
             present += u64::from(*born);
             self.particle_steps += present;
         }
-        self.particles = u64::from(particles);
+        self.particles = interval.particles;
         self.steps += steps;
         // A pair that a wall parted was settled without a collision.
         self.collisions += counters.collisions - u64::from(counters.blocked);
@@ -148,18 +165,17 @@ impl Account {
         }
     }
 
-    /// The account at the end; `particles` are all particles.
+    /// The account at the end; `outside` particles were found in no gas.
     pub fn close(
         &self,
         model: &Model,
         inflow: &Inflow,
         tallies: &Tallies,
-        particles: &[GpuParticle],
+        outside: u64,
         averages: &Averages,
     ) -> Audit {
         let end = self.state(tallies);
         let plan = &model.plan;
-        let outside = count_outside(&model.vessel, plan, particles);
         let entered = inflow.entered_by_gas();
         let injected_mass =
             entered.iter().zip(&self.molar_masses).map(|(&n, mass)| n as f64 * mass * self.moles_per_particle).sum();
@@ -200,7 +216,7 @@ pub fn audit_limits(plan: &Plan) -> AuditLimits {
 }
 
 /// Particles that are in no gas, nor within the tolerance of a wall: each has passed a closed mesh.
-fn count_outside(vessel: &Vessel, plan: &Plan, particles: &[GpuParticle]) -> u64 {
+pub fn count_outside(vessel: &Vessel, plan: &Plan, particles: &[GpuParticle]) -> u64 {
     let reach = 2.0 * Walls::tolerance(&plan.grid);
     let outside = particles.iter().filter(|particle| {
         let place = plan.grid.to_metres(particle.position);

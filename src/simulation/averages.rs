@@ -50,6 +50,7 @@ pub struct Row {
 }
 
 /// The scene's side of the averages.
+#[derive(Debug, Clone)]
 pub struct Layout {
     /// m3, chambers then probes.
     pub volumes: Vec<f64>,

@@ -2,11 +2,14 @@
 //! known, and its tallies are read one interval late.
 
 use crate::gas::{Inflow, Newborn};
-use crate::gpu::{Device, PhaseTimer, Readback, TimedPass};
+use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
-use crate::subdomain::{GpuNewborn, Remembered, Scales, Subdomain};
+use crate::ranks::Reduction;
+use crate::subdomain::{GpuNewborn, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
+use super::decomposition::Decomposition;
+use super::exchange::Exchange;
 use super::step::{Sampling, step};
 
 /// An interval as it was decided.
@@ -14,23 +17,46 @@ pub struct Interval {
     pub dt: f64,
     pub first_step: u64,
     pub steps: u32,
-    /// Newborns of each step.
+    /// Newborns of each step, on this rank and on all.
     pub newborns_of: Vec<u32>,
+    pub entering: Vec<u32>,
     pub newborns: Vec<GpuNewborn>,
+    /// Id of the first newborn on this rank, and the distance of two.
     pub first_id: u32,
+    pub stride: u32,
     /// Momentum that the newborns bring, kg m/s.
     pub momentum: [f64; 3],
+    /// Energy that the newborns of each step bring, J.
+    pub energy: Vec<f64>,
+    /// Particles at its end, on all ranks.
+    pub particles: u64,
 }
 
 /// An interval on its way through the device.
 pub struct InFlight {
     pub interval: Interval,
     pub before: Remembered,
-    pub readback: Readback,
+    pub tallies: Pending,
     /// Phases of the timed step.
     pub phases: Vec<&'static str>,
-    /// Particles at its end.
-    pub particles: u32,
+    /// Particles on this rank, ghosts included, in the last step.
+    pub present: u32,
+}
+
+/// Tallies on their way to the host and through the ranks.
+pub enum Pending {
+    OnDevice(Readback),
+    /// This rank's, the timer's stamps, and the sums over the ranks that are being formed.
+    Reducing(Box<Tallies>, Vec<u8>, Reduction),
+}
+
+/// To whom the newborns go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deal {
+    /// Every rank looks at all of them.
+    All,
+    /// By id: this rank of so many.
+    ById { rank: u32, ranks: u32 },
 }
 
 impl Interval {
@@ -42,26 +68,47 @@ impl Interval {
         end: f64,
         first_step: u64,
         steps: u32,
+        deal: Deal,
     ) -> Result<Interval, SimulationError> {
         let dt = (end - start) / f64::from(steps);
         let scales = Scales::new(plan);
         let born: Vec<Newborn> = inflow.take_until(end);
-        let first_id = born.first().map_or(0, |newborn| newborn.particle.id);
-        let mut newborns_of = vec![0; steps as usize];
-        let mut newborns = Vec::with_capacity(born.len());
-        let mut momentum = [0.0; 3];
+        let mut interval = Interval {
+            dt,
+            first_step,
+            steps,
+            newborns_of: vec![0; steps as usize],
+            entering: vec![0; steps as usize],
+            newborns: Vec::with_capacity(born.len()),
+            first_id: born.first().map_or(0, |newborn| newborn.particle.id),
+            stride: 1,
+            momentum: [0.0; 3],
+            energy: vec![0.0; steps as usize],
+            particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
+        };
+        if let Deal::ById { rank, ranks } = deal {
+            interval.stride = ranks;
+            interval.first_id += (rank + ranks - interval.first_id % ranks) % ranks;
+        }
         for newborn in &born {
             let k = (((newborn.time - start) / dt) as usize).min(steps as usize - 1);
             let late = (newborn.time - start - k as f64 * dt).clamp(0.0, dt);
-            newborns_of[k] += 1;
+            interval.entering[k] += 1;
             let on_device = GpuNewborn::from_host(&newborn.particle, late, &plan.grid, &scales)?;
+            let particle = &on_device.particle;
             let mass = plan.gases[usize::from(newborn.particle.gas)].molar_mass * plan.moles_per_particle;
-            for (total, v) in momentum.iter_mut().zip(on_device.particle.velocity) {
+            let mut speed2 = 0.0;
+            for (total, v) in interval.momentum.iter_mut().zip(particle.velocity) {
                 *total += mass * f64::from(v);
+                speed2 += f64::from(v) * f64::from(v);
             }
-            newborns.push(on_device);
+            interval.energy[k] += 0.5 * mass * speed2 + scales.reference_mass * f64::from(particle.spin);
+            if deal.takes(newborn.particle.id) {
+                interval.newborns_of[k] += 1;
+                interval.newborns.push(on_device);
+            }
         }
-        Ok(Interval { dt, first_step, steps, newborns_of, newborns, first_id, momentum })
+        Ok(interval)
     }
 
     /// How many of its steps add to the zones.
@@ -69,50 +116,88 @@ impl Interval {
         (0..self.steps).filter(|&k| tallied(plan, self.first_step + u64::from(k))).count() as u32
     }
 
-    /// Encodes and submits the interval, `batch` steps a submission. Neither the batches nor the timed step
-    /// change a bit of the result.
-    pub fn submit(
-        self,
-        plan: &Plan,
-        subdomain: &mut Subdomain,
-        device: &Device,
-        timer: Option<&PhaseTimer>,
-        batch: u32,
-        spare: Option<wgpu::Buffer>,
-    ) -> Result<InFlight, SimulationError> {
-        let before = subdomain.remember(device, spare)?;
-        let slots = subdomain.begin_interval(
-            device,
-            self.first_step,
-            self.dt,
-            &self.newborns_of,
-            &self.newborns,
-            self.first_id,
-        )?;
-        let mut phases = Vec::new();
-        let last = slots.len() - 1;
-        let mut encoder = device.encoder();
-        for (k, slot) in slots.iter().enumerate() {
-            let sampling = Sampling { lost: k == 0, tally: tallied(plan, self.first_step + k as u64) };
-            let timed = timer.filter(|_| k == last);
-            let mut pass = TimedPass::new(&mut encoder, timed);
-            step(subdomain, device, &mut pass, *slot, plan.rounds, sampling);
-            if k == last {
-                subdomain.tally_blocks(device, &mut pass, *slot);
-            }
-            let names = pass.end();
-            if timed.is_some() {
-                phases = names;
-            }
-            if k != last && (k as u32 + 1).is_multiple_of(batch.max(1)) {
-                device.submit(std::mem::replace(&mut encoder, device.encoder()));
+    /// The energy that the newborns had brought since its start, J, summed over the steps that add to the zones;
+    /// and all that they brought.
+    pub fn energy_tallied(&self, plan: &Plan) -> (f64, f64) {
+        let (mut brought, mut summed) = (0.0, 0.0);
+        for (step, energy) in (self.first_step..).zip(&self.energy) {
+            brought += energy;
+            if tallied(plan, step) {
+                summed += brought;
             }
         }
-        let timed = timer.map(|timer| (timer, phases.len()));
-        let staging = subdomain.encode_readback(device, &mut encoder, timed)?;
-        let submission = device.submit(encoder);
-        let readback = device.read_later(staging, submission);
-        Ok(InFlight { before, readback, phases, particles: subdomain.count(), interval: self })
+        (summed, brought)
+    }
+}
+
+impl Deal {
+    fn takes(self, id: u32) -> bool {
+        match self {
+            Deal::All => true,
+            Deal::ById { rank, ranks } => id % ranks == rank,
+        }
+    }
+}
+
+/// What an interval runs on.
+pub struct Machine<'a, 'b> {
+    pub plan: &'a Plan,
+    pub device: &'a Device,
+    pub subdomain: &'a mut Subdomain,
+    pub exchange: &'a mut Exchange<'b>,
+    pub decomposition: Option<&'a mut Decomposition>,
+    pub timer: Option<&'a PhaseTimer>,
+    /// Steps per submission.
+    pub batch: u32,
+}
+
+impl Machine<'_, '_> {
+    /// Encodes and submits the interval, `batch` steps a submission. Neither the batches nor the timed step
+    /// change a bit of the result.
+    pub fn submit(&mut self, interval: Interval, spare: Option<wgpu::Buffer>) -> Result<InFlight, SimulationError> {
+        let (plan, device) = (self.plan, self.device);
+        if let Some(decomposition) = self.decomposition.as_deref_mut()
+            && decomposition.is_scattered()
+        {
+            decomposition.apply(device, self.subdomain, self.exchange)?;
+        }
+        let before = self.subdomain.remember(device, spare)?;
+        let slots = self.subdomain.begin_interval(
+            device,
+            interval.first_step,
+            interval.dt,
+            &interval.newborns_of,
+            &interval.newborns,
+            interval.first_id,
+            interval.stride,
+        )?;
+        let last = slots.len() - 1;
+        let mut rec = Recording::new(device);
+        let mut present = 0;
+        for (k, mut slot) in slots.into_iter().enumerate() {
+            let sampling = Sampling { lost: k == 0, tally: tallied(plan, interval.first_step + k as u64) };
+            rec.time(self.timer.filter(|_| k == last));
+            self.subdomain.begin_step(device, &mut slot);
+            step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
+            if k == last {
+                self.subdomain.tally_blocks(&mut rec, &slot);
+                self.subdomain.count_candidates(&mut rec, &slot);
+                present = slot.present();
+            } else if (k as u32 + 1).is_multiple_of(self.batch.max(1)) {
+                rec.submit();
+            }
+            if let Some(decomposition) = self.decomposition.as_deref_mut()
+                && decomposition.home()
+            {
+                decomposition.apply(device, self.subdomain, self.exchange)?;
+            }
+        }
+        let phases = rec.timed().to_vec();
+        let timed = self.timer.map(|timer| (timer, phases.len()));
+        let staging = self.subdomain.encode_readback(&mut rec, timed)?;
+        let submission = rec.submit();
+        let tallies = Pending::OnDevice(device.read_later(staging, submission));
+        Ok(InFlight { before, tallies, phases, present, interval })
     }
 }
 

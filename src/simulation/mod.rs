@@ -6,7 +6,10 @@
 
 mod audit;
 mod averages;
+mod balance;
 mod clock;
+mod decomposition;
+mod exchange;
 mod interval;
 mod ladder;
 mod model;
@@ -16,18 +19,22 @@ mod setup;
 mod step;
 
 pub use audit::audit_limits;
+pub use balance::{BalanceMode, BalanceOptions, BalanceRecord, Load, imbalance};
+pub use exchange::Traffic;
 pub use averages::{Layout, Row, SurfaceState, ZoneState};
 pub use clock::Clock;
 pub use ladder::{Demand, Ladder, LadderError};
 pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;
 pub use run::{Observer, Options, Outcome, Simulation};
-pub use setup::{Shuffle, initial_particles};
-pub use step::{Sampling, step};
+pub use setup::{Setup, Shuffle, initial_particles};
+pub use step::Sampling;
 
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
 use crate::gpu::GpuError;
+use crate::partition::PartitionError;
+use crate::ranks::RankError;
 use crate::subdomain::StateError;
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -42,6 +49,10 @@ pub enum SimulationError {
     State(#[from] StateError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Partition(#[from] PartitionError),
+    #[error(transparent)]
+    Rank(#[from] RankError),
     #[error("at {time:.6} s: {source}")]
     Ladder { time: f64, source: LadderError },
     #[error("at {time:.6} s: {what}")]

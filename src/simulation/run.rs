@@ -1,24 +1,33 @@
-//! The time loop.
+//! The time loop of a rank.
+//!
+//! Every rank takes the same decisions, since they follow from tallies summed over all ranks, and runs the same
+//! host code on the inflow. Rank 0 tells the observer.
 
 use std::collections::VecDeque;
 
 use crate::gas::Inflow;
-use crate::gpu::{Device, PhaseTimer, TimedPass};
+use crate::gpu::{Device, PhaseTimer, Recording};
 use crate::output::{Audit, PhaseTable};
-use crate::subdomain::{GpuFlight, GpuParticle, Subdomain, Tallies};
+use crate::ranks::{Communicator, Solo};
+use crate::subdomain::{GpuFlight, GpuParticle, Place, Subdomain, Tallies};
 
 use super::SimulationError;
-use super::audit::Account;
+use super::audit::{Account, count_outside};
 use super::averages::{Averages, Row};
+use super::balance::{Balance, BalanceOptions, BalanceRecord, Load};
 use super::clock::Clock;
-use super::interval::{InFlight, Interval};
+use super::decomposition::Decomposition;
+use super::exchange::{Exchange, Traffic};
+use super::interval::{Deal, InFlight, Interval, Machine, Pending};
 use super::ladder::{Demand, Ladder};
 use super::model::Model;
-use super::setup::{Setup, Shuffle, set_up};
+use super::setup::{Setup, Shuffle};
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
+/// Rounds of collisions between two exchanges, unless said otherwise: the halo has twice as many layers.
+const HALO_ROUNDS: u32 = 2;
 
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
@@ -29,6 +38,9 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
+    /// Rounds of collisions between two exchanges of ghosts; a divisor of the plan's rounds wastes least.
+    pub halo_rounds: Option<u32>,
+    pub balance: BalanceOptions,
 }
 
 /// Is told of the run as it goes.
@@ -41,11 +53,11 @@ pub trait Observer {
         Ok(())
     }
 
-    /// The particles by id at a time (s).
+    /// The particles by id at a time (s), and the rank that owns each.
     ///
     /// # Errors
     /// What stops the run.
-    fn snapshot(&mut self, _time: f64, _particles: &[GpuParticle]) -> Result<(), SimulationError> {
+    fn snapshot(&mut self, _time: f64, _particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
         Ok(())
     }
 
@@ -57,8 +69,10 @@ impl Observer for () {}
 
 /// What a run leaves.
 pub struct Outcome {
-    /// By id.
+    /// By id; on rank 0.
     pub particles: Vec<GpuParticle>,
+    /// The rank that owned each of them.
+    pub owners: Vec<u32>,
     pub audit: Audit,
     pub phases: PhaseTable,
     pub steps: u64,
@@ -71,12 +85,35 @@ pub struct Outcome {
     pub repeated: u32,
     /// Smallest and largest step taken, s.
     pub step_range: [f64; 2],
+    /// What this rank sent and waited for.
+    pub traffic: Traffic,
+    pub balance: Vec<BalanceRecord>,
+}
+
+/// The ranks of a run.
+enum Ranks<'a> {
+    Alone(Solo),
+    Among(&'a dyn Communicator),
+}
+
+impl Ranks<'_> {
+    fn comm(&self) -> &dyn Communicator {
+        match self {
+            Ranks::Alone(solo) => solo,
+            Ranks::Among(comm) => *comm,
+        }
+    }
 }
 
 pub struct Simulation<'a> {
     model: &'a Model,
     device: &'a Device,
+    ranks: Ranks<'a>,
     subdomain: Subdomain,
+    exchange: Exchange<'a>,
+    /// `None` on a rank alone, and where particles are dealt out by their ids.
+    decomposition: Option<Decomposition>,
+    balance: Balance,
     inflow: Inflow,
     clock: Clock,
     ladder: Ladder,
@@ -97,22 +134,68 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
+    /// A run on one device.
+    ///
     /// # Errors
     /// If the scene does not fit the device, or its gas does not fit its walls.
     pub fn new(model: &'a Model, device: &'a Device, options: Options<'a>) -> Result<Simulation<'a>, SimulationError> {
+        let setup = Setup::new(model, device, 1, options.shuffle)?;
+        Simulation::on(model, device, &setup, Ranks::Alone(Solo::new()), options)
+    }
+
+    /// One rank of a run. Collective: all ranks make theirs, with the same model and options, from a set-up for
+    /// their number.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`], or if there are more ranks than cells.
+    pub fn among(
+        model: &'a Model,
+        device: &'a Device,
+        setup: &Setup,
+        comm: &'a dyn Communicator,
+        options: Options<'a>,
+    ) -> Result<Simulation<'a>, SimulationError> {
+        Simulation::on(model, device, setup, Ranks::Among(comm), options)
+    }
+
+    fn on(
+        model: &'a Model,
+        device: &'a Device,
+        setup: &Setup,
+        ranks: Ranks<'a>,
+        options: Options<'a>,
+    ) -> Result<Simulation<'a>, SimulationError> {
+        let comm = ranks.comm();
         let plan = &model.plan;
-        let Setup { subdomain, layout, patches } = set_up(model, device, options.shuffle)?;
-        let volumes = crate::geometry::block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2);
+        let initial = setup.particles.iter().copied();
+        let (size, rank) = (comm.size() as u32, comm.rank() as u32);
+        let mut decomposition = None;
+        let own: Vec<GpuParticle> = if setup.domain.features().halo {
+            let rounds = options.halo_rounds.unwrap_or(HALO_ROUNDS).clamp(1, plan.rounds.max(1));
+            let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
+            let cut = Decomposition::new(plan, comm, rounds, weighed)?;
+            decomposition.insert(cut).own(plan, initial).collect()
+        } else {
+            initial.filter(|particle| particle.id() % size == rank).collect()
+        };
+        let place = decomposition.as_ref().map_or_else(|| Place::alone(plan), |cut| cut.place().1);
+        let subdomain = Subdomain::new(device, setup.domain.clone(), place, &own)?;
         let first_id = plan.initial_particles as u32;
         let scene = &model.scene;
         let inflow =
             Inflow::new(&scene.orifices, &scene.gases, plan.moles_per_particle, plan.seed, first_id, plan.end_time);
         Ok(Simulation {
             subdomain,
+            exchange: match ranks {
+                Ranks::Alone(_) => Exchange::none(),
+                Ranks::Among(comm) => Exchange::new(comm),
+            },
+            decomposition,
+            balance: Balance::new(options.balance, comm, plan),
             inflow,
             clock: Clock::new(plan),
-            ladder: Ladder::new(plan, volumes),
-            averages: Averages::new(plan, layout, patches),
+            ladder: Ladder::new(plan, setup.volumes.to_vec()),
+            averages: Averages::new(plan, setup.layout.clone(), setup.patches),
             account: Account::new(plan),
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
@@ -126,6 +209,7 @@ impl<'a> Simulation<'a> {
             options,
             model,
             device,
+            ranks,
         })
     }
 
@@ -181,11 +265,16 @@ impl<'a> Simulation<'a> {
             self.emit_row(observer)?;
         }
         let at_end = self.measure()?;
-        let mut particles = self.subdomain.particles(self.device)?;
-        particles.sort_unstable_by_key(GpuParticle::id);
-        let audit = self.account.close(self.model, &self.inflow, &at_end, &particles, &self.averages);
+        let own = self.subdomain.particles(self.device)?;
+        let outside = count_outside(&self.model.vessel, &self.model.plan, &own);
+        let outside = self.ranks.comm().sum(vec![outside])?[0];
+        let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages);
+        let (particles, owners) = self.gather(own)?.unwrap_or_default();
         Ok(Outcome {
             particles,
+            owners,
+            traffic: self.exchange.traffic(),
+            balance: self.balance.into_records(),
             audit,
             phases: self.account.phases(),
             steps: self.clock.steps,
@@ -202,18 +291,20 @@ impl<'a> Simulation<'a> {
         self.options.stop_after_steps.is_some_and(|most| self.clock.steps >= most)
     }
 
-    /// Tallies of the particles as they are.
+    /// Tallies of the particles as they are, of all ranks.
     fn measure(&mut self) -> Result<Tallies, SimulationError> {
         let slot = self.subdomain.at_rest(self.device);
-        let mut encoder = self.device.encoder();
-        let mut pass = TimedPass::new(&mut encoder, None);
-        self.subdomain.tally(self.device, &mut pass, slot);
-        self.subdomain.tally_blocks(self.device, &mut pass, slot);
-        pass.end();
-        let staging = self.subdomain.encode_readback(self.device, &mut encoder, None)?;
-        let submission = self.device.submit(encoder);
+        let mut rec = Recording::new(self.device);
+        self.subdomain.tally(&mut rec, &slot);
+        self.subdomain.tally_blocks(&mut rec, &slot);
+        let staging = self.subdomain.encode_readback(&mut rec, None)?;
+        let submission = rec.submit();
         let readback = self.device.read_later(staging, submission);
-        Ok(self.subdomain.finish_readback(self.device, readback)?.0)
+        let own = self.subdomain.finish_readback(self.device, readback)?.0;
+        let (sums, maxima) = own.to_words();
+        let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
+        let (sums, maxima) = self.ranks.comm().finish_reduction(reduction)?;
+        all_tallies(&own, &sums, &maxima)
     }
 
     fn submit_next(&mut self) -> Result<(), SimulationError> {
@@ -224,21 +315,79 @@ impl<'a> Simulation<'a> {
             let time = self.clock.time();
             self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
         }
+        if let Some(decomposition) = &mut self.decomposition {
+            let dt = self.clock.dt(self.ladder.level());
+            self.balance.act(self.clock.steps, dt, self.device, &mut self.subdomain, self.ranks.comm(), decomposition)?;
+        }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
         let (start, first_step) = (self.clock.time(), self.clock.steps);
         self.clock.advance(level, steps);
         let end = self.clock.time();
-        let interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps)?;
+        let deal = match self.decomposition {
+            None => Deal::ById { rank: self.ranks.comm().rank() as u32, ranks: self.ranks.comm().size() as u32 },
+            Some(_) => Deal::All,
+        };
+        let interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
         self.submit(interval)
     }
 
     fn submit(&mut self, interval: Interval) -> Result<(), SimulationError> {
         let batch = self.options.batch.unwrap_or(self.model.plan.steps_per_interval);
-        let (plan, spare) = (&self.model.plan, self.spare.pop());
-        let flying = interval.submit(plan, &mut self.subdomain, self.device, self.timer.as_ref(), batch, spare)?;
+        let spare = self.spare.pop();
+        let mut machine = Machine {
+            plan: &self.model.plan,
+            device: self.device,
+            subdomain: &mut self.subdomain,
+            exchange: &mut self.exchange,
+            decomposition: self.decomposition.as_mut(),
+            timer: self.timer.as_ref(),
+            batch,
+        };
+        let flying = machine.submit(interval, spare)?;
+        // The one before is done, or nearly: its sums are formed while this one runs.
+        if self.ranks.comm().size() > 1
+            && let Some(before) = self.flying.pop_back()
+        {
+            let reducing = self.reduce(before)?;
+            self.flying.push_back(reducing);
+        }
         self.flying.push_back(flying);
         Ok(())
+    }
+
+    /// Takes an interval's tallies from the device and starts to sum them over the ranks.
+    fn reduce(&mut self, mut flight: InFlight) -> Result<InFlight, SimulationError> {
+        if let Pending::OnDevice(readback) = flight.tallies {
+            let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+            let (mut sums, maxima) = own.to_words();
+            let seconds = self.step_seconds(&flight.phases, &stamps);
+            sums.extend(Load::new(seconds, flight.present, &own).to_words(self.ranks.comm()));
+            let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
+            flight.tallies = Pending::Reducing(Box::new(own), stamps, reduction);
+        }
+        Ok(flight)
+    }
+
+    /// Device time of the timed step, s; zero on a device that does not time.
+    fn step_seconds(&self, phases: &[&'static str], stamps: &[u8]) -> f64 {
+        let timed = self.timer.as_ref().map(|timer| timer.seconds(phases, stamps)).unwrap_or_default();
+        timed.iter().map(|(_, seconds)| seconds).sum()
+    }
+
+    /// The tallies of all ranks, the stamps of this one, and every rank's load.
+    fn collect(&mut self, tallies: Pending) -> Result<(Tallies, Vec<u8>, Vec<Load>), SimulationError> {
+        match tallies {
+            Pending::OnDevice(readback) => {
+                let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+                Ok((own, stamps, Vec::new()))
+            }
+            Pending::Reducing(own, stamps, reduction) => {
+                let (mut sums, maxima) = self.ranks.comm().finish_reduction(reduction)?;
+                let loads = Load::from_words(&mut sums, self.ranks.comm().size());
+                Ok((all_tallies(&own, &sums, &maxima)?, stamps, loads))
+            }
+        }
     }
 
     fn read_all(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
@@ -249,23 +398,29 @@ impl<'a> Simulation<'a> {
     }
 
     fn read_oldest(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
-        let Some(InFlight { interval, before, readback, phases, particles }) = self.flying.pop_front() else {
+        let Some(mut flight) = self.flying.pop_front() else {
             return Ok(());
         };
-        let (tallies, stamps) = self.subdomain.finish_readback(self.device, readback)?;
-        if tallies.counters.most_neighbours > 0 {
-            return self.run_again(interval, before, tallies.counters.most_neighbours);
+        if self.ranks.comm().size() > 1 {
+            flight = self.reduce(flight)?;
+        }
+        let InFlight { interval, before, tallies, phases, .. } = flight;
+        let (tallies, stamps, loads) = self.collect(tallies)?;
+        let counters = &tallies.counters;
+        if counters.most_neighbours > 0 || counters.strays > 0 {
+            return self.run_again(interval, before, counters.most_neighbours, counters.strays > 0);
         }
         self.spare.push(before.particles);
         let duration = interval.dt * f64::from(interval.steps);
         self.read_until += duration;
-        let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
-        self.account.check(&tallies, particles).map_err(lost)?;
-        let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let plan = &self.model.plan;
+        let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
+        self.account.check(plan, &tallies, &interval).map_err(lost)?;
+        let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples(plan);
-        self.account.add(plan, &tallies, &interval, samples, particles, &timed);
+        self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        self.balance.take(interval.first_step + u64::from(interval.steps), self.read_until, loads);
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
@@ -287,26 +442,39 @@ impl<'a> Simulation<'a> {
         observer.row(&row)
     }
 
-    /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`.
+    /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
+    /// everyone as a peer if particles strayed. All ranks do, since they see the sums.
     fn run_again(
         &mut self,
         first: Interval,
         before: crate::subdomain::Remembered,
         wanted: u32,
+        strayed: bool,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
-        tracing::debug!("neighbour lists grow to {wanted}; an interval is run again");
-        let later: Vec<InFlight> = self.flying.drain(..).collect();
-        for flight in &later {
-            self.device.wait(flight.readback.submission())?;
+        tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
+        let mut later = Vec::new();
+        for flight in std::mem::take(&mut self.flying) {
+            match flight.tallies {
+                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
+                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
+            }
+            later.push((flight.interval, flight.before));
         }
         self.subdomain.restore(self.device, &before);
-        self.subdomain.make_room(self.device, 0, wanted)?;
+        self.subdomain.make_room(self.device, 0, 0, wanted)?;
+        if let Some(decomposition) = &mut self.decomposition {
+            // The cuts may have changed since; the first exchange brings the particles home.
+            decomposition.scatter();
+            if strayed {
+                decomposition.widen();
+            }
+        }
         self.spare.push(before.particles);
         self.submit(first)?;
-        for flight in later {
-            self.spare.push(flight.before.particles);
-            self.submit(flight.interval)?;
+        for (interval, before) in later {
+            self.spare.push(before.particles);
+            self.submit(interval)?;
         }
         Ok(())
     }
@@ -322,13 +490,28 @@ impl<'a> Simulation<'a> {
         if asked == 0 {
             return Ok(());
         }
-        let mut particles = self.subdomain.particles(self.device)?;
-        particles.sort_unstable_by_key(GpuParticle::id);
-        observer.snapshot(self.clock.time(), &particles)?;
+        let own = self.subdomain.particles(self.device)?;
+        if let Some((particles, owners)) = self.gather(own)? {
+            observer.snapshot(self.clock.time(), &particles, &owners)?;
+        }
         while self.snapshot_due() && self.next_snapshot <= asked {
             self.next_snapshot += 1;
         }
         Ok(())
+    }
+
+    /// All particles by id, and the rank that owns each, at rank 0. Collective.
+    fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<(Vec<GpuParticle>, Vec<u32>)>, SimulationError> {
+        let Some(messages) = self.ranks.comm().gather(bytemuck::cast_slice(&own).to_vec())? else {
+            return Ok(None);
+        };
+        let mut all = Vec::new();
+        for (rank, message) in (0..).zip(messages) {
+            let particles: Vec<GpuParticle> = bytemuck::pod_collect_to_vec(&message);
+            all.extend(particles.into_iter().map(|particle| (particle, rank)));
+        }
+        all.sort_unstable_by_key(|(particle, _)| particle.id());
+        Ok(Some(all.into_iter().unzip()))
     }
 
     /// The flights of the last step of the run so far, with ids, in the order of [`Simulation::particles`]: for tests and studies of single steps.
@@ -348,4 +531,11 @@ impl<'a> Simulation<'a> {
     pub fn particles(&self) -> Result<Vec<GpuParticle>, SimulationError> {
         Ok(self.subdomain.particles(self.device)?)
     }
+}
+
+fn all_tallies(own: &Tallies, sums: &[u64], maxima: &[u64]) -> Result<Tallies, SimulationError> {
+    own.from_words(sums, maxima).ok_or_else(|| SimulationError::Lost {
+        time: 0.0,
+        what: "the ranks' tallies do not have the same shape".into(),
+    })
 }

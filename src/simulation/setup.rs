@@ -1,41 +1,66 @@
 //! What a model becomes on a device: walls, zones, patches and the initial particles.
 
+use std::sync::Arc;
+
 use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, region_bounds, region_contains};
+use crate::geometry::{TriangleGrid, block_volumes, region_bounds, region_contains};
 use crate::gpu::Device;
 use crate::scene::{Face, Region};
-use crate::subdomain::{GpuParticle, GpuZone, Scales, Subdomain, SubdomainInput, Walls, zone_of};
+use crate::subdomain::{Domain, DomainInput, GpuParticle, GpuZone, Scales, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
 use super::model::Model;
 
+/// What the ranks that share a device have in common; made once for all of them.
+#[derive(Clone)]
 pub struct Setup {
-    pub subdomain: Subdomain,
+    pub domain: Arc<Domain>,
     pub layout: Layout,
     pub patches: usize,
+    /// Gas volume of each coarse block, m3.
+    pub volumes: Arc<Vec<f64>>,
+    /// All of them, by id (or as they were shuffled).
+    pub particles: Arc<Vec<GpuParticle>>,
 }
 
 /// The order in which the initial particles are handed to the device; results must not depend on it.
-pub type Shuffle = dyn Fn(&mut [GpuParticle]);
+pub type Shuffle = dyn Fn(&mut [GpuParticle]) + Sync;
 
-pub fn set_up(model: &Model, device: &Device, shuffle: Option<&Shuffle>) -> Result<Setup, SimulationError> {
-    let plan = &model.plan;
-    let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
-    let (patch, patches) = patches(model);
-    let parts = |triangle: usize| {
-        let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
-        !wall.is_convex_cavity()
-    };
-    let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
-    let mut particles = initial_particles(model)?;
-    if let Some(shuffle) = shuffle {
-        shuffle(&mut particles);
+impl Setup {
+    /// `ranks`: how many the particles will be shared among.
+    ///
+    /// # Errors
+    /// If the scene does not fit the device, or its gas does not fit its walls.
+    pub fn new(
+        model: &Model,
+        device: &Device,
+        ranks: usize,
+        shuffle: Option<&Shuffle>,
+    ) -> Result<Setup, SimulationError> {
+        let plan = &model.plan;
+        let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
+        let (patch, patches) = patches(model);
+        let parts = |triangle: usize| {
+            let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
+            !wall.is_convex_cavity()
+        };
+        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
+        let mut particles = initial_particles(model)?;
+        if let Some(shuffle) = shuffle {
+            shuffle(&mut particles);
+        }
+        let zones = zones(model);
+        let input =
+            DomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), among_others: ranks > 1 };
+        Ok(Setup {
+            domain: Arc::new(Domain::new(device, &input)?),
+            layout: layout(model, &patches),
+            patches: patches.len(),
+            volumes: Arc::new(block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2)),
+            particles: Arc::new(particles),
+        })
     }
-    let zones = zones(model);
-    let input = SubdomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), particles: &particles };
-    let subdomain = Subdomain::new(device, &input)?;
-    Ok(Setup { subdomain, layout: layout(model, &patches), patches: patches.len() })
 }
 
 /// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without

@@ -1,8 +1,11 @@
 //! The step: one named and timed phase a line. The names are those of the shaders, the timers, the phase
 //! table at the end of a run and the docs.
 
-use crate::gpu::{Device, TimedPass};
+use crate::gpu::Recording;
 use crate::subdomain::{StepSlot, Subdomain};
+
+use super::SimulationError;
+use super::exchange::Exchange;
 
 /// What else a step does.
 #[derive(Debug, Clone, Copy, Default)]
@@ -13,28 +16,34 @@ pub struct Sampling {
     pub tally: bool,
 }
 
+/// # Errors
+/// If a device or another rank fails.
 pub fn step(
-    subdomain: &Subdomain,
-    device: &Device,
-    pass: &mut TimedPass<'_>,
-    slot: StepSlot,
+    subdomain: &mut Subdomain,
+    exchange: &mut Exchange<'_>,
+    rec: &mut Recording<'_>,
+    slot: &mut StepSlot,
     rounds: u32,
     sampling: Sampling,
-) {
-    subdomain.inject(device, pass, slot);
-    subdomain.bin(device, pass, slot);
-    subdomain.scan(device, pass);
-    subdomain.sort(device, pass, slot);
-    subdomain.neighbours(device, pass, slot);
+) -> Result<(), SimulationError> {
+    subdomain.inject(rec, slot);
+    subdomain.bin(rec, slot);
+    exchange.particles(subdomain, rec, slot)?;
+    subdomain.scan(rec, slot);
+    subdomain.sort(rec, slot);
+    subdomain.neighbours(rec, slot);
     for round in 0..rounds {
-        subdomain.choose(device, pass, slot, round);
-        subdomain.settle(device, pass, slot, round);
+        exchange.updates(subdomain, rec, slot, round)?;
+        subdomain.choose(rec, slot, round);
+        subdomain.settle(rec, slot, round);
     }
     if sampling.lost {
-        subdomain.count_lost(device, pass, slot);
+        exchange.updates(subdomain, rec, slot, rounds)?;
+        subdomain.count_lost(rec, slot);
     }
-    subdomain.advect(device, pass, slot);
+    subdomain.advect(rec, slot);
     if sampling.tally {
-        subdomain.tally(device, pass, slot);
+        subdomain.tally(rec, slot);
     }
+    Ok(())
 }

@@ -19,10 +19,23 @@ pub struct StepSlot {
     pub(super) newborns: u32,
     newborn_offset: u32,
     first_id: u32,
+    stride: u32,
     pub(super) arrivals: u32,
     /// Entries of `sorted`.
     pub(super) total: u32,
     pub(super) updates: u32,
+}
+
+impl StepSlot {
+    /// Particles on the device in this step, ghosts included.
+    pub fn present(&self) -> u32 {
+        self.total
+    }
+
+    /// Those of them that came from other devices.
+    pub fn arrived(&self) -> u32 {
+        self.arrivals
+    }
 }
 
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
@@ -37,7 +50,7 @@ const TALLY_CHUNK: u64 = 64 * 32;
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
     /// the steps' slots. `newborns_of` gives the number of newborns of each step, in order; the first has
-    /// `first_id`.
+    /// `first_id`, and their ids are `stride` apart.
     ///
     /// # Errors
     /// If room must be made and the device has none.
@@ -49,6 +62,7 @@ impl Subdomain {
         newborns_of: &[u32],
         newborns: &[GpuNewborn],
         first_id: u32,
+        stride: u32,
     ) -> Result<Vec<StepSlot>, GpuError> {
         self.make_room(device, newborns.len() as u64, newborns.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, newborns);
@@ -63,7 +77,8 @@ impl Subdomain {
                 count: self.count,
                 newborns: born,
                 newborn_offset: entered,
-                first_id: first_id + entered,
+                first_id: first_id + entered * stride,
+                stride,
                 arrivals: 0,
                 total: self.count + born,
                 updates: 0,
@@ -126,7 +141,7 @@ impl Subdomain {
                 peers: self.place.peers.len() as u32,
                 near_peers: self.place.near as u32,
                 list: self.particle.list as u32,
-                pad: 0,
+                stride: slot.stride,
             };
             let at = stride * round as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -144,6 +159,7 @@ impl Subdomain {
             newborns: 0,
             newborn_offset: 0,
             first_id: 0,
+            stride: 1,
             arrivals: 0,
             total: self.count,
             updates: 0,

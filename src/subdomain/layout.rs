@@ -29,7 +29,7 @@ pub struct GpuStep {
     pub peers: u32,
     pub near_peers: u32,
     pub list: u32,
-    pub pad: u32,
+    pub stride: u32,
 }
 
 /// `Particle` of `shaders/shared/particle.wgsl`.

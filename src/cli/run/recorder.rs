@@ -86,7 +86,7 @@ impl Observer for Recorder<'_> {
         self.history.row(&values(row, &self.reference)).map_err(stop)
     }
 
-    fn snapshot(&mut self, time: f64, particles: &[GpuParticle]) -> Result<(), SimulationError> {
+    fn snapshot(&mut self, time: f64, particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
         self.write_snapshot(time, particles).map_err(stop)
     }
 

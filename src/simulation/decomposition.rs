@@ -1,0 +1,175 @@
+//! Which rank owns which cells, and where a rank's particles start.
+//!
+//! Boxes of cells come from recursive coordinate bisection. Without collisions no particle needs to know of
+//! another, so the particles are dealt out by their ids, nothing is exchanged and there is nothing to balance.
+
+use crate::gpu::Device;
+use crate::partition::{Bisection, CellBox, Node, PartitionError, TOLERANCE, Tree, bisect};
+use crate::plan::Plan;
+use crate::ranks::Communicator;
+use crate::subdomain::{Cells, GpuParticle, Place, Subdomain};
+
+use super::SimulationError;
+use super::exchange::Exchange;
+
+/// Layers of cells beyond the halo from which a particle may come in a step. A particle that flew farther is
+/// found by its owner of the step before, and the interval is run again with everyone as a peer.
+const FLIGHT: u32 = 6;
+
+pub struct Decomposition {
+    tree: Tree,
+    rank: usize,
+    depth: u32,
+    /// Everyone is a peer.
+    wide: bool,
+    /// The particles may be with anyone.
+    scattered: bool,
+}
+
+impl Decomposition {
+    /// Equal boxes, or boxes of equal weight of `particles`. `rounds`: those between two exchanges.
+    ///
+    /// # Errors
+    /// If there are more ranks than cells.
+    pub fn new(
+        plan: &Plan,
+        comm: &dyn Communicator,
+        rounds: u32,
+        particles: Option<&[GpuParticle]>,
+    ) -> Result<Decomposition, PartitionError> {
+        let root = root(plan);
+        let shares = vec![1.0; comm.size()];
+        let cells = particles.unwrap_or_default().iter().map(|particle| (cell_of(plan, particle), 1));
+        let tree = bisect(root, &shares, None, cells)?;
+        Ok(Decomposition { tree, rank: comm.rank(), depth: 2 * rounds, wide: false, scattered: true })
+    }
+
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// The particles that a rank starts with: those whose cells it owns. (The first exchange decides by the cells
+    /// of their mid-step positions.)
+    pub fn own<'a>(
+        &'a self,
+        plan: &'a Plan,
+        particles: impl Iterator<Item = GpuParticle> + 'a,
+    ) -> impl Iterator<Item = GpuParticle> + 'a {
+        particles.filter(move |particle| self.tree.part_of(cell_of(plan, particle)) == self.rank)
+    }
+
+    /// The ranks that this one exchanges particles with, those that share ghosts with it first, and its place
+    /// among them.
+    pub fn place(&self) -> (Vec<usize>, Place) {
+        let boxes = self.tree.boxes();
+        let own = boxes[self.rank];
+        let gap = |rank: &usize| boxes[*rank].gap(&own);
+        let everyone = self.wide || self.scattered;
+        let others = (0..boxes.len()).filter(|&rank| rank != self.rank);
+        let mut peers: Vec<usize> = others.filter(|rank| everyone || gap(rank) < self.depth + FLIGHT).collect();
+        peers.sort_by_key(|rank| (gap(rank) >= self.depth, *rank));
+        let near = peers.iter().filter(|rank| gap(rank) < self.depth).count();
+        let cells = |extent: &CellBox| Cells { low: extent.low, high: extent.high };
+        let place = Place {
+            own: cells(&own),
+            depth: self.depth,
+            peers: peers.iter().map(|&rank| cells(&boxes[rank])).collect(),
+            near,
+            scattered: self.scattered,
+        };
+        (peers, place)
+    }
+
+    /// Puts the subdomain and its exchange where the tree says.
+    ///
+    /// # Errors
+    /// If the device has no memory for the cells.
+    pub fn apply(
+        &self,
+        device: &Device,
+        subdomain: &mut Subdomain,
+        exchange: &mut Exchange<'_>,
+    ) -> Result<(), SimulationError> {
+        let (peers, place) = self.place();
+        exchange.set_peers(peers, place.near);
+        Ok(subdomain.move_to(device, place)?)
+    }
+
+    /// From now on particles may be with anyone, until the exchange of a step has brought them home.
+    pub fn scatter(&mut self) {
+        self.scattered = true;
+    }
+
+    pub fn is_scattered(&self) -> bool {
+        self.scattered
+    }
+
+    /// The exchange of a step has brought all particles to their owners; true if that was needed.
+    pub fn home(&mut self) -> bool {
+        std::mem::take(&mut self.scattered)
+    }
+
+    /// Particles fly farther than thought: everyone is a peer from now on.
+    pub fn widen(&mut self) {
+        self.wide = true;
+    }
+
+    /// A tree from outside.
+    pub fn replace(&mut self, tree: Tree) {
+        self.tree = tree;
+        self.scatter();
+    }
+
+    /// Cuts anew so that each rank has its share of the weights that the devices measured where the last step
+    /// had its particles. Old cuts stay where balance allows. Collective; the histograms are summed over the
+    /// ranks, so that all find the same cuts.
+    ///
+    /// # Errors
+    /// If a device or another rank fails.
+    pub fn rebalance(
+        &mut self,
+        device: &Device,
+        subdomain: &mut Subdomain,
+        comm: &dyn Communicator,
+        weights: [u32; 3],
+        shares: &[f64],
+    ) -> Result<(), SimulationError> {
+        let mut bisection = Bisection::new(self.tree.root(), shares, Some(&self.tree), TOLERANCE)?;
+        while !bisection.wanted().is_empty() {
+            let cuts = cuts_of(bisection.partial_tree(), &bisection);
+            let own = subdomain.histogram(device, weights, &cuts, bisection.planes())?;
+            bisection.cut(&comm.sum(own)?)?;
+        }
+        let tree = bisection.finish()?;
+        if tree != self.tree {
+            self.replace(tree);
+        }
+        Ok(())
+    }
+}
+
+/// The cells that particles can be in.
+pub fn root(plan: &Plan) -> CellBox {
+    let Cells { low, high } = Cells::inside(plan);
+    CellBox { low, high }
+}
+
+/// The cell of a particle's position, moved into the root as `nearest_cell` of the shaders does.
+fn cell_of(plan: &Plan, particle: &GpuParticle) -> [u32; 3] {
+    std::array::from_fn(|axis| {
+        (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2)
+    })
+}
+
+/// The tree so far, as `shaders/weigh.wgsl` reads it.
+fn cuts_of(nodes: &[Node], bisection: &Bisection) -> Vec<[u32; 4]> {
+    let entry = |node: &Node| match *node {
+        Node::Cut { axis, plane, low, high } => [axis as u32, plane, low as u32, high as u32],
+        Node::Part(part) => [4, part as u32, 0, 0],
+        Node::Open(slice) => {
+            let slice = bisection.wanted()[slice];
+            [3, slice.axis as u32, slice.extent.low[slice.axis], slice.offset as u32]
+        }
+    };
+    nodes.iter().map(entry).collect()
+}

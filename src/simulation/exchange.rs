@@ -1,0 +1,126 @@
+//! What the ranks tell each other within a step: the particles that change their owner or are near its
+//! border, and what the rounds did to the ghosts. A rank alone tells nothing.
+
+use std::time::Instant;
+
+use crate::gpu::Recording;
+use crate::ranks::Communicator;
+use crate::subdomain::{StepSlot, Subdomain};
+
+use super::SimulationError;
+
+/// What went between the ranks, as this one saw it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Traffic {
+    pub steps: u64,
+    /// Sent.
+    pub messages: u64,
+    pub bytes: u64,
+    /// Waits for the device to have packed.
+    pub waits: u64,
+    /// s, from a submission to its end.
+    pub device_seconds: f64,
+    /// s, until the messages of others were in.
+    pub waiting_seconds: f64,
+    /// Summed over steps: particles here, ghosts included, and of them those that came from others.
+    pub present: u64,
+    pub arrived: u64,
+}
+
+pub struct Exchange<'a> {
+    comm: Option<&'a dyn Communicator>,
+    /// Ranks in the order of the place's peers.
+    peers: Vec<usize>,
+    near: usize,
+    traffic: Traffic,
+}
+
+impl<'a> Exchange<'a> {
+    pub fn new(comm: &'a dyn Communicator) -> Exchange<'a> {
+        Exchange { comm: Some(comm), peers: Vec::new(), near: 0, traffic: Traffic::default() }
+    }
+
+    /// On a rank alone.
+    pub fn none() -> Exchange<'a> {
+        Exchange { comm: None, peers: Vec::new(), near: 0, traffic: Traffic::default() }
+    }
+
+    /// The ranks of the peers of a place, the near ones first.
+    pub fn set_peers(&mut self, peers: Vec<usize>, near: usize) {
+        self.peers = peers;
+        self.near = near;
+    }
+
+    pub fn traffic(&self) -> Traffic {
+        self.traffic
+    }
+
+    /// Particles to those who own them or have them in their halo, in one message to each peer.
+    ///
+    /// # Errors
+    /// If a device or another rank fails.
+    pub fn particles(
+        &mut self,
+        subdomain: &mut Subdomain,
+        rec: &mut Recording<'_>,
+        slot: &mut StepSlot,
+    ) -> Result<(), SimulationError> {
+        if subdomain.place().depth == 0 {
+            return Ok(());
+        }
+        let outgoing = subdomain.pack(rec, slot)?;
+        let messages = self.timed(|| subdomain.packed(rec, slot, outgoing))?;
+        let received = self.swap(messages, self.peers.len())?;
+        subdomain.arrive(rec, slot, &received)?;
+        self.traffic.steps += 1;
+        self.traffic.present += u64::from(slot.present());
+        self.traffic.arrived += u64::from(slot.arrived());
+        Ok(())
+    }
+
+    /// Brings the ghosts up to date where the next round needs it.
+    ///
+    /// # Errors
+    /// If a device or another rank fails.
+    pub fn updates(
+        &mut self,
+        subdomain: &mut Subdomain,
+        rec: &mut Recording<'_>,
+        slot: &mut StepSlot,
+        round: u32,
+    ) -> Result<(), SimulationError> {
+        if !subdomain.place().stale(round) || self.near == 0 {
+            return Ok(());
+        }
+        let outgoing = subdomain.pack_updates(rec, slot, round - 1)?;
+        let messages = self.timed(|| subdomain.packed_updates(rec, slot, round - 1, outgoing))?;
+        let received = self.swap(messages, self.near)?;
+        subdomain.receive(rec, slot, round - 1, &received)?;
+        Ok(())
+    }
+
+    fn timed<T, E>(&mut self, wait: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        let start = Instant::now();
+        let result = wait();
+        self.traffic.waits += 1;
+        self.traffic.device_seconds += start.elapsed().as_secs_f64();
+        result
+    }
+
+    /// One message to each of the first `count` peers, and one from each.
+    fn swap(&mut self, messages: Vec<Vec<u8>>, count: usize) -> Result<Vec<Vec<u8>>, SimulationError> {
+        let Some(comm) = self.comm else {
+            return Ok(Vec::new());
+        };
+        let start = Instant::now();
+        let peers = &self.peers[..count];
+        for (&peer, message) in peers.iter().zip(messages) {
+            self.traffic.messages += 1;
+            self.traffic.bytes += message.len() as u64;
+            comm.send(peer, message)?;
+        }
+        let received = peers.iter().map(|&peer| comm.receive(peer)).collect::<Result<_, _>>()?;
+        self.traffic.waiting_seconds += start.elapsed().as_secs_f64();
+        Ok(received)
+    }
+}
