@@ -8,6 +8,7 @@ pub mod geometry;
 pub mod gpu;
 pub mod output;
 pub mod plan;
+pub mod ranks;
 pub mod scene;
 pub mod simulation;
 pub mod subdomain;
