@@ -12,9 +12,9 @@ const NUMBERS: &[&str] = &["PMIX_RANK", "PMI_RANK"];
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Launcher {
     pub(super) variable: &'static str,
-    value: String,
+    pub(super) value: String,
     /// If the launcher says how many.
-    pub(super) ranks: Option<usize>,
+    ranks: Option<usize>,
 }
 
 impl Launcher {
@@ -31,9 +31,10 @@ impl Launcher {
         numbered.map(|(name, rank)| Launcher { variable: name, value: rank.to_string(), ranks: None })
     }
 
-    /// Whether there is certainly another rank. Where only the rank is known, all but rank 0 can tell.
-    fn several(&self) -> bool {
-        self.ranks.map_or(self.value != "0", |ranks| ranks > 1)
+    /// Whether so many ranks are what it started. Where only the rank is known, all but rank 0 can tell a single one
+    /// to be too few.
+    pub(super) fn started(&self, found: usize) -> bool {
+        self.ranks.map_or(found > 1 || self.value == "0", |ranks| ranks == found)
     }
 }
 
@@ -52,7 +53,7 @@ fn launched(launcher: Launcher) -> Result<Box<dyn Communicator>, RankError> {
 
 #[cfg(not(feature = "mpi"))]
 fn launched(launcher: Launcher) -> Result<Box<dyn Communicator>, RankError> {
-    if launcher.several() {
+    if !launcher.started(1) {
         return Err(RankError::WithoutMpi { variable: launcher.variable.to_owned(), value: launcher.value });
     }
     Ok(Box::new(Solo::new()))
@@ -64,7 +65,7 @@ mod tests {
 
     fn found(variables: &[(&str, &str)]) -> Option<(&'static str, Option<usize>, bool)> {
         let variable = |name: &str| variables.iter().find(|(known, _)| *known == name).map(|(_, v)| (*v).to_owned());
-        Launcher::find(variable).map(|launcher| (launcher.variable, launcher.ranks, launcher.several()))
+        Launcher::find(variable).map(|launcher| (launcher.variable, launcher.ranks, launcher.started(1)))
     }
 
     /// A launcher is known by what it sets for each rank, and only by that.
@@ -72,12 +73,12 @@ mod tests {
     fn launchers_are_known_by_their_variables() {
         assert_eq!(found(&[]), None);
         let open_mpi = [("PMIX_RANK", "1"), ("OMPI_COMM_WORLD_SIZE", "4")];
-        assert_eq!(found(&open_mpi), Some(("OMPI_COMM_WORLD_SIZE", Some(4), true)));
-        assert_eq!(found(&[("PMI_RANK", "0"), ("PMI_SIZE", "1")]), Some(("PMI_SIZE", Some(1), false)));
-        assert_eq!(found(&[("PMIX_RANK", "0")]), Some(("PMIX_RANK", None, false)));
-        assert_eq!(found(&[("PMIX_RANK", "3")]), Some(("PMIX_RANK", None, true)));
+        assert_eq!(found(&open_mpi), Some(("OMPI_COMM_WORLD_SIZE", Some(4), false)));
+        assert_eq!(found(&[("PMI_RANK", "0"), ("PMI_SIZE", "1")]), Some(("PMI_SIZE", Some(1), true)));
+        assert_eq!(found(&[("PMIX_RANK", "0")]), Some(("PMIX_RANK", None, true)));
+        assert_eq!(found(&[("PMIX_RANK", "3")]), Some(("PMIX_RANK", None, false)));
         let srun = [("SLURM_PROCID", "1"), ("SLURM_NTASKS", "8"), ("SLURM_STEP_NUM_TASKS", "8")];
-        assert_eq!(found(&srun), Some(("SLURM_STEP_NUM_TASKS", Some(8), true)));
+        assert_eq!(found(&srun), Some(("SLURM_STEP_NUM_TASKS", Some(8), false)));
     }
 
     /// Within a job of Slurm, but not started by srun or as its only task, a process is alone.
@@ -85,5 +86,17 @@ mod tests {
     fn a_job_script_is_one_process() {
         assert_eq!(found(&[("SLURM_PROCID", "0"), ("SLURM_NTASKS", "8")]), None);
         assert_eq!(found(&[("SLURM_PROCID", "0"), ("SLURM_NTASKS", "8"), ("SLURM_STEP_NUM_TASKS", "1")]), None);
+    }
+
+    /// A program without MPI does not take itself for the only rank where there are others.
+    #[cfg(not(feature = "mpi"))]
+    #[test]
+    fn several_ranks_need_mpi() {
+        let launcher =
+            |variable, value: &str| Launcher::find(|name| (name == variable).then(|| value.to_owned())).unwrap();
+        let error = super::launched(launcher("PMI_SIZE", "4")).err().unwrap();
+        assert_eq!(error.to_string(), "started as one of several ranks (PMI_SIZE = 4) but built without MPI");
+        assert!(super::launched(launcher("PMIX_RANK", "2")).is_err());
+        assert_eq!(super::launched(launcher("PMI_SIZE", "1")).unwrap().size(), 1);
     }
 }

@@ -35,9 +35,9 @@ pub enum RankError {
     #[error("started as one of several ranks ({variable} = {value}) but built without MPI")]
     #[diagnostic(help("build with `--features mpi`, or start a single process"))]
     WithoutMpi { variable: String, value: String },
-    #[error("{variable} says that there are {expected} ranks, but MPI has {found}")]
+    #[error("started as one of several ranks ({variable} = {value}), of which MPI finds {found}")]
     #[diagnostic(help("start the program with the launcher of the MPI library that it was built with"))]
-    Launcher { variable: String, expected: usize, found: usize },
+    Launcher { variable: String, value: String, found: usize },
     #[error("MPI is already running in this process")]
     AlreadyRunning,
 }

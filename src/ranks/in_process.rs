@@ -8,8 +8,7 @@
 use super::collectives::{Collectives, Offer, Outcome};
 use super::reduction::{Reduction, Tickets};
 use super::schedule::{Pace, Schedule, Wait};
-use super::{Communicator, RankError, check_other, within_limit};
-use std::any::Any;
+use super::{Communicator, RankError, check_other, panic_message, within_limit};
 use std::cell::RefCell;
 use std::collections::{HashMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -182,11 +181,6 @@ impl World {
         let number = self.join(rank, offer)?;
         self.leave(rank, number, name)
     }
-}
-
-fn panic_message(panic: &(dyn Any + Send)) -> &str {
-    let text = panic.downcast_ref::<&str>().copied();
-    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a message")
 }
 
 /// One of the threads.

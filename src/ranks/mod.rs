@@ -8,6 +8,7 @@
 //! result depends on the order in which ranks contribute. A rank that stops early says so with
 //! [`Communicator::fail`], and nobody waits for it any more.
 
+#[doc(hidden)]
 pub mod conformance;
 
 mod agreement;
@@ -38,7 +39,8 @@ pub const LONGEST_MESSAGE: usize = i32::MAX as usize;
 
 /// What joins the ranks of one run.
 ///
-/// *Collective* calls are made by every rank, all in the same sequence. Whoever gets an error of any call, or
+/// *Collective* calls are made by every rank, all in the same sequence, whether they start or finish something.
+/// Whoever gets an error of any call, or
 /// stops for a reason of its own while others go on, calls [`Communicator::fail`].
 pub trait Communicator {
     fn rank(&self) -> usize;
@@ -109,4 +111,10 @@ fn check_other(own: usize, other: usize, size: usize) -> Result<(), RankError> {
         other if other == own => Err(RankError::Oneself { rank: own }),
         _ => Ok(()),
     }
+}
+
+/// What a panic says.
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a message")
 }

@@ -34,9 +34,11 @@ impl Tickets {
 /// How many sums and maxima ranks reduce: the most of each and the complement of the fewest, so that an
 /// element-wise maximum over the ranks joins them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lengths(pub(super) [u64; 4]);
+pub(super) struct Lengths(pub(super) [u64; Lengths::WORDS]);
 
 impl Lengths {
+    pub(super) const WORDS: usize = 4;
+
     pub(super) fn of(sums: &[u64], maxima: &[u64]) -> Lengths {
         let (sums, maxima) = (sums.len() as u64, maxima.len() as u64);
         Lengths([sums, !sums, maxima, !maxima])
