@@ -61,6 +61,8 @@ struct Open {
     first: usize,
     parts: usize,
     low_parts: usize,
+    /// The first and last number of planes below the cut that leave both sides as many cells as parts.
+    allowed: (u32, u32),
     /// The node of the tree in force whose cut this renews.
     previous: Option<usize>,
 }
@@ -151,34 +153,33 @@ impl Bisection {
             self.nodes[node] = Node::Part(first);
             return;
         }
-        let (axis, low_parts, previous) = self.direction(&extent, first, parts, previous);
+        let (axis, open) = self.direction(&extent, first, parts, previous);
         self.nodes[node] = Node::Open(self.wanted.len());
         self.wanted.push(Slice { extent, axis, offset: self.planes(), node });
-        self.open.push(Open { first, parts, low_parts, previous });
+        self.open.push(open);
     }
 
-    /// The axis, the number of parts below the cut, and the old node if its axis and number are taken over: while the
-    /// box is along it no shorter than 0.7 of the longest.
-    fn direction(
-        &self,
-        extent: &CellBox,
-        first: usize,
-        parts: usize,
-        previous: Option<usize>,
-    ) -> (usize, usize, Option<usize>) {
+    /// The axis and what is on either side. Those of the old cut while the box is along its axis no shorter than 0.7 of
+    /// the longest.
+    fn direction(&self, extent: &CellBox, first: usize, parts: usize, previous: Option<usize>) -> (usize, Open) {
+        let way = |axis: usize, low_parts: usize, previous: Option<usize>| {
+            let allowed = allowed(extent, axis, low_parts, parts - low_parts)?;
+            Some((axis, Open { first, parts, low_parts, allowed, previous }))
+        };
         let longest = extent.length(extent.longest_axis());
         if let Some(old) = self.old_cut(previous) {
             let long = 10 * u64::from(extent.length(old.axis)) >= 7 * u64::from(longest);
-            if long && allowed(extent, old.axis, old.low_parts, parts - old.low_parts).is_some() {
-                return (old.axis, old.low_parts, previous);
+            let kept = (long && old.low_parts < parts).then(|| way(old.axis, old.low_parts, previous));
+            if let Some(kept) = kept.flatten() {
+                return kept;
             }
         }
         let mut axes = [0, 1, 2];
         axes.sort_by_key(|&axis| std::cmp::Reverse(extent.length(axis)));
         for low_parts in self.splits(first, parts) {
             for axis in axes {
-                if allowed(extent, axis, low_parts, parts - low_parts).is_some() {
-                    return (axis, low_parts, None);
+                if let Some(way) = way(axis, low_parts, None) {
+                    return way;
                 }
             }
         }
@@ -209,8 +210,7 @@ impl Bisection {
         let middle = open.first + open.low_parts;
         let (low_share, high_share) = (share(open.first, middle), share(middle, open.first + open.parts));
         let (whole, target) = (low_share + high_share, u128::from(total) * low_share);
-        let high_parts = open.parts - open.low_parts;
-        let (from, to) = allowed(&slice.extent, slice.axis, open.low_parts, high_parts).unwrap_or((1, 1));
+        let (from, to) = open.allowed;
         let old = self.old_cut(open.previous).map(|cut| cut.plane);
         let (mut below, mut best, mut best_off, mut old_off) = (0_u64, from, u128::MAX, None);
         for at in 1..=to {
@@ -251,7 +251,7 @@ struct OldCut {
     low_parts: usize,
 }
 
-/// The first and last number of planes below a cut that leave both sides as many cells as parts.
+/// The range of [`Open::allowed`]; none if there is none along this axis.
 fn allowed(extent: &CellBox, axis: usize, low_parts: usize, high_parts: usize) -> Option<(u32, u32)> {
     let planes = |parts: usize| (parts as u64).div_ceil(extent.plane_cells(axis));
     let last = u64::from(extent.length(axis)).checked_sub(planes(high_parts))?;

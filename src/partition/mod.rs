@@ -14,13 +14,17 @@
 
 mod bisection;
 mod cell_box;
+mod cost;
 mod host;
 mod tree;
+mod trigger;
 
 pub use bisection::{Bisection, Slice};
 pub use cell_box::CellBox;
-pub use host::{bisect, moved};
+pub use cost::{By, CostModel, IntegerWeights, Measurement, Work};
+pub use host::{bisect, decompose, moved};
 pub use tree::{Node, Tree};
+pub use trigger::{Decision, Trigger};
 
 /// How much a kept cut may add to a part's weight over its target, in all levels together: a per cent, well under the
 /// trigger's threshold and above what noise in the sums moves.

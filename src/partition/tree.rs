@@ -85,9 +85,12 @@ impl Tree {
 
     /// The part that owns a cell; of a cell outside the root, the part that the cuts would give it to.
     pub fn part_of(&self, cell: [u32; 3]) -> usize {
-        match self.nodes[leaf(&self.nodes, cell)] {
-            Node::Part(part) | Node::Open(part) => part,
-            Node::Cut { low, .. } => low,
+        let mut at = 0;
+        loop {
+            match self.nodes[at] {
+                Node::Cut { axis, plane, low, high } => at = if cell[axis] < plane { low } else { high },
+                Node::Part(part) | Node::Open(part) => return part,
+            }
         }
     }
 
@@ -101,15 +104,6 @@ impl Tree {
         }
         below
     }
-}
-
-/// The leaf that a cell's way down the cuts ends at.
-pub(super) fn leaf(nodes: &[Node], cell: [u32; 3]) -> usize {
-    let mut at = 0;
-    while let Node::Cut { axis, plane, low, high } = nodes[at] {
-        at = if cell[axis] < plane { low } else { high };
-    }
-    at
 }
 
 /// What is stored of a tree; it is checked again when it is read.

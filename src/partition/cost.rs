@@ -1,0 +1,295 @@
+//! What work costs on the devices: weights of the cells and shares of the ranks, from measured device seconds.
+//!
+//! A rank's seconds in an interval are (c . x) / v: x its work ([`Work`]), c the seconds per unit of each feature, the
+//! same for all, v the speed of its device. With the prior p (relative costs before anything is measured) and
+//! u = p . x, each measurement is a row z = p x / u (what the prior gives to each feature, of sum 1) with target
+//! t = v seconds / u; so noise in proportion to the seconds weighs alike, and none of it enters z. The fit minimises
+//!
+//! ```text
+//! sum over rows of u / u_max (t - b . z)^2  +  RIDGE sum_j (b_j - mean t)^2,   b >= 0,   c = b p
+//! ```
+//!
+//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at the
+//! prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
+//!
+//! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of the
+//! ranks. It is taken over where it differs from the speed in force by more than both a dead band and five standard
+//! errors, so that the noise of timers moves no cut.
+//!
+//! Invariant: the state is a function of the measurements alone; ranks that observe the same hold the same.
+
+use serde::{Deserialize, Serialize};
+
+/// What is balanced.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub enum By {
+    /// The number of particles, whatever they cost and on whatever device.
+    Particles,
+    /// The seconds.
+    Cost,
+}
+
+/// What a rank did in an interval, each a sum over its steps. Particles include ghosts.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+pub struct Work {
+    pub particles: u64,
+    /// Entries of the neighbour lists: candidates for collisions.
+    pub candidates: u64,
+    pub wall_tests: u64,
+    pub steps: u64,
+}
+
+/// What a rank did and the device seconds that it took.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Measurement {
+    pub work: Work,
+    pub seconds: f64,
+}
+
+/// Weights for the histogram kernel. A particle of up to 2^17 candidates and as many wall tests weighs less than 2^32,
+/// and the sum over 2^30 particles less than 2^62.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub struct IntegerWeights {
+    pub particle: u32,
+    pub candidate: u32,
+    pub wall: u32,
+}
+
+const FEATURES: usize = 4;
+/// Costs before any are measured, relative to a particle: candidate, wall test, and the fixed cost of a step.
+const PRIOR: [f64; FEATURES] = [1.0, 0.05, 1.0, 1000.0];
+/// Squared noise of a measurement (0.15) over squared doubt about the prior (1), both relative.
+const RIDGE: f64 = 0.02;
+const FORGET: f64 = 0.95;
+/// Smallest change of a speed, as a logarithm.
+const DEAD_BAND: f64 = 0.05;
+const STANDARD_ERRORS: f64 = 5.0;
+/// Intervals before a speed is judged.
+const FEWEST: u32 = 10;
+/// The largest weight.
+const WEIGHT_ONE: f64 = 16_384.0;
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct CostModel {
+    by: By,
+    /// Seconds per prior unit of each feature.
+    scaled: [f64; FEATURES],
+    ranks: Vec<Rank>,
+}
+
+/// What is remembered of a rank's measurements, with forgetting.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+struct Rank {
+    /// Sums over rows: weight, weight t (at speed 1), weight z z, weight z t (at speed 1).
+    weight: f64,
+    target: f64,
+    squares: [[f64; FEATURES]; FEATURES],
+    products: [f64; FEATURES],
+    /// The logarithm of the speed in force.
+    speed: f64,
+    /// Mean and variance of the measured logarithm, the sum of the squared weights of the mean, and the number of rows.
+    mean: f64,
+    variance: f64,
+    spread: f64,
+    rows: u32,
+}
+
+impl CostModel {
+    pub fn new(by: By, ranks: usize) -> CostModel {
+        let rank = Rank {
+            weight: 0.0,
+            target: 0.0,
+            squares: [[0.0; FEATURES]; FEATURES],
+            products: [0.0; FEATURES],
+            speed: 0.0,
+            mean: 0.0,
+            variance: 0.0,
+            spread: 0.0,
+            rows: 0,
+        };
+        CostModel { by, scaled: [1.0; FEATURES], ranks: vec![rank; ranks] }
+    }
+
+    /// Takes in an interval: one measurement per rank, in order of rank. One without work or without a time is skipped.
+    ///
+    /// # Panics
+    /// If the number of measurements is not that of the ranks.
+    pub fn observe(&mut self, measurements: &[Measurement]) {
+        assert_eq!(measurements.len(), self.ranks.len(), "one measurement per rank");
+        let units = |of: &Measurement| prior_units(&of.work).iter().sum::<f64>();
+        let valid = |of: &Measurement| of.seconds.is_finite() && of.seconds > 0.0 && units(of) > 0.0;
+        let largest = measurements.iter().map(units).fold(0.0, f64::max);
+        for (rank, of) in self.ranks.iter_mut().zip(measurements) {
+            rank.forget();
+            if valid(of) {
+                rank.add_row(
+                    prior_units(&of.work).map(|unit| unit / units(of)),
+                    of.seconds / units(of),
+                    units(of) / largest,
+                );
+            }
+        }
+        self.fit();
+        let mut ratios: Vec<(usize, f64)> = Vec::new();
+        for (rank, of) in measurements.iter().enumerate().filter(|(_, of)| valid(of)) {
+            // A factor of 20 either way is an accident, not a device.
+            ratios.push((rank, libm::log(self.cost(&of.work) / of.seconds).clamp(-3.0, 3.0)));
+        }
+        let middle = median(ratios.iter().map(|ratio| ratio.1).collect());
+        for (rank, ratio) in ratios {
+            self.ranks[rank].judge_speed(ratio - middle);
+        }
+    }
+
+    /// Seconds per particle, candidate, wall test and step on a device of speed 1. Before anything is measured they are
+    /// relative to a particle.
+    pub fn coefficients(&self) -> [f64; 4] {
+        std::array::from_fn(|feature| self.scaled[feature] * PRIOR[feature])
+    }
+
+    /// The seconds that the work takes on a device of speed 1.
+    pub fn cost(&self, work: &Work) -> f64 {
+        prior_units(work).iter().zip(&self.scaled).map(|(unit, scaled)| unit * scaled).sum()
+    }
+
+    /// The speeds of the ranks' devices, of mean 1.
+    pub fn speeds(&self) -> Vec<f64> {
+        let speeds: Vec<f64> = self.ranks.iter().map(|rank| libm::exp(rank.speed)).collect();
+        let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+        speeds.iter().map(|speed| speed / mean).collect()
+    }
+
+    /// What each rank is to have of the weight, of mean 1: by cost in proportion to its speed, by particles the same.
+    pub fn shares(&self) -> Vec<f64> {
+        match self.by {
+            By::Particles => vec![1.0; self.ranks.len()],
+            By::Cost => self.speeds(),
+        }
+    }
+
+    /// The weights in fixed point: the largest is 2^14, or, by particles, a particle is 1.
+    pub fn weights(&self) -> IntegerWeights {
+        if self.by == By::Particles {
+            return IntegerWeights { particle: 1, candidate: 0, wall: 0 };
+        }
+        let [mut particle, mut candidate, mut wall, _] = self.coefficients();
+        if particle.max(candidate).max(wall) <= 0.0 {
+            [particle, candidate, wall, _] = PRIOR;
+        }
+        let scale = WEIGHT_ONE / particle.max(candidate).max(wall);
+        let integer = |cost: f64| (cost * scale).round() as u32;
+        // Each particle weighs something: it takes memory, and a box of free ones is not empty.
+        IntegerWeights { particle: integer(particle).max(1), candidate: integer(candidate), wall: integer(wall) }
+    }
+
+    fn fit(&mut self) {
+        let (mut weight, mut target) = (0.0, 0.0);
+        let (mut squares, mut products) = ([[0.0; FEATURES]; FEATURES], [0.0; FEATURES]);
+        for rank in &self.ranks {
+            let speed = libm::exp(rank.speed);
+            weight += rank.weight;
+            target += rank.target * speed;
+            for row in 0..FEATURES {
+                products[row] += rank.products[row] * speed;
+                for column in 0..FEATURES {
+                    squares[row][column] += rank.squares[row][column];
+                }
+            }
+        }
+        if weight <= 0.0 {
+            return;
+        }
+        for feature in 0..FEATURES {
+            squares[feature][feature] += RIDGE;
+            products[feature] += RIDGE * target / weight;
+        }
+        self.scaled = non_negative(&squares, &products);
+    }
+}
+
+impl Rank {
+    fn forget(&mut self) {
+        self.weight *= FORGET;
+        self.target *= FORGET;
+        self.products = self.products.map(|sum| sum * FORGET);
+        self.squares = self.squares.map(|row| row.map(|sum| sum * FORGET));
+    }
+
+    fn add_row(&mut self, z: [f64; FEATURES], target: f64, weight: f64) {
+        self.weight += weight;
+        self.target += weight * target;
+        for row in 0..FEATURES {
+            self.products[row] += weight * z[row] * target;
+            for column in 0..FEATURES {
+                self.squares[row][column] += weight * z[row] * z[column];
+            }
+        }
+    }
+
+    fn judge_speed(&mut self, measured: f64) {
+        self.rows = self.rows.saturating_add(1);
+        // A plain mean at first, then with forgetting.
+        let part = (1.0 / f64::from(self.rows)).max(1.0 - FORGET);
+        let off = measured - self.mean;
+        self.mean += part * off;
+        self.variance = (1.0 - part) * (self.variance + part * off * off);
+        self.spread = (1.0 - part) * (1.0 - part) * self.spread + part * part;
+        let band = DEAD_BAND.max(STANDARD_ERRORS * (self.variance * self.spread).sqrt());
+        if self.rows >= FEWEST && (self.mean - self.speed).abs() > band {
+            self.speed = if self.mean.abs() > band { self.mean } else { 0.0 };
+        }
+    }
+}
+
+fn prior_units(work: &Work) -> [f64; FEATURES] {
+    let counts = [work.particles, work.candidates, work.wall_tests, work.steps];
+    std::array::from_fn(|feature| counts[feature] as f64 * PRIOR[feature])
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        count => (values[(count - 1) / 2] + values[count / 2]) / 2.0,
+    }
+}
+
+/// The b >= 0 that minimises b . A b / 2 - r . b, for a positive definite A: the best among the minima with each set of
+/// b's entries free and the others zero.
+fn non_negative(matrix: &[[f64; FEATURES]; FEATURES], right: &[f64; FEATURES]) -> [f64; FEATURES] {
+    let mut best = ([0.0; FEATURES], 0.0);
+    for set in 1_u32..1 << FEATURES {
+        let solution = solve(matrix, right, set);
+        if solution.iter().any(|entry| *entry < 0.0) {
+            continue;
+        }
+        // At the minimum of a set the value is -r . b / 2.
+        let value: f64 = -solution.iter().zip(right).map(|(entry, right)| entry * right).sum::<f64>();
+        if value < best.1 {
+            best = (solution, value);
+        }
+    }
+    best.0
+}
+
+/// Solves A b = r for the entries in `set`, the others being zero: elimination, without pivots as A is positive
+/// definite.
+fn solve(matrix: &[[f64; FEATURES]; FEATURES], right: &[f64; FEATURES], set: u32) -> [f64; FEATURES] {
+    let free = |feature: usize| set >> feature & 1 == 1;
+    let (mut left, mut right) = (*matrix, *right);
+    for pivot in (0..FEATURES).filter(|&feature| free(feature)) {
+        for row in (pivot + 1..FEATURES).filter(|&feature| free(feature)) {
+            let factor = left[row][pivot] / left[pivot][pivot];
+            right[row] -= factor * right[pivot];
+            for column in pivot..FEATURES {
+                left[row][column] -= factor * left[pivot][column];
+            }
+        }
+    }
+    let mut solution = [0.0; FEATURES];
+    for row in (0..FEATURES).rev().filter(|&feature| free(feature)) {
+        let known: f64 = (row + 1..FEATURES).map(|column| left[row][column] * solution[column]).sum();
+        solution[row] = (right[row] - known) / left[row][row];
+    }
+    solution
+}

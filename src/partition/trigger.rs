@@ -1,0 +1,202 @@
+//! When it pays to cut anew.
+//!
+//! A check compares the ranks' seconds per step. Imbalance is the longest over the mean, where the mean is what all
+//! would take if each had its share of the work: sum of share x seconds over sum of shares. A rebalance is due if
+//!
+//! 1. the averaged imbalance is above the threshold,
+//! 2. the longest is more than four standard errors of the averaged loads above the mean (the noise is learnt from the
+//!    checks and kept over rebalances),
+//! 3. (longest - mean) x steps until the next check is above the averaged seconds of a rebalance.
+//!
+//! If a rebalance leaves more than half of what was above 1, and the imbalance above the threshold, the next one needs
+//! twice as much of each (threshold - 1 and saving), and so on; it needs the plain amounts again once the imbalance has
+//! been below the threshold.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// What a new check counts in the averages.
+const NEW: f64 = 0.25;
+/// Relative noise of a load, before any is learnt.
+const NOISE: f64 = 0.1;
+const STANDARD_ERRORS: f64 = 4.0;
+const MOST_DEMAND: f64 = 64.0;
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Trigger {
+    threshold: f64,
+    /// Seconds of a rebalance: the estimate until one was measured.
+    cost: f64,
+    measured: bool,
+    /// The averaged load of each rank over the mean, the averaged mean, and the sum of squared weights of an average.
+    loads: Vec<f64>,
+    mean: f64,
+    spread: f64,
+    checks: u32,
+    /// The averaged square of a load's relative difference from its average.
+    noise: f64,
+    /// What is asked more after rebalances in vain: a power of two.
+    demand: f64,
+    /// The imbalance before a rebalance that is yet to be judged.
+    before: Option<f64>,
+}
+
+/// What a check found.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub enum Decision {
+    /// There is but one rank, or nothing was measured.
+    Idle,
+    Balanced {
+        imbalance: f64,
+        threshold: f64,
+    },
+    /// The excess of the slowest rank may be noise: it is not above `needed`.
+    Unsure {
+        imbalance: f64,
+        needed: f64,
+    },
+    /// A rebalance costs more than it saves until the next check.
+    TooDear {
+        imbalance: f64,
+        saving: f64,
+        needed: f64,
+    },
+    Rebalance {
+        imbalance: f64,
+        saving: f64,
+        cost: f64,
+    },
+}
+
+impl Decision {
+    pub fn rebalances(&self) -> bool {
+        matches!(self, Decision::Rebalance { .. })
+    }
+}
+
+impl fmt::Display for Decision {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Decision::Idle => write!(to, "nothing to balance"),
+            Decision::Balanced { imbalance, threshold } => {
+                write!(to, "no rebalance: imbalance {imbalance:.3} is not above {threshold:.3}")
+            }
+            Decision::Unsure { imbalance, needed } => {
+                write!(to, "no rebalance: imbalance {imbalance:.3} may be noise up to {:.3}", 1.0 + needed)
+            }
+            Decision::TooDear { imbalance, saving, needed } => write!(
+                to,
+                "no rebalance: imbalance {imbalance:.3}, but it would save {saving:.3e} s until the next check, and \
+                 {needed:.3e} s are needed"
+            ),
+            Decision::Rebalance { imbalance, saving, cost } => {
+                write!(to, "rebalance: imbalance {imbalance:.3}, saves {saving:.3e} s for {cost:.3e} s")
+            }
+        }
+    }
+}
+
+impl Trigger {
+    /// `threshold`: the imbalance from which on to act, usually 1.1. `estimate`: the seconds of a rebalance, until one
+    /// is measured.
+    pub fn new(threshold: f64, estimate: f64) -> Trigger {
+        Trigger {
+            threshold,
+            cost: estimate,
+            measured: false,
+            loads: Vec::new(),
+            mean: 0.0,
+            spread: 0.0,
+            checks: 0,
+            noise: NOISE * NOISE,
+            demand: 1.0,
+            before: None,
+        }
+    }
+
+    /// Takes in the seconds per step of each rank, measured since the last check or predicted, and decides.
+    ///
+    /// # Panics
+    /// If there are not as many shares as ranks.
+    pub fn check(&mut self, seconds: &[f64], shares: &[f64], steps_to_next: u64) -> Decision {
+        assert_eq!(seconds.len(), shares.len(), "one share per rank");
+        let whole: f64 = shares.iter().sum();
+        let mean = seconds.iter().zip(shares).map(|(seconds, share)| seconds * share).sum::<f64>() / whole;
+        if seconds.len() < 2 || !(mean.is_finite() && mean > 0.0) {
+            return Decision::Idle;
+        }
+        self.average(seconds, mean);
+        let imbalance = self.imbalance();
+        self.judge_last(imbalance);
+        let threshold = 1.0 + (self.threshold - 1.0) * self.demand;
+        if imbalance <= threshold {
+            return Decision::Balanced { imbalance, threshold };
+        }
+        let excess = imbalance - 1.0;
+        let needed = STANDARD_ERRORS * (self.noise * self.spread).sqrt();
+        if excess <= needed {
+            return Decision::Unsure { imbalance, needed };
+        }
+        let saving = excess * self.mean * steps_to_next as f64;
+        if saving <= self.cost * self.demand {
+            return Decision::TooDear { imbalance, saving, needed: self.cost * self.demand };
+        }
+        Decision::Rebalance { imbalance, saving, cost: self.cost }
+    }
+
+    /// Says that a rebalance was done and took so many seconds. The loads before it count no more.
+    pub fn rebalanced(&mut self, seconds: f64) {
+        if seconds.is_finite() && seconds >= 0.0 {
+            let part = if self.measured { NEW } else { 1.0 };
+            self.cost += part * (seconds - self.cost);
+            self.measured = true;
+        }
+        self.before = (self.checks > 0).then(|| self.imbalance());
+        self.checks = 0;
+    }
+
+    /// The averaged imbalance; 1 before the first check.
+    pub fn imbalance(&self) -> f64 {
+        self.loads.iter().copied().fold(1.0, f64::max)
+    }
+
+    /// Averaged seconds of a rebalance.
+    pub fn cost(&self) -> f64 {
+        self.cost
+    }
+
+    fn average(&mut self, seconds: &[f64], mean: f64) {
+        if self.loads.len() != seconds.len() {
+            self.loads = vec![1.0; seconds.len()];
+            self.checks = 0;
+        }
+        self.checks = self.checks.saturating_add(1);
+        let part = (1.0 / f64::from(self.checks)).max(NEW);
+        let mut off_squares = 0.0;
+        for (load, seconds) in self.loads.iter_mut().zip(seconds) {
+            let off = seconds / mean - *load;
+            *load += part * off;
+            off_squares += off * off;
+        }
+        if self.checks > 1 {
+            // A new load is off an average that is itself off the true mean.
+            let off_square = off_squares / seconds.len() as f64 / (1.0 + self.spread);
+            self.noise += NEW * (off_square - self.noise);
+        }
+        self.mean += part * (mean - self.mean);
+        self.spread = if self.checks == 1 { 1.0 } else { (1.0 - part).powi(2) * self.spread + part * part };
+    }
+
+    /// Whether the last rebalance was in vain.
+    fn judge_last(&mut self, imbalance: f64) {
+        if imbalance <= self.threshold {
+            self.demand = 1.0;
+        } else if let Some(before) = self.before
+            && imbalance - 1.0 > 0.5 * (before - 1.0)
+        {
+            self.demand = (2.0 * self.demand).min(MOST_DEMAND);
+        }
+        self.before = None;
+    }
+}
