@@ -28,7 +28,10 @@ fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
                 outbox[k] = particle;
                 outbox_peer[k] = p;
             }
-            owned = owned || owns(peers[p], place, 0);
+            if (owns(peers[p], place, 0)) {
+                owned = true;
+                atomicAdd(&counters[MOVED], 1u);
+            }
         }
     }
     if (!owned) {

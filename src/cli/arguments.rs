@@ -92,6 +92,45 @@ pub struct RunArguments {
     /// Stop after that many steps, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
+    #[command(flatten)]
+    pub sharing: SharingArguments,
+}
+
+/// How the work is shared out; changes no result.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sharing the work (changes no result)")]
+pub struct SharingArguments {
+    /// Subdomains in this one process, on one device (under mpirun each rank has one)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub subdomains: Option<u32>,
+    /// Who owns which part of the space: equal boxes, boxes balanced at the start, or balanced as the gas moves
+    #[arg(long, value_enum, default_value_t = Balance::Dynamic)]
+    pub balance: Balance,
+    /// Steps between two looks at the balance
+    #[arg(long, value_name = "STEPS", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..))]
+    pub balance_every: u64,
+    /// The load of the fullest rank over the mean from which on the space is cut anew, if that pays
+    #[arg(long, value_name = "RATIO", default_value_t = 1.1)]
+    pub balance_threshold: f64,
+    /// What is balanced: the measured cost, or the number of particles
+    #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
+    pub balance_by: BalanceBy,
+    /// Rounds of collisions between two exchanges of the subdomains' borders: more rounds, wider borders
+    #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub halo_rounds: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Balance {
+    Off,
+    Initial,
+    Dynamic,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum BalanceBy {
+    Cost,
+    Particles,
 }
 
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@ use miette::Diagnostic;
 
 use crate::gpu::GpuError;
 use crate::output::OutputError;
+use crate::ranks::RankError;
 use crate::scene::SceneError;
 use crate::simulation::{ModelError, SimulationError};
 
@@ -44,6 +45,14 @@ pub enum CliError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
+    #[error("--balance-threshold {found}: expected a number of at least 1")]
+    Threshold { found: f64 },
+    #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
+    #[diagnostic(help("leave out --subdomains, or start the program without the launcher"))]
+    SubdomainsOfRanks { asked: usize, ranks: usize },
+    #[error(transparent)]
+    #[diagnostic(help("docs/clusters.md says how ranks are started"))]
+    Rank(#[from] RankError),
     #[error("the audit failed:{}", list(failures))]
     #[diagnostic(help("the results are written, and cannot be trusted; please report it with the scene"))]
     Audit { failures: Vec<String> },
@@ -61,7 +70,7 @@ impl CliError {
 
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Gpu(_) | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => {
+            CliError::Gpu(_) | CliError::Rank(_) | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => {
                 DEVICE_TROUBLE
             },
             CliError::Audit { .. }
@@ -77,6 +86,8 @@ impl CliError {
             | CliError::Model { .. }
             | CliError::Check { .. }
             | CliError::Output(_)
+            | CliError::Threshold { .. }
+            | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)
             | CliError::SchemaJson(_)
             | CliError::StandardOutput(_)

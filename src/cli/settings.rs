@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::partition::By;
 use crate::scene::{Scene, load};
-use crate::simulation::Model;
+use crate::simulation::{BalanceMode, BalanceOptions, Model};
 
 use super::CliError;
-use super::arguments::{RunArguments, SceneArguments};
+use super::arguments::{Balance, BalanceBy, RunArguments, SceneArguments, SharingArguments};
 
 /// The scene of the file with the overrides in it, as if the file had said so.
 pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
@@ -35,6 +36,39 @@ pub struct RunSettings {
     /// Steps per submission; `None`: a whole interval.
     pub batch: Option<u32>,
     pub stop_after_steps: Option<u64>,
+    pub sharing: Sharing,
+}
+
+/// How the work is shared out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sharing {
+    /// Subdomains in this process; 1 under a launcher of several ranks.
+    pub subdomains: usize,
+    pub balance: BalanceOptions,
+    pub halo_rounds: Option<u32>,
+}
+
+impl Sharing {
+    fn new(raw: &SharingArguments) -> Result<Sharing, CliError> {
+        let threshold = raw.balance_threshold;
+        if !(threshold.is_finite() && threshold >= 1.0) {
+            return Err(CliError::Threshold { found: threshold });
+        }
+        let mode = match raw.balance {
+            Balance::Off => BalanceMode::Off,
+            Balance::Initial => BalanceMode::Initial,
+            Balance::Dynamic => BalanceMode::Dynamic,
+        };
+        let by = match raw.balance_by {
+            BalanceBy::Cost => By::Cost,
+            BalanceBy::Particles => By::Particles,
+        };
+        Ok(Sharing {
+            subdomains: raw.subdomains.unwrap_or(1) as usize,
+            balance: BalanceOptions { mode, by, every: raw.balance_every, threshold },
+            halo_rounds: raw.halo_rounds,
+        })
+    }
 }
 
 impl RunSettings {
@@ -42,8 +76,9 @@ impl RunSettings {
         let path = &raw.scene.scene;
         let model = model_of(path, scene_of(&raw.scene)?)?;
         let folder = raw.out.unwrap_or_else(|| default_folder(path));
-        let RunArguments { force, gpu, batch, steps, .. } = raw;
-        Ok(RunSettings { model, folder, force, gpu, batch, stop_after_steps: steps })
+        let RunArguments { force, gpu, batch, steps, sharing, .. } = raw;
+        let sharing = Sharing::new(&sharing)?;
+        Ok(RunSettings { model, folder, force, gpu, batch, stop_after_steps: steps, sharing })
     }
 }
 

@@ -1,15 +1,23 @@
 //! When the cells are shared out anew, and what came of it.
+//!
+//! Every rank's load in the last step of an interval comes with the sums of the interval's tallies, so that all
+//! ranks decide alike. Nothing here changes a result.
+
+use std::time::Instant;
 
 use crate::gpu::Device;
-use crate::partition::Tree;
-use crate::plan::Plan;
+use crate::partition::{By, CostModel, Decision, Measurement, Trigger, Work};
 use crate::ranks::Communicator;
 use crate::subdomain::{Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
+use super::exchange::Traffic;
 
-/// What a rank had to do in the last step of an interval.
+/// Steps that a rebalance is thought to cost before one was measured.
+const STEPS_OF_A_REBALANCE: f64 = 5.0;
+
+/// What a rank had to do in the last step of an interval, and what it did besides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Load {
     /// Device time of the step, s; zero where the device does not time.
@@ -22,25 +30,44 @@ pub struct Load {
     pub walls: u64,
     /// Particles that it owns.
     pub owned: u64,
+    /// In the interval: particles that went to another owner, and bytes that were sent.
+    pub moved: u64,
+    pub bytes: u64,
+    /// Spent on a rebalance and on bringing the particles home, s.
+    pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 5;
+const LOAD_WORDS: usize = 8;
 
 impl Load {
-    pub fn new(seconds: f64, present: u32, own: &Tallies) -> Load {
+    /// `traffic`: that of the interval.
+    pub fn new(seconds: f64, present: u32, own: &Tallies, traffic: &Traffic) -> Load {
         Load {
             seconds,
             particles: present.into(),
             candidates: own.counters.candidates.into(),
             walls: own.counters.near_walls.into(),
             owned: own.blocks.iter().map(|block| block.number).sum(),
+            moved: own.counters.moved.into(),
+            bytes: traffic.bytes,
+            rebalancing: traffic.rebalancing_seconds,
         }
     }
 
     /// For a sum over ranks: this rank's words among zeros.
     pub fn to_words(self, comm: &dyn Communicator) -> Vec<u64> {
         let mut words = vec![0; LOAD_WORDS * comm.size()];
-        let own = [(1e9 * self.seconds) as u64, self.particles, self.candidates, self.walls, self.owned];
+        let nanoseconds = |seconds: f64| (1e9 * seconds) as u64;
+        let own = [
+            nanoseconds(self.seconds),
+            self.particles,
+            self.candidates,
+            self.walls,
+            self.owned,
+            self.moved,
+            self.bytes,
+            nanoseconds(self.rebalancing),
+        ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
     }
@@ -54,8 +81,16 @@ impl Load {
             candidates: w[2],
             walls: w[3],
             owned: w[4],
+            moved: w[5],
+            bytes: w[6],
+            rebalancing: 1e-9 * w[7] as f64,
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
+    }
+
+    /// Of one step.
+    pub fn work(&self) -> Work {
+        Work { particles: self.particles, candidates: self.candidates, wall_tests: self.walls, steps: 1 }
     }
 }
 
@@ -73,9 +108,20 @@ pub enum BalanceMode {
     Forced { seed: u64 },
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BalanceOptions {
     pub mode: BalanceMode,
+    pub by: By,
+    /// Steps between two checks (at the ends of intervals).
+    pub every: u64,
+    /// Imbalance (longest over mean) from which on to act.
+    pub threshold: f64,
+}
+
+impl Default for BalanceOptions {
+    fn default() -> BalanceOptions {
+        BalanceOptions { mode: BalanceMode::default(), by: By::Cost, every: 64, threshold: 1.1 }
+    }
 }
 
 impl BalanceOptions {
@@ -84,28 +130,86 @@ impl BalanceOptions {
     }
 }
 
-/// A line of `balance.csv`.
+/// An interval among ranks: a line of `balance.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BalanceRecord {
+    /// At the end of the interval.
     pub step: u64,
+    /// s.
     pub time: f64,
+    /// By rank.
     pub loads: Vec<Load>,
+    /// By the cost model, s per step, by rank.
+    pub predicted: Vec<f64>,
+    /// Fullest over mean by weight, before and after, if the cells were shared out anew before the interval.
+    pub rebalanced: Option<[f64; 2]>,
 }
 
 pub struct Balance {
     options: BalanceOptions,
+    model: CostModel,
+    trigger: Option<Trigger>,
+    /// The latest loads, by the model, s per step.
+    predicted: Vec<f64>,
+    next_check: u64,
+    /// The step of the last rebalance, until its cost is known; loads of before count no more.
+    since: Option<u64>,
+    rebalances: Vec<(u64, [f64; 2])>,
     records: Vec<BalanceRecord>,
 }
 
 impl Balance {
-    pub fn new(options: BalanceOptions, _comm: &dyn Communicator, _plan: &Plan) -> Balance {
-        Balance { options, records: Vec::new() }
+    pub fn new(options: BalanceOptions, ranks: usize) -> Balance {
+        Balance {
+            options,
+            model: CostModel::new(options.by, ranks),
+            trigger: None,
+            predicted: Vec::new(),
+            next_check: options.every,
+            since: None,
+            rebalances: Vec::new(),
+            records: Vec::new(),
+        }
     }
 
     /// The loads of an interval that was read.
-    pub fn take(&mut self, step: u64, time: f64, loads: Vec<Load>) {
-        if !loads.is_empty() {
-            self.records.push(BalanceRecord { step, time, loads });
+    pub fn take(&mut self, first_step: u64, steps: u32, time: f64, loads: Vec<Load>) {
+        if loads.is_empty() {
+            return;
+        }
+        let measured: Vec<Measurement> =
+            loads.iter().map(|load| Measurement { work: load.work(), seconds: load.seconds }).collect();
+        self.model.observe(&measured);
+        let predicted: Vec<f64> = match self.options.by {
+            By::Particles => loads.iter().map(|load| load.owned as f64).collect(),
+            By::Cost => {
+                let speeds = self.model.speeds();
+                loads.iter().zip(speeds).map(|(load, speed)| self.model.cost(&load.work()) / speed).collect()
+            }
+        };
+        if self.since.is_none_or(|since| first_step >= since) {
+            self.predicted.clone_from(&predicted);
+            let unit = self.unit(&loads);
+            if self.since.take().is_some()
+                && let Some(trigger) = &mut self.trigger
+            {
+                let longest = loads.iter().map(|load| load.rebalancing).fold(0.0, f64::max);
+                trigger.rebalanced(longest / unit);
+            }
+        }
+        let rebalanced = self.rebalances.iter().find(|(step, _)| *step == first_step).map(|(_, imbalance)| *imbalance);
+        self.records.push(BalanceRecord { step: first_step + u64::from(steps), time, loads, predicted, rebalanced });
+    }
+
+    /// Seconds of a unit of `predicted`: without a cost model particles stand for seconds.
+    fn unit(&self, loads: &[Load]) -> f64 {
+        match self.options.by {
+            By::Cost => 1.0,
+            By::Particles => {
+                let (seconds, owned) =
+                    loads.iter().fold((0.0, 0), |(s, n), load| (s + load.seconds, n + load.owned));
+                if seconds > 0.0 { seconds / owned.max(1) as f64 } else { 1e-6 }
+            }
         }
     }
 
@@ -120,31 +224,55 @@ impl Balance {
     pub fn act(
         &mut self,
         step: u64,
-        _dt: f64,
         device: &Device,
         subdomain: &mut Subdomain,
         comm: &dyn Communicator,
         decomposition: &mut Decomposition,
-    ) -> Result<(), SimulationError> {
-        match self.options.mode {
-            BalanceMode::Forced { seed } => {
-                let draw = crate::gas::philox4x32_10([step as u32, (step >> 32) as u32, 0, 0], [seed as u32, 1]);
-                if step > 0 && draw[0] % 3 == 0 {
-                    let share = |rank: u32| 0.2 + f64::from(draw[1 + rank as usize % 3] % 1000) / 1000.0;
-                    let shares: Vec<f64> = (0..comm.size() as u32).map(share).collect();
-                    decomposition.rebalance(device, subdomain, comm, [1, 1, 1], &shares)?;
-                }
-                Ok(())
-            }
+    ) -> Result<f64, SimulationError> {
+        let (weights, shares) = match self.options.mode {
+            BalanceMode::Off | BalanceMode::Initial => return Ok(0.0),
+            BalanceMode::Forced { seed } => match forced(seed, step, comm.size()) {
+                Some(shares) => ([1, 1, 1], shares),
+                None => return Ok(0.0),
+            },
             BalanceMode::Dynamic => {
-                if step > 0 {
-                    decomposition.rebalance(device, subdomain, comm, [20, 1, 20], &vec![1.0; comm.size()])?;
+                if !self.due(step) {
+                    return Ok(0.0);
                 }
-                Ok(())
+                let weights = self.model.weights();
+                ([weights.particle, weights.candidate, weights.wall], self.model.shares())
             }
-            _ => Ok(()),
-        }
+        };
+        let start = Instant::now();
+        let before = decomposition.weights(device, subdomain, comm, weights)?;
+        decomposition.rebalance(device, subdomain, comm, weights, &shares)?;
+        let after = decomposition.weights(device, subdomain, comm, weights)?;
+        let over = |weights: &[u64]| imbalance(weights.iter().zip(&shares).map(|(&w, share)| w as f64 / share));
+        self.rebalances.push((step, [over(&before), over(&after)]));
+        self.since = Some(step);
+        Ok(start.elapsed().as_secs_f64())
     }
+
+    /// Whether it is time to look, and what is seen asks for a rebalance.
+    fn due(&mut self, step: u64) -> bool {
+        if step < self.next_check || self.predicted.is_empty() || self.since.is_some() {
+            return false;
+        }
+        self.next_check = step + self.options.every;
+        let mean = self.predicted.iter().sum::<f64>() / self.predicted.len() as f64;
+        let threshold = self.options.threshold;
+        let trigger = self.trigger.get_or_insert_with(|| Trigger::new(threshold, STEPS_OF_A_REBALANCE * mean));
+        let decision: Decision = trigger.check(&self.predicted, &self.model.shares(), self.options.every);
+        tracing::debug!("step {step}: {decision}");
+        decision.rebalances()
+    }
+}
+
+/// Unequal shares, at one interval in three.
+fn forced(seed: u64, step: u64, ranks: usize) -> Option<Vec<f64>> {
+    let draw = |k: u32| crate::gas::philox4x32_10([step as u32, k, 0, 0], [seed as u32, (seed >> 32) as u32]);
+    let share = |rank: usize| 0.2 + f64::from(draw(1 + rank as u32)[0] % 1000) / 1000.0;
+    (step > 0 && draw(0)[0].is_multiple_of(3)).then(|| (0..ranks).map(share).collect())
 }
 
 /// Fullest over mean.
@@ -153,6 +281,3 @@ pub fn imbalance(of: impl Iterator<Item = f64> + Clone) -> f64 {
     let sum: f64 = of.clone().sum();
     if sum > 0.0 { of.fold(0.0, f64::max) * ranks / sum } else { 1.0 }
 }
-
-#[allow(dead_code)]
-fn _unused(_: &Tree) {}

@@ -44,10 +44,6 @@ impl Decomposition {
         Ok(Decomposition { tree, rank: comm.rank(), depth: 2 * rounds, wide: false, scattered: true })
     }
 
-    pub fn tree(&self) -> &Tree {
-        &self.tree
-    }
-
     /// The particles that a rank starts with: those whose cells it owns. (The first exchange decides by the cells
     /// of their mid-step positions.)
     pub fn own<'a>(
@@ -118,6 +114,32 @@ impl Decomposition {
     pub fn replace(&mut self, tree: Tree) {
         self.tree = tree;
         self.scatter();
+    }
+
+    /// The weight of the particles that each rank owns by the tree, where the last step had them. Collective.
+    ///
+    /// # Errors
+    /// If a device or another rank fails.
+    pub fn weights(
+        &self,
+        device: &Device,
+        subdomain: &mut Subdomain,
+        comm: &dyn Communicator,
+        weights: [u32; 3],
+    ) -> Result<Vec<u64>, SimulationError> {
+        // Planes across the first axis, box after box.
+        let mut starts = vec![0];
+        for extent in self.tree.boxes() {
+            starts.push(starts[starts.len() - 1] + extent.length(0) as usize);
+        }
+        let entry = |node: &Node| match *node {
+            Node::Cut { axis, plane, low, high } => [axis as u32, plane, low as u32, high as u32],
+            Node::Part(part) | Node::Open(part) => [3, 0, self.tree.boxes()[part].low[0], starts[part] as u32],
+        };
+        let cuts: Vec<[u32; 4]> = self.tree.nodes().iter().map(entry).collect();
+        let planes = subdomain.histogram(device, weights, &cuts, starts[starts.len() - 1])?;
+        let planes = comm.sum(planes)?;
+        Ok(starts.windows(2).map(|bounds| planes[bounds[0]..bounds[1]].iter().sum()).collect())
     }
 
     /// Cuts anew so that each rank has its share of the weights that the devices measured where the last step

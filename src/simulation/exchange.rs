@@ -25,6 +25,25 @@ pub struct Traffic {
     /// Summed over steps: particles here, ghosts included, and of them those that came from others.
     pub present: u64,
     pub arrived: u64,
+    /// s, of rebalances and of the exchanges that brought the particles home afterwards.
+    pub rebalancing_seconds: f64,
+}
+
+impl Traffic {
+    /// What went since an earlier look.
+    fn since(&self, earlier: &Traffic) -> Traffic {
+        Traffic {
+            steps: self.steps - earlier.steps,
+            messages: self.messages - earlier.messages,
+            bytes: self.bytes - earlier.bytes,
+            waits: self.waits - earlier.waits,
+            device_seconds: self.device_seconds - earlier.device_seconds,
+            waiting_seconds: self.waiting_seconds - earlier.waiting_seconds,
+            present: self.present - earlier.present,
+            arrived: self.arrived - earlier.arrived,
+            rebalancing_seconds: self.rebalancing_seconds - earlier.rebalancing_seconds,
+        }
+    }
 }
 
 pub struct Exchange<'a> {
@@ -33,16 +52,23 @@ pub struct Exchange<'a> {
     peers: Vec<usize>,
     near: usize,
     traffic: Traffic,
+    reported: Traffic,
 }
 
 impl<'a> Exchange<'a> {
     pub fn new(comm: &'a dyn Communicator) -> Exchange<'a> {
-        Exchange { comm: Some(comm), peers: Vec::new(), near: 0, traffic: Traffic::default() }
+        Exchange { comm: Some(comm), ..Exchange::none() }
     }
 
     /// On a rank alone.
     pub fn none() -> Exchange<'a> {
-        Exchange { comm: None, peers: Vec::new(), near: 0, traffic: Traffic::default() }
+        Exchange {
+            comm: None,
+            peers: Vec::new(),
+            near: 0,
+            traffic: Traffic::default(),
+            reported: Traffic::default(),
+        }
     }
 
     /// The ranks of the peers of a place, the near ones first.
@@ -53,6 +79,18 @@ impl<'a> Exchange<'a> {
 
     pub fn traffic(&self) -> Traffic {
         self.traffic
+    }
+
+    /// What went since the last call.
+    pub fn recent(&mut self) -> Traffic {
+        let recent = self.traffic.since(&self.reported);
+        self.reported = self.traffic;
+        recent
+    }
+
+    /// Time that went into a rebalance.
+    pub fn rebalanced(&mut self, seconds: f64) {
+        self.traffic.rebalancing_seconds += seconds;
     }
 
     /// Particles to those who own them or have them in their halo, in one message to each peer.
@@ -68,6 +106,7 @@ impl<'a> Exchange<'a> {
         if subdomain.place().depth == 0 {
             return Ok(());
         }
+        let start = Instant::now();
         let outgoing = subdomain.pack(rec, slot)?;
         let messages = self.timed(|| subdomain.packed(rec, slot, outgoing))?;
         let received = self.swap(messages, self.peers.len())?;
@@ -75,6 +114,9 @@ impl<'a> Exchange<'a> {
         self.traffic.steps += 1;
         self.traffic.present += u64::from(slot.present());
         self.traffic.arrived += u64::from(slot.arrived());
+        if subdomain.place().scattered {
+            self.traffic.rebalancing_seconds += start.elapsed().as_secs_f64();
+        }
         Ok(())
     }
 

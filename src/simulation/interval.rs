@@ -9,7 +9,7 @@ use crate::subdomain::{GpuNewborn, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
-use super::exchange::Exchange;
+use super::exchange::{Exchange, Traffic};
 use super::step::{Sampling, step};
 
 /// An interval as it was decided.
@@ -41,6 +41,8 @@ pub struct InFlight {
     pub phases: Vec<&'static str>,
     /// Particles on this rank, ghosts included, in the last step.
     pub present: u32,
+    /// What went between the ranks in it.
+    pub traffic: Traffic,
 }
 
 /// Tallies on their way to the host and through the ranks.
@@ -197,7 +199,8 @@ impl Machine<'_, '_> {
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;
         let submission = rec.submit();
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
-        Ok(InFlight { before, tallies, phases, present, interval })
+        let traffic = self.exchange.recent();
+        Ok(InFlight { before, tallies, phases, present, traffic, interval })
     }
 }
 

@@ -191,7 +191,7 @@ impl<'a> Simulation<'a> {
                 Ranks::Among(comm) => Exchange::new(comm),
             },
             decomposition,
-            balance: Balance::new(options.balance, comm, plan),
+            balance: Balance::new(options.balance, comm.size()),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -316,8 +316,9 @@ impl<'a> Simulation<'a> {
             self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
         }
         if let Some(decomposition) = &mut self.decomposition {
-            let dt = self.clock.dt(self.ladder.level());
-            self.balance.act(self.clock.steps, dt, self.device, &mut self.subdomain, self.ranks.comm(), decomposition)?;
+            let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
+            let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
+            self.exchange.rebalanced(seconds);
         }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
@@ -362,7 +363,7 @@ impl<'a> Simulation<'a> {
             let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
             let (mut sums, maxima) = own.to_words();
             let seconds = self.step_seconds(&flight.phases, &stamps);
-            sums.extend(Load::new(seconds, flight.present, &own).to_words(self.ranks.comm()));
+            sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
             let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
             flight.tallies = Pending::Reducing(Box::new(own), stamps, reduction);
         }
@@ -420,7 +421,7 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
-        self.balance.take(interval.first_step + u64::from(interval.steps), self.read_until, loads);
+        self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;

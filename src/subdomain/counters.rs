@@ -1,7 +1,7 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words of the buffer.
-pub const WORDS: usize = 48;
+pub const WORDS: usize = 49;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
@@ -34,6 +34,8 @@ pub struct Counters {
     pub strays: u32,
     /// Updates of ghosts that were not there.
     pub missing: u32,
+    /// Particles sent to another owner.
+    pub moved: u32,
     /// Of the last step: entries of all neighbour lists, and particles that may meet a wall.
     pub candidates: u32,
     pub near_walls: u32,
@@ -56,6 +58,7 @@ impl Counters {
             blocked: words[43],
             strays: words[45],
             missing: words[46],
+            moved: words[48],
             candidates: words[47],
             near_walls: words[NEAR_WALLS],
         }

@@ -100,6 +100,7 @@ impl Tallies {
             blocked,
             strays,
             missing,
+            moved,
             candidates,
             near_walls,
         } = self.counters;
@@ -115,6 +116,7 @@ impl Tallies {
             blocked,
             strays,
             missing,
+            moved,
             candidates,
             near_walls,
         ];
@@ -150,6 +152,7 @@ impl Tallies {
             blocked: count(next()?),
             strays: count(next()?),
             missing: count(next()?),
+            moved: count(next()?),
             candidates: count(next()?),
             near_walls: count(next()?),
             most_neighbours: count(*maxima.first()?),
