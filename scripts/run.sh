@@ -29,13 +29,13 @@ if [ -z "$out" ]; then
 fi
 
 "$root/scripts/setup.sh"
-cargo build --release --locked --manifest-path "$root/Cargo.toml"
+cargo build --release --locked --features mpi --manifest-path "$root/Cargo.toml"
 
 # Silences warnings of Mesa's device selection layer and of the Vulkan loader.
 export NODEVICE_SELECT=1
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 status=0
-cargo run --quiet --release --locked --manifest-path "$root/Cargo.toml" -- \
+cargo run --quiet --release --locked --features mpi --manifest-path "$root/Cargo.toml" -- \
   run "$@" ${options[@]+"${options[@]}"} || status=$?
 # 4: the run ended and its audit failed; its results are there to look at.
 if [ "$status" -eq 0 ] || [ "$status" -eq 4 ]; then

@@ -34,6 +34,20 @@ driver_present() {
   return 1
 }
 
+# What bindgen reads MPI's header with: the library and the headers of the compiler itself, in Debian's folders or
+# those of other systems. LIBCLANG_PATH is the user's word that it is there.
+clang_present() {
+  if [ -n "${LIBCLANG_PATH:-}" ]; then return 0; fi
+  local folder
+  for folder in /usr/lib/llvm-*/lib /usr/lib64 /usr/lib; do
+    if compgen -G "$folder/clang/*/include/stddef.h" >/dev/null &&
+      { compgen -G "$folder/libclang.so*" || compgen -G "$folder/libclang-[0-9]*.so*"; } >/dev/null; then
+      return 0
+    fi
+  done
+  return 1
+}
+
 missing=()
 if ! command -v cc >/dev/null; then missing+=(gcc); fi
 # cc may be there without the C library's headers and start files.
@@ -43,6 +57,10 @@ fi
 if ! library_present libvulkan.so.1; then missing+=(libvulkan1); fi
 # lavapipe, which runs and tests everything where there is no GPU.
 if ! driver_present 'lvp_icd*.json'; then missing+=(mesa-vulkan-drivers); fi
+# Any MPI will do; where there is none it is Open MPI.
+if ! command -v mpicc >/dev/null; then missing+=(libopenmpi-dev); fi
+if ! command -v mpirun >/dev/null; then missing+=(openmpi-bin); fi
+if ! clang_present; then missing+=(libclang-dev); fi
 
 if [ ${#missing[@]} -eq 0 ]; then
   exit 0

@@ -29,6 +29,12 @@ done
 # Silences warnings of Mesa's device selection layer and of the Vulkan loader.
 export NODEVICE_SELECT=1
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
+# Open MPI refuses root, and more ranks than cores, unless told: test machines have both.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1
 cargo fmt --check
+# Without MPI: all code is looked at, and what behaves differently is run.
 cargo clippy --release --locked --all-targets -- -D warnings
-cargo test --release --locked ${tests[@]+"${tests[@]}"}
+cargo test --release --locked --test ranks
+cargo clippy --release --locked --all-targets --features mpi -- -D warnings
+cargo test --release --locked --features mpi ${tests[@]+"${tests[@]}"}

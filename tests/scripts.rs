@@ -41,11 +41,13 @@ impl Programs {
         self.add(name, &format!("echo {name} \"$@\" >> '{}'", self.log().display()));
     }
 
+    /// Runs the script as if its libclang were where the user says: fixed folders cannot be stood in for.
     fn run(&self, script: &str, arguments: &[&str]) -> Output {
         Command::new("/bin/bash")
             .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join(script))
             .args(arguments)
             .env("PATH", self.0.path())
+            .env("LIBCLANG_PATH", self.0.path())
             .current_dir(self.0.path())
             .output()
             .unwrap()
@@ -89,14 +91,23 @@ fn only_what_is_missing_is_installed_and_named() {
     let noted = programs.noted();
     assert!(noted.contains("apt-get update"), "{noted}");
     assert!(noted.contains("apt-get install") && noted.contains("libc6-dev libvulkan1"), "{noted}");
+    assert!(noted.contains("libopenmpi-dev openmpi-bin"), "{noted}");
     assert!(!noted.contains("gcc") && !noted.contains("sudo"), "{noted}");
-    // With compiler and library there, neither is named any more.
+    // With compiler, library and MPI's launcher there, none is named any more.
     programs.add("cc", "exit 0");
     programs.add("ldconfig", "echo 'libvulkan.so.1 (libc6,x86-64) => /usr/lib/libvulkan.so.1'");
+    programs.add("mpirun", "exit 0");
     fs::remove_file(programs.log()).unwrap();
     assert!(programs.run("scripts/setup.sh", &[]).status.success());
     let noted = programs.noted();
     assert!(!noted.contains("libc6-dev") && !noted.contains("libvulkan1"), "{noted}");
+    assert!(noted.contains("libopenmpi-dev") && !noted.contains("openmpi-bin"), "{noted}");
+    // libclang has not been named all the while: see `Programs::run`.
+    programs.add("mpicc", "exit 0");
+    let _ = fs::remove_file(programs.log());
+    assert!(programs.run("scripts/setup.sh", &[]).status.success());
+    let noted = programs.noted();
+    assert!(!noted.contains("openmpi") && !noted.contains("libclang-dev"), "{noted}");
 }
 
 #[test]
@@ -137,7 +148,9 @@ fn a_wrong_call_is_told_before_anything_is_built() {
 /// A machine on which nothing is missing, where `corpuscle run` ends with `status`.
 fn complete(status: u8) -> Programs {
     let programs = Programs::with_rust("1.95.0");
-    programs.add("cc", "exit 0");
+    for tool in ["cc", "mpicc", "mpirun"] {
+        programs.add(tool, "exit 0");
+    }
     programs.add("ldconfig", "echo 'libvulkan.so.1 (libc6) => /usr/lib/libvulkan.so.1'");
     // The driver's manifest is looked up in fixed folders: where it is missing an installation is noted.
     programs.add("id", "echo 0");
@@ -160,7 +173,8 @@ fn a_run_builds_then_runs_and_ends_with_the_path_of_its_results() {
     assert!(output.status.success(), "{}", said(&output));
     let noted = programs.noted();
     let mut lines = noted.lines();
-    assert!(lines.next().unwrap().starts_with("cargo build --release"), "{noted}");
+    let build = lines.next().unwrap();
+    assert!(build.starts_with("cargo build --release") && build.contains("--features mpi"), "{noted}");
     assert!(lines.next().unwrap().ends_with("run scenes/tank.toml --particles 20000 --out results/tank"), "{noted}");
     let last = |output: &Output| String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_owned();
     assert!(last(&output).starts_with("Results: /") && last(&output).ends_with("/results/tank"));

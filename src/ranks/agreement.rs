@@ -53,7 +53,8 @@ fn difference(expected: &[(String, String)], found: &[(String, String)], rank: u
     Some((at, RankError::Disagreement { name, expected, rank, found }))
 }
 
-/// Both values from a little before where they part, each at most [`LONGEST_VALUE`] characters and the marks of what was left out.
+/// Both values, or if one is long, at most [`LONGEST_VALUE`] characters of each from a little before where they part,
+/// with marks of what was left out.
 fn shortened(expected: &str, found: &str) -> (String, String) {
     let parting = expected.chars().zip(found.chars()).take_while(|(a, b)| a == b).count();
     let short = |text: &str| text.chars().count() <= LONGEST_VALUE;

@@ -1,0 +1,97 @@
+//! With MPI: launches by `mpirun`, from the outside.
+
+use super::ROLE;
+use std::io::Read;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+pub const TESTS: &[(&str, fn())] = &[
+    ("ranks_of_mpi_conform", conforming),
+    ("a_failure_ends_all_with_its_rank_message_and_code", failure_ends_all),
+    ("a_panic_ends_all_with_its_rank_and_message", panic_ends_all),
+    ("a_dead_process_ends_all", death_ends_all),
+    ("differing_facts_are_told", differing_facts_are_told),
+];
+
+struct Ended {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+/// Launches so many ranks in a role, and waits for the end.
+fn mpirun(ranks: usize, role: &str, environment: &[(&str, &str)]) -> Ended {
+    let mut child = Command::new("mpirun")
+        .args(["--bind-to", "none", "-n", &ranks.to_string()])
+        .arg(std::env::current_exe().unwrap())
+        .env(ROLE, role)
+        .envs(environment.iter().copied())
+        .env("RUST_BACKTRACE", "0")
+        // More ranks than cores, also as root.
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("mpirun can be started");
+    let (stdout, stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+    let [stdout, stderr] = [Box::new(stdout) as Box<dyn Read + Send>, Box::new(stderr)].map(|mut pipe| {
+        std::thread::spawn(move || {
+            let mut text = Vec::new();
+            pipe.read_to_end(&mut text).unwrap();
+            String::from_utf8_lossy(&text).into_owned()
+        })
+    });
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        // Far beyond what a slow machine needs: the ranks wait for each other.
+        if begun.elapsed() > Duration::from_secs(120) {
+            child.kill().unwrap();
+            panic!("{ranks} ranks in the role `{role}` hang");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    Ended { code: status.code(), stdout: stdout.join().unwrap(), stderr: stderr.join().unwrap() }
+}
+
+fn conforming() {
+    for ranks in 1..=4 {
+        let ended = mpirun(ranks, "suite", &[]);
+        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        assert!(ended.stdout.contains(&format!("{ranks} ranks conform")), "{}", ended.stdout);
+    }
+}
+
+fn failure_ends_all() {
+    let ended = mpirun(4, "failing", &[]);
+    assert_eq!(ended.code, Some(3), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("rank 1: out of gas"), "{}", ended.stderr);
+    assert!(!ended.stdout.contains("went on"), "{}", ended.stdout);
+}
+
+fn panic_ends_all() {
+    let ended = mpirun(4, "panicking", &[]);
+    assert_eq!(ended.code, Some(101), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("rank 1: panicked: "), "{}", ended.stderr);
+    assert!(ended.stderr.contains("one is one too many"), "{}", ended.stderr);
+    assert!(!ended.stdout.contains("went on"), "{}", ended.stdout);
+}
+
+fn death_ends_all() {
+    let ended = mpirun(4, "dying", &[]);
+    assert_ne!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert!(!ended.stdout.contains("went on"), "{}", ended.stdout);
+}
+
+fn differing_facts_are_told() {
+    let ended = mpirun(4, "disagreeing", &[]);
+    assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+    let expected = "rank 0: all know: the ranks disagree on the number of particles: \
+                    rank 0 has `10000`, rank 2 has `20000`";
+    assert!(ended.stderr.contains(expected), "{}", ended.stderr);
+}
