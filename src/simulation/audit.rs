@@ -104,7 +104,9 @@ impl Account {
         self.energy_entered += brought;
         let energy = self.state(tallies).energy;
         if (energy - expected).abs() > ENERGY_ERROR * expected {
-            return Err(format!("the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"));
+            return Err(format!(
+                "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
+            ));
         }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
@@ -166,14 +168,7 @@ impl Account {
     }
 
     /// The account at the end; `outside` particles were found in no gas.
-    pub fn close(
-        &self,
-        model: &Model,
-        inflow: &Inflow,
-        tallies: &Tallies,
-        outside: u64,
-        averages: &Averages,
-    ) -> Audit {
+    pub fn close(&self, model: &Model, inflow: &Inflow, tallies: &Tallies, outside: u64, averages: &Averages) -> Audit {
         let end = self.state(tallies);
         let plan = &model.plan;
         let entered = inflow.entered_by_gas();

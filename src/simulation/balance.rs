@@ -206,8 +206,7 @@ impl Balance {
         match self.options.by {
             By::Cost => 1.0,
             By::Particles => {
-                let (seconds, owned) =
-                    loads.iter().fold((0.0, 0), |(s, n), load| (s + load.seconds, n + load.owned));
+                let (seconds, owned) = loads.iter().fold((0.0, 0), |(s, n), load| (s + load.seconds, n + load.owned));
                 if seconds > 0.0 { seconds / owned.max(1) as f64 } else { 1e-6 }
             }
         }

@@ -178,9 +178,7 @@ pub fn root(plan: &Plan) -> CellBox {
 
 /// The cell of a particle's position, moved into the root as `nearest_cell` of the shaders does.
 fn cell_of(plan: &Plan, particle: &GpuParticle) -> [u32; 3] {
-    std::array::from_fn(|axis| {
-        (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2)
-    })
+    std::array::from_fn(|axis| (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2))
 }
 
 /// The tree so far, as `shaders/weigh.wgsl` reads it.

@@ -62,13 +62,7 @@ impl<'a> Exchange<'a> {
 
     /// On a rank alone.
     pub fn none() -> Exchange<'a> {
-        Exchange {
-            comm: None,
-            peers: Vec::new(),
-            near: 0,
-            traffic: Traffic::default(),
-            reported: Traffic::default(),
-        }
+        Exchange { comm: None, peers: Vec::new(), near: 0, traffic: Traffic::default(), reported: Traffic::default() }
     }
 
     /// The ranks of the peers of a place, the near ones first.

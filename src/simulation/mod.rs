@@ -19,10 +19,10 @@ mod setup;
 mod step;
 
 pub use audit::audit_limits;
-pub use balance::{BalanceMode, BalanceOptions, BalanceRecord, Load, imbalance};
-pub use exchange::Traffic;
 pub use averages::{Layout, Row, SurfaceState, ZoneState};
+pub use balance::{BalanceMode, BalanceOptions, BalanceRecord, Load, imbalance};
 pub use clock::Clock;
+pub use exchange::Traffic;
 pub use ladder::{Demand, Ladder, LadderError};
 pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;

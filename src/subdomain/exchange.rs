@@ -137,12 +137,7 @@ impl Subdomain {
     ///
     /// # Errors
     /// If the device has no memory for the copy.
-    pub fn pack_updates(
-        &mut self,
-        rec: &mut Recording<'_>,
-        step: &StepSlot,
-        round: u32,
-    ) -> Result<Outgoing, GpuError> {
+    pub fn pack_updates(&mut self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) -> Result<Outgoing, GpuError> {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             let offset = self.offset(device, step, round);
