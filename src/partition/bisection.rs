@@ -169,7 +169,7 @@ impl Bisection {
         let longest = extent.length(extent.longest_axis());
         if let Some(old) = self.old_cut(previous) {
             let long = 10 * u64::from(extent.length(old.axis)) >= 7 * u64::from(longest);
-            let kept = (long && old.low_parts < parts).then(|| way(old.axis, old.low_parts, previous));
+            let kept = long.then(|| way(old.axis, old.low_parts, previous));
             if let Some(kept) = kept.flatten() {
                 return kept;
             }
