@@ -1,9 +1,9 @@
 //! What a bisection costs on this host, beside crate coupe's: `cargo bench --bench partition`.
 //!
 //! Nanoseconds of wall time per point, medians of a few runs, ours and coupe's in turn, both on all threads
-//! (`RAYON_NUM_THREADS` limits coupe's, `taskset` both). Ours starts from cells of a 1024^3 grid; `histograms` is what it
-//! spends in adding up planes and taking each point to its part, `cuts` what is left: on devices the former is theirs.
-//! Coupe starts from the positions and cuts between points; its number of parts is a power of two.
+//! (`RAYON_NUM_THREADS` limits coupe's, `taskset` both). Ours starts from cells of a 1024^3 grid; `histograms` is what
+//! it spends in adding up planes and taking each point to its part, `cuts` what is left: on devices the former is
+//! theirs. Coupe starts from the positions and cuts between points; its number of parts is a power of two.
 //!
 //! `-- 1000000 10000000` chooses the numbers of points.
 

@@ -68,8 +68,8 @@ struct Open {
 }
 
 impl Bisection {
-    /// `shares`: what each part is to have of the weight, in any unit. `previous`: the tree in force; it counts if it has
-    /// the same root and number of parts. `tolerance`: usually [`super::TOLERANCE`].
+    /// `shares`: what each part is to have of the weight, in any unit. `previous`: the tree in force; it counts if it
+    /// has the same root and number of parts. `tolerance`: usually [`super::TOLERANCE`].
     pub fn new(
         root: CellBox,
         shares: &[f64],

@@ -9,12 +9,12 @@
 //! sum over rows of u / u_max (t - b . z)^2  +  RIDGE sum_j (b_j - mean t)^2,   b >= 0,   c = b p
 //! ```
 //!
-//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at the
-//! prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
+//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at
+//! the prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
 //!
-//! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of the
-//! ranks (of what the speeds in force leave). It leaves 1 where it is off by more than both a dead band and five standard errors, so that the noise of
-//! timers moves no cut; from then on it follows by two.
+//! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of what
+//! the speeds in force leave. It leaves 1 where it is off by more than both a dead band and five standard errors, so
+//! that the noise of timers moves no cut; from then on it follows by two.
 //!
 //! Invariant: the state is a function of the measurements alone; ranks that observe the same hold the same.
 
@@ -194,12 +194,9 @@ impl CostModel {
             let speed = libm::exp(rank.speed);
             weight += rank.weight;
             target += rank.target * speed;
-            for row in 0..FEATURES {
-                products[row] += rank.products[row] * speed;
-                for column in 0..FEATURES {
-                    squares[row][column] += rank.squares[row][column];
-                }
-            }
+            products.iter_mut().zip(rank.products).for_each(|(sum, product)| *sum += product * speed);
+            let entries = squares.iter_mut().flatten().zip(rank.squares.iter().flatten());
+            entries.for_each(|(sum, square)| *sum += square);
         }
         if weight <= 0.0 {
             return;
@@ -293,9 +290,8 @@ fn solve(matrix: &[[f64; FEATURES]; FEATURES], right: &[f64; FEATURES], set: u32
         for row in (pivot + 1..FEATURES).filter(|&feature| free(feature)) {
             let factor = left[row][pivot] / left[pivot][pivot];
             right[row] -= factor * right[pivot];
-            for column in pivot..FEATURES {
-                left[row][column] -= factor * left[pivot][column];
-            }
+            let above = left[pivot];
+            left[row].iter_mut().zip(above).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     let mut solution = [0.0; FEATURES];

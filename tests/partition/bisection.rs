@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use corpuscle::partition::*;
 use proptest::prelude::*;
 
@@ -14,15 +16,11 @@ fn deviation(extent: &CellBox, axis: usize, plane: u32, fraction: f64, points: &
     (below as f64 - fraction * total as f64).abs()
 }
 
-/// Each cut with its box and the parts below and above it.
-fn cuts(tree: &Tree) -> Vec<(CellBox, usize, u32, std::ops::Range<usize>, std::ops::Range<usize>)> {
-    fn walk(
-        tree: &Tree,
-        at: usize,
-        extent: CellBox,
-        first: usize,
-        into: &mut Vec<(CellBox, usize, u32, std::ops::Range<usize>, std::ops::Range<usize>)>,
-    ) -> usize {
+/// A cut's box, axis and plane, and the parts below and above it.
+type Cut = (CellBox, usize, u32, Range<usize>, Range<usize>);
+
+fn cuts(tree: &Tree) -> Vec<Cut> {
+    fn walk(tree: &Tree, at: usize, extent: CellBox, first: usize, into: &mut Vec<Cut>) -> usize {
         let Node::Cut { axis, plane, low, high } = tree.nodes()[at] else { return first + 1 };
         let (below, above) = extent.split(axis, plane);
         let middle = walk(tree, low, below, first, into);
@@ -88,7 +86,7 @@ proptest! {
         let tree = bisect(root, &shares, None, points.iter().copied()).unwrap();
         for (extent, axis, plane, below, above) in cuts(&tree) {
             let total: u64 = points.iter().filter(|(cell, _)| extent.contains(*cell)).map(|(_, weight)| weight).sum();
-            let share = |parts: std::ops::Range<usize>| shares[parts].iter().sum::<f64>();
+            let share = |parts: Range<usize>| shares[parts].iter().sum::<f64>();
             let fraction = share(below.clone()) / (share(below.clone()) + share(above.clone()));
             // Shares are rounded to 2^-32.
             let rounding = total as f64 * 1e-8;

@@ -129,6 +129,7 @@ fn the_state_is_a_function_of_the_measurements() {
     let mut again = CostModel::new(By::Cost, 3);
     observe(&mut again, &[1.0, 0.7, 1.0], 30, 0.1, &mut Random(4));
     assert_eq!(one, again);
+    assert_eq!(one, toml::from_str(&toml::to_string(&one).unwrap()).unwrap());
     let nothing = Measurement { work: Work::default(), seconds: f64::NAN };
     again.observe(&[nothing; 3]);
     assert!(again.coefficients().iter().all(|cost| cost.is_finite() && *cost >= 0.0));

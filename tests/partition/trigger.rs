@@ -83,9 +83,11 @@ fn reasons_are_printed() {
     assert_eq!(Trigger::new(1.1, 0.0).check(&[1.0], &[1.0], STEPS), Decision::Idle);
     let balanced = Trigger::new(1.1, 0.0).check(&[1.02, 0.98], &[1.0; 2], STEPS);
     assert_eq!(balanced.to_string(), "no rebalance: imbalance 1.020 is not above 1.100");
-    let rebalance = (0..9).map(|_| 0).fold((Trigger::new(1.1, 0.25), Decision::Idle), |(mut trigger, _), _| {
-        let decision = trigger.check(&[1.5e-3, 0.5e-3], &[1.0; 2], STEPS);
-        (trigger, decision)
-    });
-    assert_eq!(rebalance.1.to_string(), "rebalance: imbalance 1.500, saves 5.000e-1 s for 2.500e-1 s");
+    let mut trigger = Trigger::new(1.1, 0.25);
+    let mut check = || trigger.check(&[1.5e-3, 0.5e-3], &[1.0; 2], STEPS).to_string();
+    assert_eq!(check(), "no rebalance: imbalance 1.500 may be noise up to 1.777");
+    let last = (0..9).map(|_| check()).last().unwrap();
+    assert_eq!(last, "rebalance: imbalance 1.500, saves 5.000e-1 s for 2.500e-1 s");
+    let stored: Trigger = toml::from_str(&toml::to_string(&trigger).unwrap()).unwrap();
+    assert_eq!(stored, trigger, "what is stored decides as before");
 }
