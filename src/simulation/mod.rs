@@ -7,21 +7,27 @@
 mod audit;
 mod averages;
 mod clock;
+mod interrupt;
 mod interval;
 mod ladder;
 mod model;
 mod reference;
 mod run;
+mod run_state;
+mod schedule;
 mod setup;
 mod step;
 
-pub use audit::audit_limits;
-pub use averages::{Layout, Row, SurfaceState, ZoneState};
-pub use clock::Clock;
-pub use ladder::{Demand, Ladder, LadderError};
+pub use audit::{AccountState, audit_limits};
+pub use averages::{AveragesState, Layout, Row, SurfaceState, ZoneState};
+pub use clock::{Clock, ClockState};
+pub use interrupt::{Interrupt, Request};
+pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;
 pub use run::{Observer, Options, Outcome, Simulation};
+pub use run_state::{RunState, StateError as RunStateError};
+pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Shuffle, initial_particles};
 pub use step::{Sampling, step};
 
