@@ -25,7 +25,7 @@ pub use audit::{Audit, AuditLimits};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
     Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, MeshRecord, Moment, Origin,
-    OutputState, forget_after, latest,
+    OutputState, RECORD_BYTES, forget_after, latest,
 };
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;

@@ -161,6 +161,7 @@ impl Account {
         }
     }
 
+    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
     pub fn state(&self) -> AccountState {
         AccountState {
             start: self.start,
@@ -181,6 +182,7 @@ impl Account {
 
     /// # Errors
     /// If no run of this plan can have counted this; then nothing is changed.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
     pub fn restore(&mut self, plan: &Plan, state: &AccountState) -> Result<(), StateError> {
         if state.start.number != plan.initial_particles {
             return Err(StateError::differs("particles at the start", state.start.number, plan.initial_particles));

@@ -142,7 +142,9 @@ mod tests {
         own.add(&tallies(&plan, 3), 1e-6, 32, 4);
         let before = own.state();
         assert!(own.restore(&other).unwrap_err().to_string().contains("sums over zones"));
-        assert!(own.restore(&AveragesState { received: Vec::new(), ..before.clone() }).is_err());
+        let mut short = before.clone();
+        short.received.pop();
+        assert!(own.restore(&short).unwrap_err().to_string().contains("impulses of patches"));
         assert_eq!(own.state(), before);
     }
 

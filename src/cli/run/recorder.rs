@@ -108,7 +108,6 @@ impl<'a> Recorder<'a> {
 }
 
 /// What a run has done so far.
-#[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Totals {
     /// s.

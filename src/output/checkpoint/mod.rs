@@ -118,5 +118,5 @@ pub fn latest(path: &Path) -> Result<PathBuf, CheckpointError> {
     let inner = path.join(super::CHECKPOINT_FOLDER);
     let folder = if inner.is_dir() { inner } else { path.to_path_buf() };
     let newest = complete(&folder)?.pop();
-    newest.map(|(_, path)| path).ok_or_else(|| CheckpointError::None { path: folder })
+    newest.map(|(_, path)| path).ok_or(CheckpointError::None { path: folder })
 }

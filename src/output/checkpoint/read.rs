@@ -11,7 +11,7 @@ use super::manifest::{self, Adapter, FileRecord, Manifest};
 use super::origin::length_and_crc;
 use super::{ID_MASK, ID_OFFSET, MANIFEST, OutputState, PLAN, RECORD_BYTES, SCENE, STATE, complete};
 
-/// State other than particles is far smaller; it does not grow with them.
+/// The state is far smaller: it does not grow with the particles.
 const MOST_STATE_BYTES: u64 = 1 << 30;
 /// What is taken at once for a length that a file claims; more as data come.
 const FIRST_ALLOCATION: u64 = 64 << 20;

@@ -100,17 +100,23 @@ fn altered(whole: &BTreeMap<String, Vec<u8>>, name: &str, content: Option<&[u8]>
     // The rank that did not check all must see it when it reads the file.
     let read_all = || -> Result<(), CheckpointError> {
         let read = Checkpoint::open_checked(&path)?;
-        (read.scene()?, read.plan()?, read.state::<State>()?);
+        read.scene()?;
+        read.plan()?;
+        read.state::<State>()?;
         (0..read.particle_files()).try_for_each(|file| read.particles(file).map(drop))
     };
     assert!(read_all().is_err());
     error
 }
 
-fn whole() -> BTreeMap<String, Vec<u8>> {
-    let dir = tempfile::tempdir().unwrap();
-    let path = written(dir.path(), 320, &[40, 0, 25]);
-    names(&path).into_iter().map(|name| (name.clone(), fs::read(path.join(&name)).unwrap())).collect()
+/// A sound checkpoint's files.
+fn whole() -> &'static BTreeMap<String, Vec<u8>> {
+    static WHOLE: std::sync::OnceLock<BTreeMap<String, Vec<u8>>> = std::sync::OnceLock::new();
+    WHOLE.get_or_init(|| {
+        let dir = tempfile::tempdir().unwrap();
+        let path = written(dir.path(), 320, &[40, 0, 25]);
+        names(&path).into_iter().map(|name| (name.clone(), fs::read(path.join(&name)).unwrap())).collect()
+    })
 }
 
 proptest! {
@@ -140,7 +146,7 @@ proptest! {
             }
         }
         prop_assume!(content != whole[name]);
-        altered(&whole, name, Some(&content));
+        altered(whole, name, Some(&content));
     }
 }
 
@@ -167,19 +173,19 @@ fn each_fault_has_its_reason() {
     let whole = whole();
     let particles = "particles-0002.bin";
     let bytes = &whole[particles];
-    let short = altered(&whole, particles, Some(&bytes[..10]));
+    let short = altered(whole, particles, Some(&bytes[..10]));
     assert!(short.contains("has 10 bytes") && short.contains(&format!("{} were written", bytes.len())), "{short}");
-    assert!(altered(&whole, particles, None).contains("is missing from the checkpoint"));
+    assert!(altered(whole, particles, None).contains("is missing from the checkpoint"));
     let mut flipped = bytes.clone();
     flipped[9] ^= 64;
-    assert!(altered(&whole, particles, Some(&flipped)).contains("its checksum is"));
-    assert!(altered(&whole, MANIFEST, None).contains("is missing"));
+    assert!(altered(whole, particles, Some(&flipped)).contains("its checksum is"));
+    assert!(altered(whole, MANIFEST, None).contains("is missing"));
     let manifest = String::from_utf8(whole[MANIFEST].clone()).unwrap();
-    let foreign = altered(&whole, MANIFEST, Some(b"[package]\nname = 1\n"));
+    let foreign = altered(whole, MANIFEST, Some(b"[package]\nname = 1\n"));
     assert!(foreign.contains("no checkpoint's manifest") && foreign.contains("[package]"), "{foreign}");
-    let other = altered(&whole, MANIFEST, Some(manifest.replace("format 1", "format 7").as_bytes()));
+    let other = altered(whole, MANIFEST, Some(manifest.replace("format 1", "format 7").as_bytes()));
     assert!(other.contains("checkpoint format 7, this program reads format 1"), "{other}");
-    let edited = altered(&whole, MANIFEST, Some(manifest.replace("step = 320", "step = 321").as_bytes()));
+    let edited = altered(whole, MANIFEST, Some(manifest.replace("step = 320", "step = 321").as_bytes()));
     assert!(edited.contains("truncated or altered"), "{edited}");
 }
 
