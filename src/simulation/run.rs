@@ -4,6 +4,7 @@
 //! host code on the inflow. Rank 0 tells the observer.
 
 use std::collections::VecDeque;
+use std::time::Instant;
 
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
@@ -61,6 +62,17 @@ pub trait Observer {
         Ok(())
     }
 
+    /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
+    fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
+
+    /// What the ranks had to do in an interval.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn balance(&mut self, _record: &BalanceRecord) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
     /// Totals so far: simulated time (s), steps, particle-steps.
     fn progress(&mut self, _time: f64, _steps: u64, _particle_steps: u64) {}
 }
@@ -88,6 +100,8 @@ pub struct Outcome {
     /// What this rank sent and waited for.
     pub traffic: Traffic,
     pub balance: Vec<BalanceRecord>,
+    /// Wall time of the steps, s: without the set-up, and without the account at the end.
+    pub stepping_seconds: f64,
 }
 
 /// The ranks of a run.
@@ -131,6 +145,8 @@ pub struct Simulation<'a> {
     read_until: f64,
     repeated: u32,
     options: Options<'a>,
+    /// The steps began.
+    began: Instant,
 }
 
 impl<'a> Simulation<'a> {
@@ -206,6 +222,7 @@ impl<'a> Simulation<'a> {
             next_snapshot: 0,
             read_until: 0.0,
             repeated: 0,
+            began: Instant::now(),
             options,
             model,
             device,
@@ -232,7 +249,9 @@ impl<'a> Simulation<'a> {
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
-        self.snapshot(observer)
+        self.snapshot(observer)?;
+        self.began = Instant::now();
+        Ok(())
     }
 
     /// Reads an interval that is done and submits one; false, and nothing is done, where the run has
@@ -261,6 +280,7 @@ impl<'a> Simulation<'a> {
     /// As [`Simulation::run`].
     pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
+        let stepping_seconds = self.began.elapsed().as_secs_f64();
         if self.averages.ready() {
             self.emit_row(observer)?;
         }
@@ -284,6 +304,7 @@ impl<'a> Simulation<'a> {
             time: self.clock.time(),
             repeated: self.repeated,
             step_range: self.account.step_range,
+            stepping_seconds,
         })
     }
 
@@ -421,7 +442,12 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
-        self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+        if !loads.is_empty() {
+            self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+            if let Some(record) = self.balance.latest() {
+                observer.balance(record)?;
+            }
+        }
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
@@ -493,6 +519,9 @@ impl<'a> Simulation<'a> {
         }
         let own = self.subdomain.particles(self.device)?;
         if let Some((particles, owners)) = self.gather(own)? {
+            if let Some(decomposition) = &self.decomposition {
+                observer.boxes(&decomposition.boxes(&self.model.plan.grid));
+            }
             observer.snapshot(self.clock.time(), &particles, &owners)?;
         }
         while self.snapshot_due() && self.next_snapshot <= asked {
