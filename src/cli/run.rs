@@ -8,6 +8,7 @@ mod devices;
 mod recorder;
 mod reference;
 mod table;
+mod timing;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -101,7 +102,8 @@ impl Job<'_> {
         };
         let simulation = Simulation::among(model, device, setup, comm, options)?;
         if comm.rank() > 0 {
-            simulation.run(&mut ())?;
+            let outcome = simulation.run(&mut ())?;
+            timing::of_ranks(comm, &outcome)?;
             return Ok(());
         }
         let folder = OutputFolder::create(&settings.folder, settings.force)?;
@@ -109,6 +111,9 @@ impl Job<'_> {
         folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
         Environment::of_this_host(command(), record(device)).write(folder.path())?;
         let mut recorder = Recorder::new(model, Reference::new(model), folder.path(), !self.quiet)?;
+        if comm.size() > 1 {
+            recorder = recorder.among(folder.path(), 0)?;
+        }
         let set_up = self.started.elapsed();
         let result = simulation.run(&mut recorder);
         // What a run that stopped early has measured is of use, above all to find out why it stopped.
@@ -116,6 +121,7 @@ impl Job<'_> {
         let outcome = result?;
         drawn?;
         recorder.finish(&outcome)?;
+        timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         self.tell(&outcome, set_up, &folder)
     }
 
