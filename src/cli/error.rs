@@ -80,6 +80,7 @@ impl CliError {
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
                 | SimulationError::Partition(_)
+                | SimulationError::Resume(_)
                 | SimulationError::Observer(_),
             )
             | CliError::Scene(_)

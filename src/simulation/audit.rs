@@ -53,6 +53,7 @@ struct State {
 pub struct AccountState {
     start: State,
     injected_momentum: [f64; 3],
+    energy_entered: f64,
     particles: u64,
     particle_steps: u64,
     collisions: u64,
@@ -180,11 +181,11 @@ impl Account {
         }
     }
 
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
     pub fn state(&self) -> AccountState {
         AccountState {
             start: self.start,
             injected_momentum: self.injected_momentum,
+            energy_entered: self.energy_entered,
             particles: self.particles,
             particle_steps: self.particle_steps,
             collisions: self.collisions,
@@ -201,7 +202,6 @@ impl Account {
 
     /// # Errors
     /// If no run of this plan can have counted this; then nothing is changed.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
     pub fn restore(&mut self, plan: &Plan, state: &AccountState) -> Result<(), StateError> {
         if state.start.number != plan.initial_particles {
             return Err(StateError::differs("particles at the start", state.start.number, plan.initial_particles));
@@ -215,6 +215,7 @@ impl Account {
         (self.particle_steps, self.collisions, self.bounces) = (particle_steps, collisions, bounces);
         (self.step_range, self.steps, self.lost, self.sampled) = (step_range, steps, lost, sampled);
         (self.truncated, self.overshoot) = (truncated, overshoot);
+        self.energy_entered = state.energy_entered;
         self.phases.clone_from(&state.phases);
         Ok(())
     }

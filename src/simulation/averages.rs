@@ -141,7 +141,6 @@ impl Averages {
         }
     }
 
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
     pub fn state(&self) -> AveragesState {
         AveragesState {
             start: self.start,
@@ -155,7 +154,6 @@ impl Averages {
 
     /// # Errors
     /// If the state is that of another scene's averages; then nothing is changed.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
     pub fn restore(&mut self, state: &AveragesState) -> Result<(), StateError> {
         for (what, found, expected) in [
             ("sums over zones", state.sums.len(), self.sums.len()),

@@ -30,7 +30,7 @@ pub struct Load {
     pub walls: u64,
     /// Particles that it owns.
     pub owned: u64,
-    /// In the interval: particles that went to another owner, and bytes that were sent.
+    /// In the interval: particles that came from another owner, and bytes that were sent.
     pub moved: u64,
     pub bytes: u64,
     /// Spent on a rebalance and on bringing the particles home, s.

@@ -122,7 +122,7 @@ impl<'a> Exchange<'a> {
         &mut self,
         subdomain: &mut Subdomain,
         rec: &mut Recording<'_>,
-        slot: &mut StepSlot,
+        slot: &StepSlot,
         round: u32,
     ) -> Result<(), SimulationError> {
         if !subdomain.place().stale(round) || self.near == 0 {

@@ -179,7 +179,7 @@ impl Machine<'_, '_> {
         for (k, mut slot) in slots.into_iter().enumerate() {
             let sampling = Sampling { lost: k == 0, tally: tallied(plan, interval.first_step + k as u64) };
             rec.time(self.timer.filter(|_| k == last));
-            self.subdomain.begin_step(device, &mut slot);
+            self.subdomain.begin_step(device, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);

@@ -30,7 +30,7 @@ pub use interrupt::{Interrupt, Request};
 pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;
-pub use run::{Observer, Options, Outcome, Simulation};
+pub use run::{Moment, Observer, Options, Outcome, Simulation};
 pub use run_state::{RunState, StateError as RunStateError};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
@@ -59,6 +59,8 @@ pub enum SimulationError {
     Partition(#[from] PartitionError),
     #[error(transparent)]
     Rank(#[from] RankError),
+    #[error(transparent)]
+    Resume(#[from] RunStateError),
     #[error("at {time:.6} s: {source}")]
     Ladder { time: f64, source: LadderError },
     #[error("at {time:.6} s: {what}")]

@@ -19,9 +19,11 @@ use super::balance::{Balance, BalanceOptions, BalanceRecord, Load};
 use super::clock::Clock;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
+use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine, Pending};
 use super::ladder::{Demand, Ladder};
 use super::model::Model;
+use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::{Setup, Shuffle};
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
@@ -73,11 +75,37 @@ pub trait Observer {
         Ok(())
     }
 
+    /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
+    fn request(&mut self, _steps: u64) -> Request {
+        Request::None
+    }
+
+    /// A moment at which the run can be continued, on every rank. Collective.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn checkpoint(&mut self, _moment: &Moment<'_>) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
     /// Totals so far: simulated time (s), steps, particle-steps.
     fn progress(&mut self, _time: f64, _steps: u64, _particle_steps: u64) {}
 }
 
 impl Observer for () {}
+
+/// All that a run needs to be continued, on one rank.
+pub struct Moment<'a> {
+    pub step: u64,
+    /// s.
+    pub time: f64,
+    /// Particles, those that entered and the initial ones.
+    pub particles: u64,
+    pub state: &'a RunState,
+    /// Of this rank.
+    pub own: &'a [GpuParticle],
+    pub comm: &'a dyn Communicator,
+}
 
 /// What a run leaves.
 pub struct Outcome {
@@ -144,6 +172,12 @@ pub struct Simulation<'a> {
     /// End of the last interval that was read, s.
     read_until: f64,
     repeated: u32,
+    /// What this rank wants done, and what the ranks want, by the intervals read.
+    wish: Request,
+    request: Request,
+    stopping: bool,
+    /// The run goes on from a state; its start has been accounted for.
+    resumed: bool,
     options: Options<'a>,
     /// The steps began.
     began: Instant,
@@ -223,11 +257,59 @@ impl<'a> Simulation<'a> {
             read_until: 0.0,
             repeated: 0,
             began: Instant::now(),
+            wish: Request::None,
+            request: Request::None,
+            stopping: false,
+            resumed: false,
             options,
             model,
             device,
             ranks,
         })
+    }
+
+    /// One rank of a run that goes on from a state: `setup` has the particles of that moment.
+    ///
+    /// # Errors
+    /// As [`Simulation::among`], or if the state is of another run.
+    pub fn resume(
+        model: &'a Model,
+        device: &'a Device,
+        setup: &Setup,
+        comm: &'a dyn Communicator,
+        options: Options<'a>,
+        state: &RunState,
+    ) -> Result<Simulation<'a>, SimulationError> {
+        let mut simulation = Simulation::among(model, device, setup, comm, options)?;
+        simulation.clock.restore(&state.clock)?;
+        simulation.ladder.restore(&state.ladder)?;
+        simulation.averages.restore(&state.averages)?;
+        simulation.account.restore(&model.plan, &state.account)?;
+        simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
+        simulation.demands = state.demands.iter().copied().collect();
+        simulation.submitted = state.submitted as usize;
+        simulation.next_row = state.next_row;
+        simulation.next_snapshot = state.next_snapshot;
+        simulation.read_until = state.read_until;
+        simulation.repeated = state.repeated;
+        simulation.resumed = true;
+        Ok(simulation)
+    }
+
+    fn state(&self) -> RunState {
+        RunState {
+            clock: self.clock.state(),
+            ladder: self.ladder.state(),
+            averages: self.averages.state(),
+            account: self.account.state(),
+            inflow: self.inflow.state(),
+            demands: self.demands.iter().copied().collect(),
+            submitted: self.submitted as u64,
+            next_row: self.next_row,
+            next_snapshot: self.next_snapshot,
+            read_until: self.read_until,
+            repeated: self.repeated,
+        }
     }
 
     /// Runs to the end of the scene.
@@ -245,6 +327,10 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.began = Instant::now();
+        if self.resumed {
+            return Ok(());
+        }
         let at_start = self.measure()?;
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
@@ -265,6 +351,13 @@ impl<'a> Simulation<'a> {
         }
         while self.flying.len() >= AHEAD {
             self.read_oldest(observer)?;
+        }
+        self.wish = self.wish.max(observer.request(self.clock.steps));
+        if self.request != Request::None {
+            self.checkpoint(observer)?;
+            if self.stopping {
+                return Ok(false);
+            }
         }
         self.submit_next()?;
         if self.snapshot_due() {
@@ -305,6 +398,23 @@ impl<'a> Simulation<'a> {
             repeated: self.repeated,
             step_range: self.account.step_range,
             stepping_seconds,
+        })
+    }
+
+    /// A checkpoint, with nothing under way.
+    fn checkpoint(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.read_all(observer)?;
+        self.stopping = self.request == Request::CheckpointAndStop;
+        (self.wish, self.request) = (Request::None, Request::None);
+        let own = self.subdomain.particles(self.device)?;
+        let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
+        observer.checkpoint(&Moment {
+            step: self.clock.steps,
+            time: self.clock.time(),
+            particles: self.model.plan.initial_particles + entered,
+            state: &self.state(),
+            own: &own,
+            comm: self.ranks.comm(),
         })
     }
 
@@ -382,7 +492,8 @@ impl<'a> Simulation<'a> {
     fn reduce(&mut self, mut flight: InFlight) -> Result<InFlight, SimulationError> {
         if let Pending::OnDevice(readback) = flight.tallies {
             let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
-            let (mut sums, maxima) = own.to_words();
+            let (mut sums, mut maxima) = own.to_words();
+            maxima.push(self.wish.weight());
             let seconds = self.step_seconds(&flight.phases, &stamps);
             sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
             let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
@@ -402,11 +513,13 @@ impl<'a> Simulation<'a> {
         match tallies {
             Pending::OnDevice(readback) => {
                 let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+                self.request = self.request.max(self.wish);
                 Ok((own, stamps, Vec::new()))
             }
             Pending::Reducing(own, stamps, reduction) => {
                 let (mut sums, maxima) = self.ranks.comm().finish_reduction(reduction)?;
                 let loads = Load::from_words(&mut sums, self.ranks.comm().size());
+                self.request = self.request.max(Request::of_weight(maxima.get(2).copied().unwrap_or(0)));
                 Ok((all_tallies(&own, &sums, &maxima)?, stamps, loads))
             }
         }
