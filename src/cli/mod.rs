@@ -14,6 +14,7 @@ mod plan;
 mod run;
 mod schema;
 mod settings;
+mod sweep;
 mod terminal;
 
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
     let quiet = arguments.quiet;
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
+        Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),
