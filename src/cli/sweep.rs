@@ -28,9 +28,12 @@ const RUNS_FOLDER: &str = "runs";
 
 pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
     let plan = SweepPlan::new(raw)?;
+    let emulating = plan.raw.emulation.emulate;
+    // Earlier results are removed once it is clear that there can be others.
+    let device = emulating.then(|| Device::open(plan.raw.gpu.as_deref())).transpose()?;
     let folder = OutputFolder::create(&plan.folder, plan.raw.force)?;
     folder.write_text(SCENE_FILE, &to_toml(&plan.scene))?;
-    let emulated = if plan.raw.emulation.emulate { Some(plan.emulate()?) } else { None };
+    let emulated = device.map(|device| plan.emulate(&device)).transpose()?;
     let measured = plan.run(folder.path())?;
     let points = emulated.as_ref().map_or(&[][..], |emulated| &emulated.points);
     let text = plan.text(&measured, emulated.as_ref());
@@ -71,6 +74,7 @@ impl SweepPlan {
     fn new(raw: SweepArguments) -> Result<SweepPlan, CliError> {
         check(&raw)?;
         let mut scene = scene_of(&raw.scene)?;
+        model_of(&raw.scene.scene, scene.clone())?;
         // They would be timed.
         scene.output.snapshots = 0;
         let path = &raw.scene.scene;
@@ -157,9 +161,8 @@ impl SweepPlan {
         words.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect()
     }
 
-    fn emulate(&self) -> Result<Emulation, CliError> {
+    fn emulate(&self, device: &Device) -> Result<Emulation, CliError> {
         let path = &self.raw.scene.scene;
-        let device = Device::open(self.raw.gpu.as_deref())?;
         let (network, gpu) = assumed(&self.raw.emulation);
         let by = match self.raw.tuning.balance_by {
             BalanceBy::Cost => By::Cost,
@@ -172,16 +175,16 @@ impl SweepPlan {
         let mut among = model_of(path, self.scene.clone())?;
         among.plan.steps_per_interval = EMULATED_STEPS;
         let several = self.devices.iter().any(|&devices| devices > 1);
-        let shared = several.then(|| Setup::new(&among, &device, 2, None)).transpose()?;
+        let shared = several.then(|| Setup::new(&among, device, 2, None)).transpose()?;
         let mut of_pairs: Vec<Vec<(f64, Emulated)>> = Vec::new();
         for (devices, strategy) in self.pairs(&self.devices) {
             let model = if devices == 1 { &alone } else { &among };
-            let own = if devices == 1 { Some(Setup::new(model, &device, 1, None)?) } else { None };
+            let own = if devices == 1 { Some(Setup::new(model, device, 1, None)?) } else { None };
             let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
             let mut states = Vec::new();
             for state in states_of(model) {
                 tracing::info!("{}: {devices} subdomains, {}", state.name, strategy.title());
-                states.push((state.steps, emulate(&state, &device, setup, devices, strategy, &effort)?));
+                states.push((state.steps, emulate(&state, device, setup, devices, strategy, &effort)?));
             }
             of_pairs.push(states);
         }
@@ -299,7 +302,7 @@ fn check(raw: &SweepArguments) -> Result<(), CliError> {
         }
     }
     let bandwidth = emulation.bandwidth_gbs;
-    if !(bandwidth > 0.0) {
+    if bandwidth.is_nan() || bandwidth <= 0.0 {
         let expected = "a number above 0";
         return Err(CliError::SweepFigure { option: "--bandwidth-gbs", found: bandwidth, expected });
     }
