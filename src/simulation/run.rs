@@ -24,13 +24,11 @@ use super::ladder::{Demand, Ladder};
 use super::model::Model;
 use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::{Setup, Shuffle};
+use super::tuning::Tuner;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
-/// Rounds of collisions between two exchanges, unless said otherwise: the halo has twice as many layers.
-const HALO_ROUNDS: u32 = 2;
-
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
@@ -40,7 +38,8 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
-    /// Rounds of collisions between two exchanges of ghosts; a divisor of the plan's rounds wastes least.
+    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
+    /// many layers of cells.
     pub halo_rounds: Option<u32>,
     pub balance: BalanceOptions,
 }
@@ -142,6 +141,7 @@ pub struct Simulation<'a> {
     /// `None` on a rank alone, and where particles are dealt out by their ids.
     decomposition: Option<Decomposition>,
     balance: Balance,
+    tuner: Tuner,
     inflow: Inflow,
     clock: Clock,
     ladder: Ladder,
@@ -205,7 +205,7 @@ impl<'a> Simulation<'a> {
         let (size, rank) = (comm.size() as u32, comm.rank() as u32);
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
-            let rounds = options.halo_rounds.unwrap_or(HALO_ROUNDS).clamp(1, plan.rounds.max(1));
+            let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
             let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
             let cut = Decomposition::new(plan, comm, rounds, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
@@ -226,6 +226,7 @@ impl<'a> Simulation<'a> {
             },
             decomposition,
             balance: Balance::new(options.balance, comm.size()),
+            tuner: Tuner::new(plan.rounds, options.halo_rounds),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -428,6 +429,9 @@ impl<'a> Simulation<'a> {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
             let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
             self.exchange.rebalanced(seconds);
+            if decomposition.set_rounds(self.tuner.next()) {
+                decomposition.apply(self.device, &mut self.subdomain, &mut self.exchange)?;
+            }
         }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
@@ -533,6 +537,10 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        if self.decomposition.is_some() {
+            let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
+            self.tuner.measured(slowest, interval.steps, interval.particles);
+        }
         self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
@@ -565,6 +573,7 @@ impl<'a> Simulation<'a> {
         strayed: bool,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
+        self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
         let mut later = Vec::new();
         for flight in std::mem::take(&mut self.flying) {

@@ -182,7 +182,7 @@ mod tests {
             recorder.row(&row(model, k)).unwrap();
             if k % 2 == 0 {
                 let particle = GpuParticle { position: [k as u32; 3], ..GpuParticle::default() };
-                recorder.snapshot(1e-3 * k as f64, &vec![particle; k]).unwrap();
+                recorder.snapshot(1e-3 * k as f64, &vec![particle; k], &vec![0; k]).unwrap();
             }
         }
         recorder.progress(0.0, 0, 0);
