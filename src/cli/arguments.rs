@@ -44,6 +44,8 @@ impl Arguments {
 pub enum Verb {
     /// Run a scene
     Run(RunArguments),
+    /// Split the particles of a checkpoint into more and smaller ones; opens no device
+    Refine(RefineArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -131,6 +133,23 @@ pub enum Balance {
 pub enum BalanceBy {
     Cost,
     Particles,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct RefineArguments {
+    /// The folder of the run, or one of its checkpoints
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub from: PathBuf,
+    /// How many particles each becomes
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(2..(1 << 28)))]
+    pub times: u64,
+    /// The folder of the refined run [default: beside the run's, as <name>-x<K>]
+    #[arg(short, long, value_name = "NEWDIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than an earlier run's results
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 
 use crate::gpu::GpuError;
-use crate::output::OutputError;
+use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
 use crate::scene::SceneError;
-use crate::simulation::{ModelError, SimulationError};
+use crate::simulation::{ModelError, RefineError, SimulationError};
 
 pub const BAD_INPUT: u8 = 2;
 pub const DEVICE_TROUBLE: u8 = 3;
@@ -45,6 +45,15 @@ pub enum CliError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Refine(#[from] RefineError),
+    #[error("{}: this is the folder of the run to be refined", path.display())]
+    #[diagnostic(help("name another with --out: the refined run is a run of its own"))]
+    RefinedOntoItself { path: PathBuf },
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
     #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
@@ -87,6 +96,9 @@ impl CliError {
             | CliError::Model { .. }
             | CliError::Check { .. }
             | CliError::Output(_)
+            | CliError::Checkpoint(_)
+            | CliError::Refine(_)
+            | CliError::RefinedOntoItself { .. }
             | CliError::Threshold { .. }
             | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)

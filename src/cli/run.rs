@@ -7,7 +7,7 @@ mod chart;
 mod devices;
 mod recorder;
 mod reference;
-mod table;
+pub(super) mod table;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
