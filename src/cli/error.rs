@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 
 use crate::gpu::GpuError;
-use crate::output::OutputError;
+use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
 use crate::scene::SceneError;
 use crate::simulation::{ModelError, SimulationError};
@@ -45,6 +45,14 @@ pub enum CliError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("--steps {asked}: the run has done {done} steps already")]
+    #[diagnostic(help("--steps counts from the start of the run; leave it out to go on to the end of the scene"))]
+    StepsDone { asked: u64, done: u64 },
+    #[error("the system does not let signals be caught: {0}")]
+    Signals(std::io::Error),
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
     #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
@@ -87,6 +95,9 @@ impl CliError {
             | CliError::Model { .. }
             | CliError::Check { .. }
             | CliError::Output(_)
+            | CliError::Checkpoint(_)
+            | CliError::StepsDone { .. }
+            | CliError::Signals(_)
             | CliError::Threshold { .. }
             | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)

@@ -11,6 +11,7 @@ mod completions;
 mod error;
 mod man;
 mod plan;
+mod resume;
 mod run;
 mod schema;
 mod settings;
@@ -50,6 +51,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
     let quiet = arguments.quiet;
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
+        Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),

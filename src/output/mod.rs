@@ -30,7 +30,7 @@ pub use checkpoint::{
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
+    AUDIT_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
     SNAPSHOT_FOLDER,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
