@@ -54,6 +54,11 @@ pub enum CliError {
     #[error("{}: this is the folder of the run to be refined", path.display())]
     #[diagnostic(help("name another with --out: the refined run is a run of its own"))]
     RefinedOntoItself { path: PathBuf },
+    #[error("--steps {asked}: the run has done {done} steps already")]
+    #[diagnostic(help("--steps counts from the start of the run; leave it out to go on to the end of the scene"))]
+    StepsDone { asked: u64, done: u64 },
+    #[error("the system does not let signals be caught: {0}")]
+    Signals(std::io::Error),
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
     #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
@@ -99,6 +104,8 @@ impl CliError {
             | CliError::Checkpoint(_)
             | CliError::Refine(_)
             | CliError::RefinedOntoItself { .. }
+            | CliError::StepsDone { .. }
+            | CliError::Signals(_)
             | CliError::Threshold { .. }
             | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)

@@ -12,6 +12,7 @@ mod error;
 mod man;
 mod plan;
 mod refine;
+mod resume;
 mod run;
 mod schema;
 mod settings;
@@ -52,6 +53,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
         Verb::Refine(raw) => refine::refine(raw),
+        Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),

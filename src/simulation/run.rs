@@ -38,6 +38,8 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
+    /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
+    pub checkpoint_at_stop: bool,
     /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
     /// many layers of cells.
     pub halo_rounds: Option<u32>,
@@ -92,6 +94,8 @@ pub struct Moment<'a> {
     /// Of this rank.
     pub own: &'a [GpuParticle],
     pub comm: &'a dyn Communicator,
+    /// The run stops here because it was asked to.
+    pub stopping: bool,
 }
 
 /// What a run leaves.
@@ -354,6 +358,9 @@ impl<'a> Simulation<'a> {
     /// As [`Simulation::run`].
     pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
+        if self.options.checkpoint_at_stop && self.stopped() && !self.stopping && !self.clock.done() {
+            self.checkpoint(observer)?;
+        }
         if self.averages.ready() {
             self.emit_row(observer)?;
         }
@@ -394,6 +401,7 @@ impl<'a> Simulation<'a> {
             state: &self.state(),
             own: &own,
             comm: self.ranks.comm(),
+            stopping: self.stopping,
         })
     }
 
