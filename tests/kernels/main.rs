@@ -35,6 +35,9 @@ fn every_kernel_has_its_test() {
         "match_pairs",
         "neighbours",
         "order",
+        "pack",
+        "pack_updates",
+        "receive",
         "reset",
         "scan_cells",
         "scan_chunks",
@@ -44,6 +47,7 @@ fn every_kernel_has_its_test() {
         "settle",
         "tally",
         "wall_times",
+        "weigh",
     ];
     let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);

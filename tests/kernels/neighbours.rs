@@ -44,13 +44,12 @@ fn crowd(seed: u32) -> Crowd {
     rig.put("cells", &of);
     rig.put("neighbour_count", &vec![9u32; COUNT]);
     rig.put("screened", &vec![0u32; COUNT]);
-    rig.step(GpuStep { count: COUNT as u32, ..GpuStep::default() });
     Crowd { world, middles, rig }
 }
 
 impl Crowd {
     fn run(&mut self, room: usize) -> Vec<Vec<u32>> {
-        self.rig.constant("LIST", room as f64);
+        self.rig.step(GpuStep { count: COUNT as u32, list: room as u32, ..GpuStep::default() });
         self.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
         self.rig.run("neighbours", COUNT);
         let flat: Vec<u32> = self.rig.get("neighbours", room * COUNT);
