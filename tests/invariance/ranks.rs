@@ -59,27 +59,37 @@ fn all_ways() -> Vec<Way> {
     ways
 }
 
-fn rebalanced(runs: &[Run]) -> usize {
-    runs.iter().flat_map(|run| &run.outcome.balance).filter(|record| record.rebalanced.is_some()).count()
+fn rebalanced(run: &Run) -> usize {
+    run.outcome.balance.iter().filter(|record| record.rebalanced.is_some()).count()
 }
 
 /// Inflow, two gases, two chambers, an inner box with a hole, and steps that change.
 #[test]
 fn tank_has_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&tank(0), &some_ways());
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(3), ..Way::new(4, Forced { seed: 2 }, 2) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(7, Initial, 4) },
+    ];
+    let runs = same(&tank(0), &ways);
     let [finest, coarsest] = runs[0].outcome.step_range;
     assert!(coarsest > 1.5 * finest, "the step does not change");
-    assert!(rebalanced(&runs) > 5, "the cuts hardly move");
+    assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
     assert!(runs[0].outcome.collisions > 1000);
 }
 
 /// With the impulse on its walls.
 #[test]
 fn box_has_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&gas_box(), &some_ways());
+    let ways = [
+        Way::new(2, Off, 1),
+        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way::new(8, Dynamic, 8),
+    ];
+    let runs = same(&gas_box(), &ways);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
-    assert!(runs[2].outcome.traffic.messages > 1000 && runs[2].outcome.traffic.bytes > 100_000);
+    assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
 }
 
 /// Free flight is shared out by ids.
@@ -91,13 +101,13 @@ fn effusion_has_the_same_bits_on_any_number_of_ranks() {
 /// Pairs on the two sides of a plate, and in its hole, beside cuts through it.
 #[test]
 fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
-    same(&plate(), &some_ways());
+    same(&plate(), &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)]);
 }
 
 /// Intervals are run again with longer lists, after the cuts have moved.
 #[test]
 fn lists_that_grow_among_ranks_change_no_bit() {
-    let ways = [Way::new(2, Off, 2), Way::new(5, Forced { seed: 4 }, 1), Way::new(8, Dynamic, 4)];
+    let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1)];
     let runs = same(&dense(1), &ways);
     assert!(runs.iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
 }
@@ -105,14 +115,16 @@ fn lists_that_grow_among_ranks_change_no_bit() {
 /// Buffers of particles, newborns, messages and updates grow on the way.
 #[test]
 fn a_burst_near_a_cut_changes_no_bit() {
-    let ways = [Way::new(2, Off, 8), Way::new(3, Initial, 1), Way::new(8, Forced { seed: 5 }, 2)];
+    let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 5 }, 2)];
     same(&burst(), &ways);
 }
 
-/// A look at the state brings it to one rank and back to none.
+/// A look at the state by one rank moves no particle.
 #[test]
 fn snapshots_among_ranks_are_those_of_one() {
-    let runs = same(&tank(5), &[Way::new(4, Forced { seed: 6 }, 2)]);
+    let mut model = gas_box();
+    model.scene.output.snapshots = 5;
+    let runs = same(&model, &[Way::new(4, Forced { seed: 6 }, 2)]);
     assert!(runs.iter().all(|run| run.snapshots.len() > 3));
 }
 
