@@ -145,9 +145,8 @@ fn a_spoilt_message_is_seen() {
     let world = World::new(&model);
     assert_eq!((model.plan.rounds, model.plan.steps_per_interval), (8, 32), "what the faults are made for");
     let way = Way::new(2, Off, 1);
-    let outcome = |fault: Fault| {
-        world.try_run(&way, Some(&*spoiling(fault))).map(|run| difference(&alone, &Bits::of(&run)))
-    };
+    let outcome =
+        |fault: Fault| world.try_run(&way, Some(&*spoiling(fault))).map(|run| difference(&alone, &Bits::of(&run)));
     assert_eq!(outcome(Fault::None), Ok(None));
     for fault in [Fault::LoseUpdates, Fault::AlterUpdates, Fault::LoseParticles] {
         let found = outcome(fault);

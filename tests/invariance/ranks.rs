@@ -81,11 +81,8 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
 /// With the impulse on its walls.
 #[test]
 fn box_has_the_same_bits_on_any_number_of_ranks() {
-    let ways = [
-        Way::new(2, Off, 1),
-        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) },
-        Way::new(8, Dynamic, 8),
-    ];
+    let ways =
+        [Way::new(2, Off, 1), Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(8, Dynamic, 8)];
     let runs = same(&gas_box(), &ways);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
@@ -101,7 +98,10 @@ fn effusion_has_the_same_bits_on_any_number_of_ranks() {
 /// Pairs on the two sides of a plate, and in its hole, beside cuts through it.
 #[test]
 fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
-    same(&plate(), &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)]);
+    same(
+        &plate(),
+        &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)],
+    );
 }
 
 /// Intervals are run again with longer lists, after the cuts have moved.

@@ -9,8 +9,10 @@ mod blocks;
 mod bounce;
 mod choose;
 mod closed;
+mod exchange;
 mod fly;
 mod lists;
+mod local;
 mod match_pairs;
 mod neighbours;
 mod philox;
@@ -20,6 +22,7 @@ mod screen;
 mod settle;
 mod sort;
 mod tally;
+mod weigh;
 
 /// No kernel goes untested: the table of kernels is the list of those the files here run.
 #[test]
