@@ -6,8 +6,8 @@ use corpuscle::simulation::{Model, Options};
 
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
-use crate::orders::shuffled;
-use crate::scenes::{burst, dense, effusion, gas_box, plate, tank};
+use crate::orders::{shuffled, with_fast_ones};
+use crate::scenes::{burst, dense, effusion, gas_box, plate, tank, tube};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -126,6 +126,25 @@ fn snapshots_among_ranks_are_those_of_one() {
     model.scene.output.snapshots = 5;
     let runs = same(&model, &[Way::new(4, Forced { seed: 6 }, 2)]);
     assert!(runs.iter().all(|run| run.snapshots.len() > 3));
+}
+
+/// A particle that flies beyond the peers of its rank is not lost: the interval is run again with everyone as a peer.
+#[test]
+fn particles_that_stray_beyond_the_peers_change_no_bit() {
+    let model = tube();
+    let alone = run(&model, Options { shuffle: Some(&with_fast_ones), ..Options::default() });
+    assert!(alone.outcome.steps < u64::from(model.plan.tally_every), "speeds are tallied");
+    assert_eq!(alone.outcome.repeated, 0);
+    let world = World::new(&model);
+    for way in [Way::new(12, Off, 1), Way::new(12, Initial, 2), Way::new(2, Off, 1)] {
+        let way = Way { order: Some(&with_fast_ones), ..way };
+        let among = world.run(&way);
+        assert_same(&way.name(), &Bits::of(&alone), &Bits::of(&among));
+        // Of two ranks each is the other's peer.
+        assert_eq!(among.outcome.repeated > 0, way.ranks > 2, "{}", way.name());
+    }
+    // Without the fast ones nobody strays.
+    assert_eq!(world.run(&Way::new(12, Off, 1)).outcome.repeated, 0);
 }
 
 #[test]

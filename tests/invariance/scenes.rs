@@ -60,3 +60,15 @@ pub fn dense(seed: u64) -> Model {
          [model]\nparticles = 1500\noccupancy = 0.4\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 0\n"
     ))
 }
+
+/// Seven steps of thin gas in a long tube: fewer than between two tallies, so speeds may be beyond their range.
+pub fn tube() -> Model {
+    let mut model = model(
+        "end_time = 1e-5\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"tube\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.4, 0.05, 0.05]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [model]\nparticles = 2500\noccupancy = 0.005\n[output]\nrows = 1\nsnapshots = 0\n",
+    );
+    model.scene.end_time = 7.0 * model.plan.time_step;
+    Model::new(model.scene).expect("a model")
+}
