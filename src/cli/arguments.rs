@@ -115,7 +115,7 @@ pub struct SharingArguments {
     /// What is balanced: the measured cost, or the number of particles
     #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
     pub balance_by: BalanceBy,
-    /// Rounds of collisions between two exchanges of the subdomains' borders: more rounds, wider borders
+    /// Rounds of collisions between two exchanges of borders: more are fewer messages and wider borders [default: what proves fastest]
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
     pub halo_rounds: Option<u32>,
 }

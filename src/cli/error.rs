@@ -70,9 +70,9 @@ impl CliError {
 
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Gpu(_) | CliError::Rank(_) | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => {
-                DEVICE_TROUBLE
-            },
+            CliError::Gpu(_)
+            | CliError::Rank(_)
+            | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => DEVICE_TROUBLE,
             CliError::Audit { .. }
             | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
             CliError::Simulation(
@@ -80,6 +80,7 @@ impl CliError {
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
                 | SimulationError::Partition(_)
+                | SimulationError::Resume(_)
                 | SimulationError::Observer(_),
             )
             | CliError::Scene(_)

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{AdapterDescription, Device};
 use crate::output::{AdapterRecord, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, grouped};
-use crate::scene::to_toml;
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
+use crate::scene::to_toml;
 use crate::simulation::{Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits};
 
 use super::CliError;
@@ -72,8 +72,9 @@ fn with_ranks(raw: RunArguments, quiet: bool, comm: &dyn Communicator) -> Result
         done
     })?;
     // The cause rather than what the others heard of it.
-    let (heard, mut causes): (Vec<_>, Vec<_>) =
-        results.into_iter().partition(|result| matches!(result, Ok(()) | Err(CliError::Rank(_)) | Err(CliError::Simulation(SimulationError::Rank(_)))));
+    let (heard, mut causes): (Vec<_>, Vec<_>) = results.into_iter().partition(|result| {
+        matches!(result, Ok(()) | Err(CliError::Rank(_)) | Err(CliError::Simulation(SimulationError::Rank(_))))
+    });
     causes.extend(heard.into_iter().filter(Result::is_err));
     causes.into_iter().next().unwrap_or(Ok(()))
 }

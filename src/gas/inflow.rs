@@ -21,6 +21,8 @@
 //! draws are keyed on the id only; the newborns do not depend on how the time is cut by
 //! [`Inflow::take_until`].
 
+use serde::{Deserialize, Serialize};
+
 use super::curve::{FlowIntegral, value_held};
 use super::{Draws, Particle, Purpose, thermo};
 use crate::scene::{GAS_CONSTANT, Gas, Jet, Orifice};
@@ -39,7 +41,7 @@ pub struct Newborn {
     pub particle: Particle,
 }
 
-/// All the inflow of a run, in order. A clone is a checkpoint: the state is plain data.
+/// All the inflow of a run, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inflow {
     sources: Vec<Source>,
@@ -50,6 +52,31 @@ pub struct Inflow {
     first_id: u32,
     entered: u64,
     enthalpy: f64,
+}
+
+/// What has entered so far, beside what the scene says: with it a new inflow of the same scene goes on to the bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InflowState {
+    /// Particles taken of each stream: orifice-major, then the gases of its mixture.
+    taken: Vec<u64>,
+    /// J, of each orifice.
+    debts: Vec<f64>,
+    /// J.
+    enthalpy: f64,
+}
+
+/// A state that is not one of this inflow.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum InflowStateError {
+    #[error(
+        "the state has {found_streams} flows of {found_orifices} orifices, \
+         the scene has {expected_streams} of {expected_orifices}"
+    )]
+    Length { found_streams: usize, found_orifices: usize, expected_streams: usize, expected_orifices: usize },
+    #[error("flow {stream} of the state has let {taken} particles in, the scene has {count} for it in all")]
+    Taken { stream: usize, taken: u64, count: u64 },
+    #[error("the energies of the state are not numbers")]
+    Energy,
 }
 
 /// One orifice and its debt.
@@ -166,6 +193,48 @@ impl Inflow {
             newborns.push(self.emit(stream, time));
         }
         newborns
+    }
+
+    pub fn state(&self) -> InflowState {
+        InflowState {
+            taken: self.streams.iter().map(|stream| stream.taken).collect(),
+            debts: self.sources.iter().map(|source| source.debt).collect(),
+            enthalpy: self.enthalpy,
+        }
+    }
+
+    /// Puts an inflow of the same scene where [`state`](Self::state) found one; on an error nothing is changed.
+    ///
+    /// # Errors
+    /// If the state is that of another scene.
+    pub fn restore(&mut self, state: &InflowState) -> Result<(), InflowStateError> {
+        if (state.taken.len(), state.debts.len()) != (self.streams.len(), self.sources.len()) {
+            return Err(InflowStateError::Length {
+                found_streams: state.taken.len(),
+                found_orifices: state.debts.len(),
+                expected_streams: self.streams.len(),
+                expected_orifices: self.sources.len(),
+            });
+        }
+        for (stream, (&taken, &Stream { count, .. })) in state.taken.iter().zip(&self.streams).enumerate() {
+            if taken > count {
+                return Err(InflowStateError::Taken { stream, taken, count });
+            }
+        }
+        if !state.debts.iter().chain([&state.enthalpy]).all(|energy| energy.is_finite()) {
+            return Err(InflowStateError::Energy);
+        }
+        for (source, &debt) in self.sources.iter_mut().zip(&state.debts) {
+            (source.debt, source.left) = (debt, 0);
+        }
+        for (stream, &taken) in self.streams.iter_mut().zip(&state.taken) {
+            stream.taken = taken;
+            stream.next = if taken < stream.count { stream.time_of(taken) } else { None };
+            self.sources[stream.source].left += stream.count - taken;
+        }
+        self.entered = state.taken.iter().sum();
+        self.enthalpy = state.enthalpy;
+        Ok(())
     }
 
     fn by_gas(&self, number: impl Fn(&Stream) -> u64) -> Vec<u64> {

@@ -15,7 +15,7 @@ pub mod thermo;
 pub use control_volume::{Collisions, ControlVolume, Reservoir, Source, State, moles_at};
 pub use curve::{FlowIntegral, flow_times_temperature, value_held, value_inside};
 pub use discharge::{Side, exchange};
-pub use inflow::{Inflow, Newborn};
+pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
 pub use initial::{FillError, Filling, fill};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};

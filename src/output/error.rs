@@ -15,6 +15,38 @@ pub enum OutputError {
     FolderInUse { path: PathBuf, foreign: String },
     #[error("{path} is a file, not a folder; choose another output folder", path = path.display())]
     NotAFolder { path: PathBuf },
+    #[error("{path} is no folder of a run: it has no {marker}; name the folder that the run was given as --out",
+        path = path.display())]
+    NotARun { path: PathBuf, marker: &'static str },
+    #[error(
+        "{path} has {found} bytes, it had {expected} when the checkpoint was written; \
+         put the file of that run back, or start the run anew",
+        path = path.display()
+    )]
+    Shorter { path: PathBuf, found: u64, expected: u64 },
+    #[error(
+        "the first {bytes} bytes of {path} were altered since the checkpoint was written; \
+         put the file of that run back, or start the run anew",
+        path = path.display()
+    )]
+    Altered { path: PathBuf, bytes: u64 },
+    #[error(
+        "{path} has {found} rows in what the checkpoint keeps of it, there were {expected}; \
+         the checkpoint is of another run",
+        path = path.display()
+    )]
+    RowCount { path: PathBuf, found: u64, expected: u64 },
+    #[error(
+        "the columns of {path} are not those of the scene; the checkpoint is of another run",
+        path = path.display()
+    )]
+    OtherColumns { path: PathBuf },
+    #[error(
+        "{path} has {found} bytes, it was written with {expected}; \
+         put the file of that run back, or remove it to go on without it",
+        path = path.display()
+    )]
+    SnapshotLength { path: PathBuf, found: u64, expected: u64 },
     #[error("the history has two columns called {header:?}")]
     DuplicateColumn { header: String },
     #[error("a history row has {found} values, the table has {expected} columns")]

@@ -2,12 +2,13 @@
 //!
 //! A folder is ours if it carries the marker file that [`OutputFolder::create`] leaves in it. An earlier run's
 //! results are removed before a new run starts, so that no stale snapshot stays beside new ones; nothing
-//! that a run does not write is ever removed or, without `force`, written beside.
+//! that a run does not write is ever removed or, without `force`, written beside. Checkpoints are results too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
+use super::checkpoint::{is_checkpoint_file, is_checkpoint_folder};
 use super::error::{PARTIAL_SUFFIX, write_atomically};
 
 pub const HISTORY_FILE: &str = "history.csv";
@@ -16,11 +17,12 @@ pub const SCENE_FILE: &str = "scene.toml";
 pub const ENVIRONMENT_FILE: &str = "environment.json";
 pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
+pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
-/// Everything a run writes at the top of its folder, apart from the snapshots.
+/// Everything a run writes at the top of its folder, apart from the snapshots and checkpoints.
 const RESULT_FILES: [&str; 6] =
     [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE];
 
@@ -47,13 +49,37 @@ impl OutputFolder {
         for file in &contents.results {
             fs::remove_file(file).map_err(OutputError::io("remove", file))?;
         }
+        for checkpoint in &contents.checkpoints {
+            // With `force` a folder may hold what is the user's: it stays.
+            match fs::remove_dir(checkpoint) {
+                Err(error) if error.kind() != std::io::ErrorKind::DirectoryNotEmpty => {
+                    return Err(OutputError::io("remove", checkpoint)(error));
+                }
+                _ => {}
+            }
+        }
         let folder = OutputFolder { path: path.to_path_buf() };
         folder.write_text(MARKER_FILE, "Results of a corpuscle run; the next run into this folder replaces them.\n")?;
         Ok(folder)
     }
 
+    /// The folder of a run that goes on; nothing in it is changed.
+    ///
+    /// Errors: no run wrote it.
+    pub fn open(path: &Path) -> Result<OutputFolder, OutputError> {
+        if !path.join(MARKER_FILE).is_file() {
+            return Err(OutputError::NotARun { path: path.to_path_buf(), marker: MARKER_FILE });
+        }
+        Ok(OutputFolder { path: path.to_path_buf() })
+    }
+
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Where the run's checkpoints are; made with the first.
+    pub fn checkpoints(&self) -> PathBuf {
+        self.path.join(CHECKPOINT_FOLDER)
     }
 
     /// Writes one of the result files (`PLAN_FILE`, ...) whole; returns its path. Panics on any other name.
@@ -70,13 +96,15 @@ impl OutputFolder {
 struct Contents {
     marked: bool,
     results: Vec<PathBuf>,
+    /// Folders of checkpoints, whole or not; their files are among the results.
+    checkpoints: Vec<PathBuf>,
     /// Names, sorted, of what no run writes.
     others: Vec<String>,
 }
 
 impl Contents {
     fn of(folder: &Path) -> Result<Contents, OutputError> {
-        let mut contents = Contents { marked: false, results: Vec::new(), others: Vec::new() };
+        let mut contents = Contents { marked: false, results: Vec::new(), checkpoints: Vec::new(), others: Vec::new() };
         for (name, path, kind) in entries(folder)? {
             if name == SNAPSHOT_FOLDER && kind.is_dir() {
                 for (inner, path, kind) in entries(&path)? {
@@ -86,6 +114,8 @@ impl Contents {
                         contents.others.push(format!("{name}/{inner}"));
                     }
                 }
+            } else if name == CHECKPOINT_FOLDER && kind.is_dir() {
+                contents.add_checkpoints(&path)?;
             } else if kind.is_file() && RESULT_FILES.contains(&name.trim_end_matches(PARTIAL_SUFFIX)) {
                 contents.marked |= name == MARKER_FILE;
                 contents.results.push(path);
@@ -95,6 +125,24 @@ impl Contents {
         }
         contents.others.sort();
         Ok(contents)
+    }
+
+    fn add_checkpoints(&mut self, folder: &Path) -> Result<(), OutputError> {
+        for (name, path, kind) in entries(folder)? {
+            if !(kind.is_dir() && is_checkpoint_folder(&name)) {
+                self.others.push(format!("{CHECKPOINT_FOLDER}/{name}"));
+                continue;
+            }
+            for (inner, file, kind) in entries(&path)? {
+                if kind.is_file() && is_checkpoint_file(&inner) {
+                    self.results.push(file);
+                } else {
+                    self.others.push(format!("{CHECKPOINT_FOLDER}/{name}/{inner}"));
+                }
+            }
+            self.checkpoints.push(path);
+        }
+        Ok(())
     }
 
     /// What forbids writing here, in words; `None` if the folder is empty or an earlier run's alone.
@@ -130,7 +178,7 @@ fn entries(folder: &Path) -> Result<Vec<(String, PathBuf, fs::FileType)>, Output
     list().map_err(OutputError::io("list", folder))
 }
 
-fn is_snapshot_file(name: &str) -> bool {
+pub(super) fn is_snapshot_file(name: &str) -> bool {
     let name = name.trim_end_matches(PARTIAL_SUFFIX);
     let numbered = name
         .strip_prefix("particles_")
@@ -167,6 +215,39 @@ mod tests {
         assert!(!path.join("snapshots/particles_000000.vtu").exists());
         assert!(!path.join(HISTORY_FILE).exists() && !path.join("plan.toml.partial").exists());
         assert!(path.join(MARKER_FILE).exists());
+    }
+
+    /// Checkpoints of an earlier run, whole or cut short, go with it: the new run must not be resumed from them.
+    #[test]
+    fn checkpoints_of_an_earlier_run_go_with_it() {
+        let dir = tempfile::tempdir().unwrap();
+        finished_run(dir.path());
+        for name in ["step-0000000064", "step-0000000128.partial"] {
+            let folder = dir.path().join(CHECKPOINT_FOLDER).join(name);
+            fs::create_dir_all(&folder).unwrap();
+            for file in ["manifest.toml", "state.bin", "particles-0003.bin"] {
+                fs::write(folder.join(file), "x").unwrap();
+            }
+        }
+        OutputFolder::create(dir.path(), false).unwrap();
+        assert_eq!(fs::read_dir(dir.path().join(CHECKPOINT_FOLDER)).unwrap().count(), 0);
+        // What is not a checkpoint's is the user's.
+        let mine = dir.path().join("checkpoints/step-0000000064/mine.txt");
+        fs::create_dir_all(mine.parent().unwrap()).unwrap();
+        fs::write(&mine, "mine").unwrap();
+        let error = OutputFolder::create(dir.path(), false).unwrap_err().to_string();
+        assert!(error.contains("checkpoints/step-0000000064/mine.txt"), "{error}");
+        OutputFolder::create(dir.path(), true).unwrap();
+        assert!(mine.exists());
+    }
+
+    #[test]
+    fn only_a_runs_folder_can_be_gone_on_with() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(matches!(OutputFolder::open(dir.path()), Err(OutputError::NotARun { .. })));
+        finished_run(dir.path());
+        OutputFolder::open(dir.path()).unwrap();
+        assert!(dir.path().join(HISTORY_FILE).exists());
     }
 
     #[test]

@@ -5,10 +5,13 @@
 //! system whole, so a killed run leaves every finished row.
 
 use std::fs::File;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::io::Read;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
 
 use super::OutputError;
+use super::appended::{AppendedFile, AppendedState};
 use super::error::write_atomically;
 use super::folder::HISTORY_FILE;
 
@@ -92,9 +95,13 @@ impl History {
 
     /// Errors name the file, the line and the column.
     pub fn read(path: &Path) -> Result<History, OutputError> {
+        History::from_csv(path, File::open(path).map_err(OutputError::io("open", path))?)
+    }
+
+    /// `path` stands in messages.
+    fn from_csv(path: &Path, text: impl Read) -> Result<History, OutputError> {
         let bad_row = |line: u64, problem: String| OutputError::BadRow { path: path.to_path_buf(), line, problem };
-        let file = File::open(path).map_err(OutputError::io("open", path))?;
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
         let headers: Vec<String> =
             reader.headers().map_err(|error| bad_row(1, error.to_string()))?.iter().map(str::to_owned).collect();
         if headers.is_empty() {
@@ -130,21 +137,49 @@ impl History {
 /// Writes `history.csv` as the run goes and keeps the table.
 #[derive(Debug)]
 pub struct HistoryWriter {
-    path: PathBuf,
-    file: File,
+    file: AppendedFile,
     history: History,
+}
+
+/// How far a history had got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HistoryState {
+    pub rows: u64,
+    pub file: AppendedState,
 }
 
 impl HistoryWriter {
     /// Starts `history.csv` in the existing folder `dir` with its header, replacing an earlier one.
     pub fn create(dir: &Path, columns: &[Column]) -> Result<HistoryWriter, OutputError> {
         let history = History::new(columns)?;
-        let path = dir.join(HISTORY_FILE);
-        let file = File::create(&path).map_err(OutputError::io("create", &path))?;
-        let mut writer = HistoryWriter { path, file, history };
+        let file = AppendedFile::create(&dir.join(HISTORY_FILE))?;
+        let mut writer = HistoryWriter { file, history };
         let header = csv_line(writer.history.headers.iter().map(String::as_str));
         writer.append(header)?;
         Ok(writer)
+    }
+
+    /// Goes on with the `history.csv` of `dir`: rows that were written after the state are dropped.
+    ///
+    /// # Errors
+    /// The file is missing, shorter than it was or altered, or its columns are others; then it is left as it is.
+    pub fn resume(dir: &Path, columns: &[Column], state: &HistoryState) -> Result<HistoryWriter, OutputError> {
+        let path = dir.join(HISTORY_FILE);
+        let (file, kept) = AppendedFile::resume(&path, state.file)?;
+        let history = History::from_csv(&path, kept.as_slice())?;
+        if history.headers != History::new(columns)?.headers {
+            return Err(OutputError::OtherColumns { path });
+        }
+        if history.rows.len() as u64 != state.rows {
+            let (found, expected) = (history.rows.len() as u64, state.rows);
+            return Err(OutputError::RowCount { path, found, expected });
+        }
+        Ok(HistoryWriter { file, history })
+    }
+
+    /// How far it has got, all of it on the disc.
+    pub fn state(&self) -> Result<HistoryState, OutputError> {
+        Ok(HistoryState { rows: self.history.rows.len() as u64, file: self.file.state()? })
     }
 
     /// Appends one row, in the order of the columns, to the file and to the table.
@@ -158,12 +193,13 @@ impl HistoryWriter {
     }
 
     pub fn path(&self) -> &Path {
-        &self.path
+        self.file.path()
     }
 
     fn append(&mut self, line: std::io::Result<Vec<u8>>) -> Result<(), OutputError> {
         // One unbuffered write per row: the row is the system's as soon as this returns.
-        line.and_then(|line| self.file.write_all(&line)).map_err(OutputError::io("write", &self.path))
+        let line = line.map_err(OutputError::io("write", self.file.path()))?;
+        self.file.append(&line)
     }
 }
 
@@ -218,6 +254,41 @@ mod tests {
         // The comparison can fail: one more row, other bytes.
         writer.row(&[1.0, 2.0, 3.0]).unwrap();
         assert_ne!(std::fs::read(writer.path()).unwrap(), running);
+    }
+
+    /// Whatever rows came after the checkpoint, the file and the table end as those of a run without interruption.
+    #[test]
+    fn a_resumed_history_ends_as_an_uninterrupted_one() {
+        let row = |k: usize| [k as f64 * 0.1, if k == 2 { f64::NAN } else { 1.0 / (k as f64 - 3.0) }, -0.0];
+        let whole = tempfile::tempdir().unwrap();
+        let mut uninterrupted = HistoryWriter::create(whole.path(), &columns()).unwrap();
+        (0..6).for_each(|k| uninterrupted.row(&row(k)).unwrap());
+        for (cut, lost) in [(0, 3), (3, 0), (3, 2), (6, 0)] {
+            let dir = tempfile::tempdir().unwrap();
+            let mut writer = HistoryWriter::create(dir.path(), &columns()).unwrap();
+            (0..cut).for_each(|k| writer.row(&row(k)).unwrap());
+            let state = writer.state().unwrap();
+            (0..lost).for_each(|k| writer.row(&[k as f64, 7.0, 7.0]).unwrap());
+            drop(writer);
+            let mut resumed = HistoryWriter::resume(dir.path(), &columns(), &state).unwrap();
+            (cut..6).for_each(|k| resumed.row(&row(k)).unwrap());
+            assert_eq!(std::fs::read(resumed.path()).unwrap(), std::fs::read(uninterrupted.path()).unwrap());
+            // The table too, by bits: a NaN is not equal to itself.
+            let bits = |history: &History| -> Vec<u64> { history.rows.concat().iter().map(|v| v.to_bits()).collect() };
+            assert_eq!(bits(resumed.history()), bits(uninterrupted.history()));
+        }
+    }
+
+    #[test]
+    fn a_history_of_other_columns_is_not_gone_on_with() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut writer = HistoryWriter::create(dir.path(), &columns()).unwrap();
+        writer.row(&[0.0, 1.0, 2.0]).unwrap();
+        let state = writer.state().unwrap();
+        let resumed = HistoryWriter::resume(dir.path(), &columns()[..2], &state);
+        assert!(matches!(resumed, Err(OutputError::OtherColumns { .. })));
+        let more = HistoryState { rows: 2, ..state };
+        assert!(matches!(HistoryWriter::resume(dir.path(), &columns(), &more), Err(OutputError::RowCount { .. })));
     }
 
     proptest! {

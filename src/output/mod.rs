@@ -1,12 +1,14 @@
-//! What a run leaves behind: its folder, the history table, snapshots, charts, the record of the
+//! What a run leaves behind: its folder, the history table, snapshots, checkpoints, charts, the record of the
 //! environment, the closing audit and phase table, and the progress display.
 //!
 //! Everything here takes plain data in SI units and knows neither devices nor the time loop. Numbers are
 //! written with the fewest digits that read back to the same bits, so equal runs leave equal bytes. Files
 //! that are rewritten or that must never be seen half done are written beside their place and renamed.
 
+mod appended;
 mod audit;
 mod chart;
+mod checkpoint;
 mod environment;
 mod error;
 mod folder;
@@ -18,15 +20,21 @@ mod table;
 mod ticks;
 mod vtk;
 
+pub use appended::{AppendedFile, AppendedState};
 pub use audit::{Audit, AuditLimits};
 pub use chart::{PALETTE, Series, line_chart};
+pub use checkpoint::{
+    Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, MeshRecord, Moment, Origin,
+    OutputState, RECORD_BYTES, forget_after, latest,
+};
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
+    CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
+    SNAPSHOT_FOLDER,
 };
-pub use history::{Column, History, HistoryWriter};
+pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use phases::PhaseTable;
 pub use progress::Progress;
-pub use snapshot::{ParticleRow, SnapshotWriter};
+pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
 pub use table::grouped;

@@ -30,6 +30,8 @@ pub struct Progress {
     /// Where the rates are measured from, and the one that will replace it.
     base: Sample,
     next_base: Sample,
+    /// Where this process took the run up.
+    first: Sample,
 }
 
 /// The run at one moment.
@@ -59,7 +61,16 @@ impl Progress {
             shown: Duration::ZERO,
             base: Sample::default(),
             next_base: Sample::default(),
+            first: Sample::default(),
         }
+    }
+
+    /// For a run that goes on with these totals; they count in no rate.
+    pub fn resume(end_time: f64, time: f64, steps: u64, particle_steps: u64) -> Progress {
+        let first = Sample { elapsed: Duration::ZERO, time, steps, particle_steps };
+        let mut progress = Progress::new(end_time);
+        (progress.base, progress.next_base, progress.first) = (first, first, first);
+        progress
     }
 
     /// To be called as often as convenient with the totals so far: simulated time (s), steps, and the sum
@@ -69,18 +80,18 @@ impl Progress {
         self.show(Sample { elapsed, time, steps, particle_steps });
     }
 
-    /// Ends the display and states the whole run's rates.
+    /// Ends the display and states this process's steps and rates.
     pub fn finish(&mut self, time: f64, steps: u64, particle_steps: u64) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
         let now = Sample { elapsed: self.started.elapsed(), time, steps, particle_steps };
-        let rates = now.rates_since(&Sample::default());
+        let rates = now.rates_since(&self.first);
         tracing::info!(
             "{} of {}, {} steps in {} ({}steps/s, {}particle-steps/s)",
             milliseconds(time),
             milliseconds(self.end_time),
-            grouped(steps),
+            grouped(steps.saturating_sub(self.first.steps)),
             duration(now.elapsed.as_secs_f64()),
             metric(rates.steps),
             metric(rates.particle_steps),
@@ -229,6 +240,16 @@ mod tests {
         let log = logged((0..20).map(second).chain((20..=40).map(slow)));
         let last = log.lines().last().unwrap();
         assert!(last.contains("13 min 00 s left"), "{log}");
+    }
+
+    /// What an earlier process did counts in no rate; counted, it would make the run look fast.
+    #[test]
+    fn a_resumed_run_starts_with_its_own_rates() {
+        let resumed = Progress::resume(0.1, 0.05, 5000, 100_000_000);
+        let after = Sample { elapsed: Duration::from_secs(5), time: 0.055, steps: 5500, particle_steps: 110_000_000 };
+        let expected = "55.00 ms of 100.00 ms, 100 steps/s, 2.00 M particle-steps/s, 45.0 s left";
+        assert_eq!(resumed.message(&after), expected);
+        assert_ne!(Progress::new(0.1).message(&after), expected);
     }
 
     #[test]

@@ -4,11 +4,14 @@
 //! Each particle is a vertex cell, so that thresholds and selections work on single particles. Positions
 //! are f64 because fixed-point positions hold 31 bits (specification, section 9); what is only looked at is f32.
 
+use std::fs;
 use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::folder::SNAPSHOT_FOLDER;
+use super::folder::{SNAPSHOT_FOLDER, is_snapshot_file};
 use super::vtk::{Array, DataSet, Section};
 
 /// One particle of a snapshot, SI.
@@ -29,8 +32,27 @@ pub struct ParticleRow {
 #[derive(Debug)]
 pub struct SnapshotWriter {
     folder: PathBuf,
-    /// Time (s) and file name of each snapshot so far.
-    written: Vec<(f64, String)>,
+    written: Vec<Written>,
+    /// So many of them are surely on the disc.
+    flushed: usize,
+}
+
+/// One snapshot.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Written {
+    /// s.
+    time: f64,
+    bytes: u64,
+}
+
+/// How far the snapshots had got.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SnapshotState {
+    written: Vec<Written>,
+}
+
+fn file_name(index: usize) -> String {
+    format!("particles_{index:06}.vtu")
 }
 
 impl SnapshotWriter {
@@ -38,17 +60,65 @@ impl SnapshotWriter {
     pub fn create(dir: &Path) -> Result<SnapshotWriter, OutputError> {
         let folder = dir.join(SNAPSHOT_FOLDER);
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
-        Ok(SnapshotWriter { folder, written: Vec::new() })
+        Ok(SnapshotWriter { folder, written: Vec::new(), flushed: 0 })
+    }
+
+    /// Goes on with the snapshots in `dir`: those that were written after the state are removed, and the list of them
+    /// is written anew. A snapshot that is no longer there is named in a warning and stays in the list.
+    ///
+    /// # Errors
+    /// A snapshot is not as long as it was; then nothing is changed.
+    pub fn resume(dir: &Path, state: &SnapshotState) -> Result<SnapshotWriter, OutputError> {
+        let mut writer = SnapshotWriter::create(dir)?;
+        for (index, Written { bytes, .. }) in state.written.iter().enumerate() {
+            let path = writer.folder.join(file_name(index));
+            match fs::metadata(&path) {
+                Ok(found) if found.len() == *bytes => {}
+                Ok(found) => {
+                    return Err(OutputError::SnapshotLength { path, found: found.len(), expected: *bytes });
+                }
+                Err(_) => tracing::warn!("{} is not there; the list of snapshots still names it", path.display()),
+            }
+        }
+        let kept: Vec<String> = (0..state.written.len()).map(file_name).collect();
+        for entry in fs::read_dir(&writer.folder).map_err(OutputError::io("list", &writer.folder))? {
+            let path = entry.map_err(OutputError::io("list", &writer.folder))?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name.starts_with("particles_") && is_snapshot_file(&name) && !kept.contains(&name) {
+                fs::remove_file(&path).map_err(OutputError::io("remove", &path))?;
+            }
+        }
+        writer.written.clone_from(&state.written);
+        writer.flushed = state.written.len();
+        if !writer.written.is_empty() {
+            writer.write_collection()?;
+        }
+        Ok(writer)
+    }
+
+    /// How far they have got, all of them on the disc.
+    pub fn state(&mut self) -> Result<SnapshotState, OutputError> {
+        for index in self.flushed..self.written.len() {
+            let path = self.folder.join(file_name(index));
+            fs::File::open(&path).and_then(|file| file.sync_all()).map_err(OutputError::io("flush", &path))?;
+        }
+        self.flushed = self.written.len();
+        Ok(SnapshotState { written: self.written.clone() })
+    }
+
+    /// s, of the last one.
+    pub fn last_time(&self) -> Option<f64> {
+        self.written.last().map(|written| written.time)
     }
 
     /// Writes the particles at `time` (s) in the order given and lists the file in the collection.
     /// Returns the new file's path.
     pub fn write(&mut self, time: f64, particles: &[ParticleRow]) -> Result<PathBuf, OutputError> {
-        let name = format!("particles_{:06}.vtu", self.written.len());
-        let path = self.folder.join(&name);
+        let path = self.folder.join(file_name(self.written.len()));
         let data = particle_data(time, particles);
         write_atomically(&path, |out| data.write(out))?;
-        self.written.push((time, name));
+        let bytes = fs::metadata(&path).map_err(OutputError::io("measure", &path))?.len();
+        self.written.push(Written { time, bytes });
         self.write_collection()?;
         Ok(path)
     }
@@ -82,7 +152,8 @@ impl SnapshotWriter {
             writeln!(out, r#"<?xml version="1.0"?>"#)?;
             writeln!(out, r#"<VTKFile type="Collection" version="1.0">"#)?;
             writeln!(out, "<Collection>")?;
-            for (time, name) in &self.written {
+            for (index, Written { time, .. }) in self.written.iter().enumerate() {
+                let name = file_name(index);
                 writeln!(out, r#"<DataSet timestep="{time}" part="0" file="{name}"/>"#)?;
             }
             writeln!(out, "</Collection>\n</VTKFile>")
@@ -272,6 +343,57 @@ mod tests {
             .collect();
         names.sort();
         assert_eq!(names, ["particles.pvd", "particles_000000.vtu", "particles_000001.vtu"]);
+    }
+
+    fn all_files(dir: &Path) -> Vec<(String, Vec<u8>)> {
+        let mut files: Vec<_> = std::fs::read_dir(dir.join(SNAPSHOT_FOLDER))
+            .unwrap()
+            .map(|entry| entry.unwrap())
+            .map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap()))
+            .collect();
+        files.sort();
+        files
+    }
+
+    /// Whatever was written after the checkpoint, the folder ends as that of a run without interruption.
+    #[test]
+    fn resumed_snapshots_end_as_uninterrupted_ones() {
+        let whole = tempfile::tempdir().unwrap();
+        let mut uninterrupted = SnapshotWriter::create(whole.path()).unwrap();
+        let take = |writer: &mut SnapshotWriter, k: usize| {
+            writer.write(k as f64 / 3.0, &particles()[..k.min(3)]).unwrap();
+        };
+        (0..4).for_each(|k| take(&mut uninterrupted, k));
+        for (cut, lost) in [(0, 2), (2, 0), (2, 3), (4, 1)] {
+            let dir = tempfile::tempdir().unwrap();
+            let mut writer = SnapshotWriter::create(dir.path()).unwrap();
+            (0..cut).for_each(|k| take(&mut writer, k));
+            let state = writer.state().unwrap();
+            (0..lost).for_each(|k| drop(writer.write(9.0 + k as f64, &particles()).unwrap()));
+            std::fs::write(dir.path().join("snapshots/particles_000007.vtu.partial"), "half").unwrap();
+            let mut resumed = SnapshotWriter::resume(dir.path(), &state).unwrap();
+            assert_eq!(resumed.last_time(), (cut > 0).then(|| (cut - 1) as f64 / 3.0));
+            (cut..4).for_each(|k| take(&mut resumed, k));
+            assert!(all_files(dir.path()) == all_files(whole.path()), "cut {cut}, lost {lost}");
+        }
+    }
+
+    /// A snapshot of another length is refused and nothing is removed; one that was moved away is no obstacle.
+    #[test]
+    fn a_truncated_snapshot_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut writer = SnapshotWriter::create(dir.path()).unwrap();
+        let first = writer.write(0.0, &particles()).unwrap();
+        let state = writer.state().unwrap();
+        let later = writer.write(1.0, &particles()).unwrap();
+        let bytes = std::fs::read(&first).unwrap();
+        std::fs::write(&first, &bytes[..bytes.len() - 1]).unwrap();
+        let error = SnapshotWriter::resume(dir.path(), &state).unwrap_err().to_string();
+        assert!(error.contains("particles_000000.vtu") && error.contains(&bytes.len().to_string()), "{error}");
+        assert!(later.exists());
+        std::fs::remove_file(&first).unwrap();
+        SnapshotWriter::resume(dir.path(), &state).unwrap();
+        assert!(!later.exists());
     }
 
     #[test]

@@ -68,8 +68,8 @@ struct Open {
 }
 
 impl Bisection {
-    /// `shares`: what each part is to have of the weight, in any unit. `previous`: the tree in force; it counts if it has
-    /// the same root and number of parts. `tolerance`: usually [`super::TOLERANCE`].
+    /// `shares`: what each part is to have of the weight, in any unit. `previous`: the tree in force; it counts if it
+    /// has the same root and number of parts. `tolerance`: usually [`super::TOLERANCE`].
     pub fn new(
         root: CellBox,
         shares: &[f64],
@@ -169,7 +169,7 @@ impl Bisection {
         let longest = extent.length(extent.longest_axis());
         if let Some(old) = self.old_cut(previous) {
             let long = 10 * u64::from(extent.length(old.axis)) >= 7 * u64::from(longest);
-            let kept = (long && old.low_parts < parts).then(|| way(old.axis, old.low_parts, previous));
+            let kept = long.then(|| way(old.axis, old.low_parts, previous));
             if let Some(kept) = kept.flatten() {
                 return kept;
             }

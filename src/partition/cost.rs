@@ -9,12 +9,12 @@
 //! sum over rows of u / u_max (t - b . z)^2  +  RIDGE sum_j (b_j - mean t)^2,   b >= 0,   c = b p
 //! ```
 //!
-//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at the
-//! prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
+//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at
+//! the prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
 //!
-//! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of the
-//! ranks. It is taken over where it differs from the speed in force by more than both a dead band and five standard
-//! errors, so that the noise of timers moves no cut.
+//! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of what
+//! the speeds in force leave. It leaves 1 where it is off by more than both a dead band and five standard errors, so
+//! that the noise of timers moves no cut; from then on it follows by two.
 //!
 //! Invariant: the state is a function of the measurements alone; ranks that observe the same hold the same.
 
@@ -57,13 +57,17 @@ pub struct IntegerWeights {
 
 const FEATURES: usize = 4;
 /// Costs before any are measured, relative to a particle: candidate, wall test, and the fixed cost of a step.
-const PRIOR: [f64; FEATURES] = [1.0, 0.05, 1.0, 1000.0];
+const PRIOR: [f64; FEATURES] = [1.0, 0.05, 1.0, 10_000.0];
 /// Squared noise of a measurement (0.15) over squared doubt about the prior (1), both relative.
 const RIDGE: f64 = 0.02;
 const FORGET: f64 = 0.95;
 /// Smallest change of a speed, as a logarithm.
 const DEAD_BAND: f64 = 0.05;
-const STANDARD_ERRORS: f64 = 5.0;
+/// To tell a device from the others, and to follow one that has been told.
+const TELL_ERRORS: f64 = 5.0;
+const FOLLOW_ERRORS: f64 = 2.0;
+/// Relative noise of a measurement, before any is learnt.
+const NOISE: f64 = 0.2;
 /// Intervals before a speed is judged.
 const FEWEST: u32 = 10;
 /// The largest weight.
@@ -103,7 +107,7 @@ impl CostModel {
             products: [0.0; FEATURES],
             speed: 0.0,
             mean: 0.0,
-            variance: 0.0,
+            variance: NOISE * NOISE,
             spread: 0.0,
             rows: 0,
         };
@@ -135,7 +139,8 @@ impl CostModel {
             // A factor of 20 either way is an accident, not a device.
             ratios.push((rank, libm::log(self.cost(&of.work) / of.seconds).clamp(-3.0, 3.0)));
         }
-        let middle = median(ratios.iter().map(|ratio| ratio.1).collect());
+        // Without the speeds in force, so that known slow devices do not bias the median.
+        let middle = median(ratios.iter().map(|&(rank, ratio)| ratio - self.ranks[rank].speed).collect());
         for (rank, ratio) in ratios {
             self.ranks[rank].judge_speed(ratio - middle);
         }
@@ -189,12 +194,9 @@ impl CostModel {
             let speed = libm::exp(rank.speed);
             weight += rank.weight;
             target += rank.target * speed;
-            for row in 0..FEATURES {
-                products[row] += rank.products[row] * speed;
-                for column in 0..FEATURES {
-                    squares[row][column] += rank.squares[row][column];
-                }
-            }
+            products.iter_mut().zip(rank.products).for_each(|(sum, product)| *sum += product * speed);
+            let entries = squares.iter_mut().flatten().zip(rank.squares.iter().flatten());
+            entries.for_each(|(sum, square)| *sum += square);
         }
         if weight <= 0.0 {
             return;
@@ -232,11 +234,18 @@ impl Rank {
         let part = (1.0 / f64::from(self.rows)).max(1.0 - FORGET);
         let off = measured - self.mean;
         self.mean += part * off;
-        self.variance = (1.0 - part) * (self.variance + part * off * off);
+        self.variance += (1.0 - FORGET) * (off * off - self.variance);
         self.spread = (1.0 - part) * (1.0 - part) * self.spread + part * part;
-        let band = DEAD_BAND.max(STANDARD_ERRORS * (self.variance * self.spread).sqrt());
-        if self.rows >= FEWEST && (self.mean - self.speed).abs() > band {
-            self.speed = if self.mean.abs() > band { self.mean } else { 0.0 };
+        if self.rows < FEWEST {
+            return;
+        }
+        let error = (self.variance * self.spread).sqrt();
+        let told = self.speed != 0.0;
+        if told && self.mean.abs() < DEAD_BAND {
+            self.speed = 0.0;
+        } else if (self.mean - self.speed).abs() > DEAD_BAND.max(if told { FOLLOW_ERRORS } else { TELL_ERRORS } * error)
+        {
+            self.speed = self.mean;
         }
     }
 }
@@ -281,9 +290,8 @@ fn solve(matrix: &[[f64; FEATURES]; FEATURES], right: &[f64; FEATURES], set: u32
         for row in (pivot + 1..FEATURES).filter(|&feature| free(feature)) {
             let factor = left[row][pivot] / left[pivot][pivot];
             right[row] -= factor * right[pivot];
-            for column in pivot..FEATURES {
-                left[row][column] -= factor * left[pivot][column];
-            }
+            let above = left[pivot];
+            left[row].iter_mut().zip(above).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     let mut solution = [0.0; FEATURES];

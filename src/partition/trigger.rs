@@ -4,8 +4,8 @@
 //! would take if each had its share of the work: sum of share x seconds over sum of shares. A rebalance is due if
 //!
 //! 1. the averaged imbalance is above the threshold,
-//! 2. the longest is more than four standard errors of the averaged loads above the mean (the noise is learnt from the
-//!    checks and kept over rebalances),
+//! 2. the longest is above the mean by more than four standard errors of the averaged loads and what the largest of n
+//!    ranks' noise is expected to be, sqrt(2 ln n) (the noise is learnt from the checks and kept over rebalances),
 //! 3. (longest - mean) x steps until the next check is above the averaged seconds of a rebalance.
 //!
 //! If a rebalance leaves more than half of what was above 1, and the imbalance above the threshold, the next one needs
@@ -19,7 +19,9 @@ use serde::{Deserialize, Serialize};
 /// What a new check counts in the averages.
 const NEW: f64 = 0.25;
 /// Relative noise of a load, before any is learnt.
-const NOISE: f64 = 0.1;
+const NOISE: f64 = 0.15;
+/// How much of the noise before is forgotten per rank and check.
+const NOISE_FORGET: f64 = 0.95;
 const STANDARD_ERRORS: f64 = 4.0;
 const MOST_DEMAND: f64 = 64.0;
 
@@ -134,7 +136,8 @@ impl Trigger {
             return Decision::Balanced { imbalance, threshold };
         }
         let excess = imbalance - 1.0;
-        let needed = STANDARD_ERRORS * (self.noise * self.spread).sqrt();
+        let largest = (2.0 * libm::log(seconds.len() as f64)).sqrt();
+        let needed = (STANDARD_ERRORS + largest) * (self.noise * self.spread).sqrt();
         if excess <= needed {
             return Decision::Unsure { imbalance, needed };
         }
@@ -182,7 +185,8 @@ impl Trigger {
         if self.checks > 1 {
             // A new load is off an average that is itself off the true mean.
             let off_square = off_squares / seconds.len() as f64 / (1.0 + self.spread);
-            self.noise += NEW * (off_square - self.noise);
+            let freedoms = (seconds.len() - 1).min(10) as i32;
+            self.noise += (1.0 - NOISE_FORGET.powi(freedoms)) * (off_square - self.noise);
         }
         self.mean += part * (mean - self.mean);
         self.spread = if self.checks == 1 { 1.0 } else { (1.0 - part).powi(2) * self.spread + part * part };

@@ -1,5 +1,7 @@
 //! The account of a run: what entered, what is there, what was lost.
 
+use serde::{Deserialize, Serialize};
+
 use crate::gas::Inflow;
 use crate::geometry::Vessel;
 use crate::output::{Audit, AuditLimits, PhaseTable};
@@ -10,6 +12,7 @@ use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
 use super::averages::Averages;
 use super::interval::Interval;
 use super::model::Model;
+use super::run_state::StateError;
 
 /// The same limit as that of the audit at the end.
 const ENERGY_ERROR: f64 = 1e-4;
@@ -33,16 +36,35 @@ pub struct Account {
     truncated: u64,
     overshoot: u32,
     /// Phase, seconds, dispatch groups.
-    phases: Vec<(&'static str, f64, u64)>,
+    phases: Vec<(String, f64, u64)>,
 }
 
 /// Totals of all gas, SI.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct State {
     number: u64,
     mass: f64,
     momentum: [f64; 3],
     energy: f64,
+}
+
+/// All that an account has counted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccountState {
+    start: State,
+    injected_momentum: [f64; 3],
+    energy_entered: f64,
+    particles: u64,
+    particle_steps: u64,
+    collisions: u64,
+    bounces: u64,
+    step_range: [f64; 2],
+    steps: u64,
+    lost: u64,
+    sampled: u64,
+    truncated: u64,
+    overshoot: u32,
+    phases: Vec<(String, f64, u64)>,
 }
 
 impl Account {
@@ -69,7 +91,7 @@ impl Account {
     }
 
     /// Zone 0 holds everything.
-    fn state(&self, tallies: &Tallies) -> State {
+    fn totals(&self, tallies: &Tallies) -> State {
         let mut state = State::default();
         for (zone, molar_mass) in tallies.zones.iter().zip(&self.molar_masses) {
             let mass = molar_mass * self.moles_per_particle;
@@ -85,7 +107,7 @@ impl Account {
     }
 
     pub fn start(&mut self, tallies: &Tallies) {
-        self.start = self.state(tallies);
+        self.start = self.totals(tallies);
     }
 
     /// What must hold after every interval, of all ranks together.
@@ -102,9 +124,11 @@ impl Account {
         let samples = f64::from(interval.samples(plan));
         let expected = samples * (self.start.energy + self.energy_entered) + since;
         self.energy_entered += brought;
-        let energy = self.state(tallies).energy;
+        let energy = self.totals(tallies).energy;
         if (energy - expected).abs() > ENERGY_ERROR * expected {
-            return Err(format!("the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"));
+            return Err(format!(
+                "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
+            ));
         }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
@@ -147,34 +171,62 @@ impl Account {
         let tallied = (interval.first_step + steps).is_multiple_of(u64::from(plan.tally_every));
         for &(name, seconds) in timed {
             let share = if name == "tally" && tallied { u64::from(samples) } else { steps };
-            match self.phases.iter_mut().find(|(known, ..)| *known == name) {
+            match self.phases.iter_mut().find(|(known, ..)| known == name) {
                 Some((_, total, count)) => {
                     *total += seconds * share as f64;
                     *count += share;
                 }
-                None => self.phases.push((name, seconds * share as f64, share)),
+                None => self.phases.push((name.to_owned(), seconds * share as f64, share)),
             }
         }
     }
 
-    pub fn phases(&self) -> PhaseTable {
-        PhaseTable {
-            rows: self.phases.iter().map(|(name, seconds, count)| ((*name).to_string(), *seconds, *count)).collect(),
-            steps: self.steps,
+    pub fn state(&self) -> AccountState {
+        AccountState {
+            start: self.start,
+            injected_momentum: self.injected_momentum,
+            energy_entered: self.energy_entered,
+            particles: self.particles,
             particle_steps: self.particle_steps,
+            collisions: self.collisions,
+            bounces: self.bounces,
+            step_range: self.step_range,
+            steps: self.steps,
+            lost: self.lost,
+            sampled: self.sampled,
+            truncated: self.truncated,
+            overshoot: self.overshoot,
+            phases: self.phases.clone(),
         }
     }
 
+    /// # Errors
+    /// If no run of this plan can have counted this; then nothing is changed.
+    pub fn restore(&mut self, plan: &Plan, state: &AccountState) -> Result<(), StateError> {
+        if state.start.number != plan.initial_particles {
+            return Err(StateError::differs("particles at the start", state.start.number, plan.initial_particles));
+        }
+        if state.particles > plan.particles {
+            return Err(StateError::Impossible { what: "there are more particles than in the whole run" });
+        }
+        let AccountState { start, injected_momentum, particles, particle_steps, collisions, bounces, .. } = *state;
+        let AccountState { step_range, steps, lost, sampled, truncated, overshoot, .. } = *state;
+        (self.start, self.injected_momentum, self.particles) = (start, injected_momentum, particles);
+        (self.particle_steps, self.collisions, self.bounces) = (particle_steps, collisions, bounces);
+        (self.step_range, self.steps, self.lost, self.sampled) = (step_range, steps, lost, sampled);
+        (self.truncated, self.overshoot) = (truncated, overshoot);
+        self.energy_entered = state.energy_entered;
+        self.phases.clone_from(&state.phases);
+        Ok(())
+    }
+
+    pub fn phases(&self) -> PhaseTable {
+        PhaseTable { rows: self.phases.clone(), steps: self.steps, particle_steps: self.particle_steps }
+    }
+
     /// The account at the end; `outside` particles were found in no gas.
-    pub fn close(
-        &self,
-        model: &Model,
-        inflow: &Inflow,
-        tallies: &Tallies,
-        outside: u64,
-        averages: &Averages,
-    ) -> Audit {
-        let end = self.state(tallies);
+    pub fn close(&self, model: &Model, inflow: &Inflow, tallies: &Tallies, outside: u64, averages: &Averages) -> Audit {
+        let end = self.totals(tallies);
         let plan = &model.plan;
         let entered = inflow.entered_by_gas();
         let injected_mass =

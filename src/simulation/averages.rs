@@ -4,6 +4,9 @@
 //! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
 //! normal impulse of its hits over area and time.
 
+use serde::{Deserialize, Serialize};
+
+use super::run_state::StateError;
 use crate::plan::Plan;
 use crate::scene::GAS_CONSTANT;
 use crate::subdomain::{Scales, SurfaceSum, Tallies, ZoneSum};
@@ -59,7 +62,7 @@ pub struct Layout {
     pub surfaces: Vec<(Vec<usize>, f64)>,
 }
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct Sum {
     number: f64,
     velocity: [f64; 3],
@@ -83,6 +86,18 @@ pub struct Averages {
     patches: Vec<SurfaceSum>,
     /// Per patch since the start.
     received: Vec<[i128; 3]>,
+}
+
+/// The open window, and what walls have received.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AveragesState {
+    start: f64,
+    steps: u64,
+    weight: f64,
+    sums: Vec<Sum>,
+    /// Normal impulse and hits of each patch: the rest of its sum is not used.
+    patches: Vec<(i64, i64)>,
+    pub(super) received: Vec<[i128; 3]>,
 }
 
 impl Averages {
@@ -124,6 +139,40 @@ impl Averages {
                 *total += i128::from(impulse);
             }
         }
+    }
+
+    pub fn state(&self) -> AveragesState {
+        AveragesState {
+            start: self.start,
+            steps: self.steps,
+            weight: self.weight,
+            sums: self.sums.clone(),
+            patches: self.patches.iter().map(|patch| (patch.normal, patch.hits)).collect(),
+            received: self.received.clone(),
+        }
+    }
+
+    /// # Errors
+    /// If the state is that of another scene's averages; then nothing is changed.
+    pub fn restore(&mut self, state: &AveragesState) -> Result<(), StateError> {
+        for (what, found, expected) in [
+            ("sums over zones", state.sums.len(), self.sums.len()),
+            ("patches of wall", state.patches.len(), self.patches.len()),
+            ("impulses of patches", state.received.len(), self.received.len()),
+        ] {
+            if found != expected {
+                return Err(StateError::differs(what, found as u64, expected as u64));
+            }
+        }
+        if !(state.start.is_finite() && state.weight.is_finite() && state.weight >= 0.0) {
+            return Err(StateError::Impossible { what: "the open window of the averages has no length" });
+        }
+        (self.start, self.steps, self.weight) = (state.start, state.steps, state.weight);
+        self.sums.clone_from(&state.sums);
+        let patch = |&(normal, hits): &(i64, i64)| SurfaceSum { normal, hits, ..SurfaceSum::default() };
+        self.patches = state.patches.iter().map(patch).collect();
+        self.received.clone_from(&state.received);
+        Ok(())
     }
 
     /// Whether the window holds a tally.

@@ -1,6 +1,9 @@
 //! Simulated time in integer ticks of the smallest step of the ladder, so that sums of steps are exact
 //! and the run ends exactly at its end time.
 
+use serde::{Deserialize, Serialize};
+
+use super::run_state::StateError;
 use crate::plan::Plan;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +15,16 @@ pub struct Clock {
     end_time: f64,
     /// Steps done.
     pub steps: u64,
+}
+
+/// Where a clock stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClockState {
+    /// Of the smallest step.
+    ticks: u64,
+    /// Of this length is the whole run.
+    end: u64,
+    steps: u64,
 }
 
 impl Clock {
@@ -34,6 +47,23 @@ impl Clock {
 
     pub fn done(&self) -> bool {
         self.now >= self.end
+    }
+
+    pub fn state(&self) -> ClockState {
+        ClockState { ticks: self.now, end: self.end, steps: self.steps }
+    }
+
+    /// # Errors
+    /// If the state is that of another plan's clock.
+    pub fn restore(&mut self, state: &ClockState) -> Result<(), StateError> {
+        if state.end != self.end {
+            return Err(StateError::differs("ticks of the run", state.end, self.end));
+        }
+        if state.ticks > state.end || state.steps > state.ticks {
+            return Err(StateError::Impossible { what: "the clock is beyond its end" });
+        }
+        (self.now, self.steps) = (state.ticks, state.steps);
+        Ok(())
     }
 
     fn ticks(&self, level: u32) -> u64 {
@@ -90,6 +120,21 @@ mod tests {
             }
             assert_eq!(clock.now, clock.end);
         }
+    }
+
+    /// A restored clock shows the same time to the bit, and that of another plan is refused.
+    #[test]
+    fn a_restored_clock_goes_on() {
+        let mut cut = clock();
+        cut.advance(0, 3);
+        cut.advance(3, 5);
+        let mut restored = clock();
+        restored.restore(&cut.state()).unwrap();
+        assert_eq!(restored, cut);
+        let mut other = Clock { end: 160, ..clock() };
+        assert!(other.restore(&cut.state()).is_err());
+        assert!(restored.restore(&ClockState { ticks: 81, ..cut.state() }).is_err());
+        assert_eq!(restored, cut);
     }
 
     /// A step longer than what is left is made finer, not cut.

@@ -91,6 +91,12 @@ impl Decomposition {
         Ok(subdomain.move_to(device, place)?)
     }
 
+    /// Rounds between two exchanges from now on; true if that is a change.
+    pub fn set_rounds(&mut self, rounds: u32) -> bool {
+        let depth = 2 * rounds;
+        std::mem::replace(&mut self.depth, depth) != depth
+    }
+
     /// From now on particles may be with anyone, until the exchange of a step has brought them home.
     pub fn scatter(&mut self) {
         self.scattered = true;
@@ -178,9 +184,7 @@ pub fn root(plan: &Plan) -> CellBox {
 
 /// The cell of a particle's position, moved into the root as `nearest_cell` of the shaders does.
 fn cell_of(plan: &Plan, particle: &GpuParticle) -> [u32; 3] {
-    std::array::from_fn(|axis| {
-        (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2)
-    })
+    std::array::from_fn(|axis| (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2))
 }
 
 /// The tree so far, as `shaders/weigh.wgsl` reads it.

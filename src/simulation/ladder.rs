@@ -2,6 +2,9 @@
 //! between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 
+use serde::{Deserialize, Serialize};
+
+use super::run_state::StateError;
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::subdomain::{BlockSum, Scales};
@@ -41,12 +44,19 @@ pub struct LadderError {
 }
 
 /// What the state asks of the step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Demand {
     /// x at the top of the ladder, for the densest and hottest but the tail.
     pub collision: f64,
     /// Coarsest level at which few enough particles cross more than a cell.
     pub fast_level: u32,
+}
+
+/// Where on its ladder the step is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LadderState {
+    level: u32,
+    levels: u32,
 }
 
 impl Ladder {
@@ -74,6 +84,23 @@ impl Ladder {
 
     pub fn level(&self) -> u32 {
         self.level
+    }
+
+    pub fn state(&self) -> LadderState {
+        LadderState { level: self.level, levels: self.levels }
+    }
+
+    /// # Errors
+    /// If the state is that of another plan's ladder.
+    pub fn restore(&mut self, state: &LadderState) -> Result<(), StateError> {
+        if state.levels != self.levels {
+            return Err(StateError::differs("levels of the ladder", state.levels, self.levels));
+        }
+        if state.level > 0 && state.level >= state.levels {
+            return Err(StateError::Impossible { what: "the step is below the ladder" });
+        }
+        self.level = state.level;
+        Ok(())
     }
 
     /// Collisions per particle and second in gas of this volume, m3.
@@ -172,6 +199,19 @@ mod tests {
     /// kT = 1.
     fn block(number: u64) -> BlockSum {
         BlockSum { number, energy: 3 * number / 2 }
+    }
+
+    #[test]
+    fn a_restored_ladder_is_at_its_level() {
+        let mut cut = ladder(vec![1.0]);
+        cut.follow(Demand { collision: 1.0, fast_level: 0 }).unwrap();
+        let mut restored = ladder(vec![1.0]);
+        assert_ne!(restored.level(), cut.level());
+        restored.restore(&cut.state()).unwrap();
+        assert_eq!(restored.level(), cut.level());
+        assert!(restored.restore(&LadderState { level: 12, levels: 12 }).is_err());
+        assert!(restored.restore(&LadderState { level: 1, levels: 3 }).is_err());
+        assert_eq!(restored.level(), cut.level());
     }
 
     #[test]

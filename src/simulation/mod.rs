@@ -10,23 +10,30 @@ mod balance;
 mod clock;
 mod decomposition;
 mod exchange;
+mod interrupt;
 mod interval;
 mod ladder;
 mod model;
 mod reference;
 mod run;
+mod run_state;
+mod schedule;
 mod setup;
 mod step;
+mod tuning;
 
-pub use audit::audit_limits;
+pub use audit::{AccountState, audit_limits};
+pub use averages::{AveragesState, Layout, Row, SurfaceState, ZoneState};
 pub use balance::{BalanceMode, BalanceOptions, BalanceRecord, Load, imbalance};
+pub use clock::{Clock, ClockState};
 pub use exchange::Traffic;
-pub use averages::{Layout, Row, SurfaceState, ZoneState};
-pub use clock::Clock;
-pub use ladder::{Demand, Ladder, LadderError};
+pub use interrupt::{Interrupt, Request};
+pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;
-pub use run::{Observer, Options, Outcome, Simulation};
+pub use run::{Moment, Observer, Options, Outcome, Simulation};
+pub use run_state::{RunState, StateError as RunStateError};
+pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;
 
@@ -53,6 +60,8 @@ pub enum SimulationError {
     Partition(#[from] PartitionError),
     #[error(transparent)]
     Rank(#[from] RankError),
+    #[error(transparent)]
+    Resume(#[from] RunStateError),
     #[error("at {time:.6} s: {source}")]
     Ladder { time: f64, source: LadderError },
     #[error("at {time:.6} s: {what}")]

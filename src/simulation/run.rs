@@ -18,17 +18,17 @@ use super::balance::{Balance, BalanceOptions, BalanceRecord, Load};
 use super::clock::Clock;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
+use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine, Pending};
 use super::ladder::{Demand, Ladder};
 use super::model::Model;
+use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::{Setup, Shuffle};
+use super::tuning::Tuner;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
-/// Rounds of collisions between two exchanges, unless said otherwise: the halo has twice as many layers.
-const HALO_ROUNDS: u32 = 2;
-
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
@@ -38,7 +38,8 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
-    /// Rounds of collisions between two exchanges of ghosts; a divisor of the plan's rounds wastes least.
+    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
+    /// many layers of cells.
     pub halo_rounds: Option<u32>,
     pub balance: BalanceOptions,
 }
@@ -61,11 +62,37 @@ pub trait Observer {
         Ok(())
     }
 
+    /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
+    fn request(&mut self, _steps: u64) -> Request {
+        Request::None
+    }
+
+    /// A moment at which the run can be continued, on every rank. Collective.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn checkpoint(&mut self, _moment: &Moment<'_>) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
     /// Totals so far: simulated time (s), steps, particle-steps.
     fn progress(&mut self, _time: f64, _steps: u64, _particle_steps: u64) {}
 }
 
 impl Observer for () {}
+
+/// All that a run needs to be continued, on one rank.
+pub struct Moment<'a> {
+    pub step: u64,
+    /// s.
+    pub time: f64,
+    /// Particles, those that entered and the initial ones.
+    pub particles: u64,
+    pub state: &'a RunState,
+    /// Of this rank.
+    pub own: &'a [GpuParticle],
+    pub comm: &'a dyn Communicator,
+}
 
 /// What a run leaves.
 pub struct Outcome {
@@ -114,6 +141,7 @@ pub struct Simulation<'a> {
     /// `None` on a rank alone, and where particles are dealt out by their ids.
     decomposition: Option<Decomposition>,
     balance: Balance,
+    tuner: Tuner,
     inflow: Inflow,
     clock: Clock,
     ladder: Ladder,
@@ -130,6 +158,12 @@ pub struct Simulation<'a> {
     /// End of the last interval that was read, s.
     read_until: f64,
     repeated: u32,
+    /// What this rank wants done, and what the ranks want, by the intervals read.
+    wish: Request,
+    request: Request,
+    stopping: bool,
+    /// The run goes on from a state; its start has been accounted for.
+    resumed: bool,
     options: Options<'a>,
 }
 
@@ -171,7 +205,7 @@ impl<'a> Simulation<'a> {
         let (size, rank) = (comm.size() as u32, comm.rank() as u32);
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
-            let rounds = options.halo_rounds.unwrap_or(HALO_ROUNDS).clamp(1, plan.rounds.max(1));
+            let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
             let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
             let cut = Decomposition::new(plan, comm, rounds, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
@@ -192,6 +226,7 @@ impl<'a> Simulation<'a> {
             },
             decomposition,
             balance: Balance::new(options.balance, comm.size()),
+            tuner: Tuner::new(plan.rounds, options.halo_rounds),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -206,11 +241,59 @@ impl<'a> Simulation<'a> {
             next_snapshot: 0,
             read_until: 0.0,
             repeated: 0,
+            wish: Request::None,
+            request: Request::None,
+            stopping: false,
+            resumed: false,
             options,
             model,
             device,
             ranks,
         })
+    }
+
+    /// One rank of a run that goes on from a state: `setup` has the particles of that moment.
+    ///
+    /// # Errors
+    /// As [`Simulation::among`], or if the state is of another run.
+    pub fn resume(
+        model: &'a Model,
+        device: &'a Device,
+        setup: &Setup,
+        comm: &'a dyn Communicator,
+        options: Options<'a>,
+        state: &RunState,
+    ) -> Result<Simulation<'a>, SimulationError> {
+        let mut simulation = Simulation::among(model, device, setup, comm, options)?;
+        simulation.clock.restore(&state.clock)?;
+        simulation.ladder.restore(&state.ladder)?;
+        simulation.averages.restore(&state.averages)?;
+        simulation.account.restore(&model.plan, &state.account)?;
+        simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
+        simulation.demands = state.demands.iter().copied().collect();
+        simulation.submitted = state.submitted as usize;
+        simulation.next_row = state.next_row;
+        simulation.next_snapshot = state.next_snapshot;
+        simulation.read_until = state.read_until;
+        simulation.repeated = state.repeated;
+        simulation.resumed = true;
+        Ok(simulation)
+    }
+
+    fn state(&self) -> RunState {
+        RunState {
+            clock: self.clock.state(),
+            ladder: self.ladder.state(),
+            averages: self.averages.state(),
+            account: self.account.state(),
+            inflow: self.inflow.state(),
+            demands: self.demands.iter().copied().collect(),
+            submitted: self.submitted as u64,
+            next_row: self.next_row,
+            next_snapshot: self.next_snapshot,
+            read_until: self.read_until,
+            repeated: self.repeated,
+        }
     }
 
     /// Runs to the end of the scene.
@@ -228,6 +311,9 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        if self.resumed {
+            return Ok(());
+        }
         let at_start = self.measure()?;
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
@@ -246,6 +332,13 @@ impl<'a> Simulation<'a> {
         }
         while self.flying.len() >= AHEAD {
             self.read_oldest(observer)?;
+        }
+        self.wish = self.wish.max(observer.request(self.clock.steps));
+        if self.request != Request::None {
+            self.checkpoint(observer)?;
+            if self.stopping {
+                return Ok(false);
+            }
         }
         self.submit_next()?;
         if self.snapshot_due() {
@@ -287,6 +380,23 @@ impl<'a> Simulation<'a> {
         })
     }
 
+    /// A checkpoint, with nothing under way.
+    fn checkpoint(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.read_all(observer)?;
+        self.stopping = self.request == Request::CheckpointAndStop;
+        (self.wish, self.request) = (Request::None, Request::None);
+        let own = self.subdomain.particles(self.device)?;
+        let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
+        observer.checkpoint(&Moment {
+            step: self.clock.steps,
+            time: self.clock.time(),
+            particles: self.model.plan.initial_particles + entered,
+            state: &self.state(),
+            own: &own,
+            comm: self.ranks.comm(),
+        })
+    }
+
     fn stopped(&self) -> bool {
         self.options.stop_after_steps.is_some_and(|most| self.clock.steps >= most)
     }
@@ -319,6 +429,9 @@ impl<'a> Simulation<'a> {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
             let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
             self.exchange.rebalanced(seconds);
+            if decomposition.set_rounds(self.tuner.next()) {
+                decomposition.apply(self.device, &mut self.subdomain, &mut self.exchange)?;
+            }
         }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
@@ -361,7 +474,8 @@ impl<'a> Simulation<'a> {
     fn reduce(&mut self, mut flight: InFlight) -> Result<InFlight, SimulationError> {
         if let Pending::OnDevice(readback) = flight.tallies {
             let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
-            let (mut sums, maxima) = own.to_words();
+            let (mut sums, mut maxima) = own.to_words();
+            maxima.push(self.wish.weight());
             let seconds = self.step_seconds(&flight.phases, &stamps);
             sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
             let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
@@ -381,11 +495,13 @@ impl<'a> Simulation<'a> {
         match tallies {
             Pending::OnDevice(readback) => {
                 let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+                self.request = self.request.max(self.wish);
                 Ok((own, stamps, Vec::new()))
             }
             Pending::Reducing(own, stamps, reduction) => {
                 let (mut sums, maxima) = self.ranks.comm().finish_reduction(reduction)?;
                 let loads = Load::from_words(&mut sums, self.ranks.comm().size());
+                self.request = self.request.max(Request::of_weight(maxima.get(2).copied().unwrap_or(0)));
                 Ok((all_tallies(&own, &sums, &maxima)?, stamps, loads))
             }
         }
@@ -421,6 +537,10 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        if self.decomposition.is_some() {
+            let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
+            self.tuner.measured(slowest, interval.steps, interval.particles);
+        }
         self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
@@ -453,6 +573,7 @@ impl<'a> Simulation<'a> {
         strayed: bool,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
+        self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
         let mut later = Vec::new();
         for flight in std::mem::take(&mut self.flying) {

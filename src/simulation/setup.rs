@@ -51,8 +51,7 @@ impl Setup {
             shuffle(&mut particles);
         }
         let zones = zones(model);
-        let input =
-            DomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), among_others: ranks > 1 };
+        let input = DomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), among_others: ranks > 1 };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),
             layout: layout(model, &patches),

@@ -4,9 +4,7 @@ use crate::gpu::{Device, GpuError};
 
 use super::constants::Features;
 use super::counters;
-use super::layout::{
-    GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
-};
+use super::layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuWeights, GpuZone};
 use super::walls::Walls;
 
 /// Cells per thread of the scan.
@@ -33,12 +31,7 @@ pub struct DomainBuffers {
 }
 
 impl DomainBuffers {
-    pub fn new(
-        device: &Device,
-        walls: &Walls,
-        zones: &[GpuZone],
-        gases: &[GpuGas],
-    ) -> Result<DomainBuffers, GpuError> {
+    pub fn new(device: &Device, walls: &Walls, zones: &[GpuZone], gases: &[GpuGas]) -> Result<DomainBuffers, GpuError> {
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(gases);
         let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;

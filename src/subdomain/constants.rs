@@ -36,12 +36,7 @@ impl Features {
     }
 }
 
-pub fn constants(
-    plan: &Plan,
-    features: Features,
-    walls: &Walls,
-    scales: &Scales,
-) -> Vec<(&'static str, f64)> {
+pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);

@@ -37,7 +37,9 @@ pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
 pub use walls::Walls;
 
-use buffers::{Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords};
+use buffers::{
+    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords,
+};
 use exchange::Guess;
 use kernels::Kernels;
 
@@ -86,13 +88,8 @@ impl Subdomain {
         let cell = CellBuffers::new(device, bins)?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
-        let buffers = Buffers {
-            domain: &domain.buffers,
-            fixed: &fixed,
-            cell: &cell,
-            particle: &particle,
-            exchange: &exchange,
-        };
+        let buffers =
+            Buffers { domain: &domain.buffers, fixed: &fixed, cell: &cell, particle: &particle, exchange: &exchange };
         let kernels = domain.compiled.bind(device, features, &buffers)?;
         device.write(&particle.particles, 0, particles);
         let mut subdomain = Subdomain {
@@ -176,13 +173,7 @@ impl Subdomain {
     ///
     /// # Errors
     /// If the larger buffers are over the device's limits.
-    pub fn make_room(
-        &mut self,
-        device: &Device,
-        more: u64,
-        newborns: u64,
-        wanted_list: u32,
-    ) -> Result<(), GpuError> {
+    pub fn make_room(&mut self, device: &Device, more: u64, newborns: u64, wanted_list: u32) -> Result<(), GpuError> {
         let needed = u64::from(self.count) + more;
         let longer = u64::from(wanted_list).next_multiple_of(8);
         let list = self.particle.list.max(longer);

@@ -15,29 +15,31 @@ use crate::whole_run::{Run, Witness, device};
 pub struct Way {
     pub ranks: usize,
     pub mode: BalanceMode,
-    pub halo_rounds: u32,
+    /// Found by trying if it is not said.
+    pub halo_rounds: Option<u32>,
     pub pace: Pace,
     pub batch: Option<u32>,
     pub order: Option<&'static Shuffle>,
 }
 
 impl Way {
-    pub fn new(ranks: usize, mode: BalanceMode, halo_rounds: u32) -> Way {
+    pub fn new(ranks: usize, mode: BalanceMode, halo_rounds: impl Into<Option<u32>>) -> Way {
+        let halo_rounds = halo_rounds.into();
         // Both paces, whole and small batches.
-        let pace = if (ranks as u32 + halo_rounds).is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime };
+        let pace = if (ranks as u32 + halo_rounds.unwrap_or_default()).is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime };
         Way { ranks, mode, halo_rounds, pace, batch: None, order: None }
     }
 
     pub fn name(&self) -> String {
         let Way { ranks, mode, halo_rounds, pace, batch, order } = self;
         let order = if order.is_some() { ", another order" } else { "" };
-        format!("{ranks} ranks, {mode:?}, halo for {halo_rounds} rounds, {pace:?}, batches of {batch:?}{order}")
+        format!("{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, {pace:?}, batches of {batch:?}{order}")
     }
 
     fn options(&self) -> Options<'static> {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
         let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
-        Options { batch: self.batch, halo_rounds: Some(self.halo_rounds), balance, ..Options::default() }
+        Options { batch: self.batch, halo_rounds: self.halo_rounds, balance, ..Options::default() }
     }
 }
 

@@ -45,7 +45,7 @@ fn all_ways() -> Vec<Way> {
     let mut ways = Vec::new();
     for ranks in [1, 2, 3, 4, 7, 8] {
         for mode in modes {
-            for halo_rounds in [1, 2, 4, 8] {
+            for halo_rounds in [Some(1), Some(2), Some(4), Some(8), None] {
                 let turn = ways.len();
                 ways.push(Way {
                     pace: if turn.is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime },
@@ -69,7 +69,7 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
         Way { batch: Some(3), ..Way::new(4, Forced { seed: 2 }, 2) },
-        Way { order: Some(&shuffled::<3>), ..Way::new(7, Initial, 4) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(7, Initial, None) },
     ];
     let runs = same(&tank(0), &ways);
     let [finest, coarsest] = runs[0].outcome.step_range;

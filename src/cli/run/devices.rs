@@ -53,7 +53,7 @@ pub fn map(device: &Device, comm: &dyn Communicator) -> Result<String, CliError>
     let adapter = device.adapter();
     let own = format!(
         "{}, rank {} of {} there: adapter {} {} {}",
-        crate::output::host_name(),
+        host(),
         comm.node_rank(),
         comm.node_size(),
         adapter.index,
@@ -66,4 +66,9 @@ pub fn map(device: &Device, comm: &dyn Communicator) -> Result<String, CliError>
         let _ = writeln!(text, "rank {rank}: {}", String::from_utf8_lossy(&line).trim_end());
     }
     Ok(text)
+}
+
+fn host() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/hostname")
+        .map_or_else(|_| "this machine".into(), |name| name.trim().into())
 }

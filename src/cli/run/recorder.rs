@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::output::{History, HistoryWriter, OutputError, ParticleRow, Progress, SnapshotWriter};
+use crate::output::{History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress, SnapshotWriter};
 use crate::simulation::{Model, Observer, Outcome, Row, SimulationError};
 use crate::subdomain::{GpuParticle, Scales};
 
@@ -15,8 +15,6 @@ pub struct Recorder<'a> {
     history: HistoryWriter,
     /// `None` in a scene that wants no snapshots.
     snapshots: Option<SnapshotWriter>,
-    /// s, of the last snapshot.
-    last_snapshot: Option<f64>,
     progress: Option<Progress>,
 }
 
@@ -28,15 +26,50 @@ impl<'a> Recorder<'a> {
             0 => None,
             _ => {
                 let writer = SnapshotWriter::create(dir)?;
-                let triangles = &model.vessel.triangles;
-                let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.vertices).collect();
-                let walls: Vec<u32> = triangles.iter().map(|triangle| triangle.wall).collect();
-                writer.write_walls(&model.vessel.vertices, &corners, &walls)?;
+                write_walls(&writer, model)?;
                 Some(writer)
             }
         };
         let progress = shown.then(|| Progress::new(model.plan.end_time));
-        Ok(Recorder { model, reference, history, snapshots, last_snapshot: None, progress })
+        Ok(Recorder { model, reference, history, snapshots, progress })
+    }
+
+    /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
+    /// they end as those of a run without interruption. `totals` are those of the checkpoint.
+    ///
+    /// # Errors
+    /// If a file is not the one that the checkpoint knows.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
+    pub fn resume(
+        model: &'a Model,
+        reference: Reference,
+        dir: &Path,
+        shown: bool,
+        state: &OutputState,
+        totals: Totals,
+    ) -> Result<Recorder<'a>, OutputError> {
+        let history = HistoryWriter::resume(dir, &columns(&model.scene), &state.history)?;
+        let snapshots = match &state.snapshots {
+            None => None,
+            Some(snapshots) => {
+                let writer = SnapshotWriter::resume(dir, snapshots)?;
+                write_walls(&writer, model)?;
+                Some(writer)
+            }
+        };
+        let Totals { time, steps, particle_steps } = totals;
+        let progress = shown.then(|| Progress::resume(model.plan.end_time, time, steps, particle_steps));
+        Ok(Recorder { model, reference, history, snapshots, progress })
+    }
+
+    /// How far the files have got, all of them on the disc: for a checkpoint of this moment.
+    ///
+    /// # Errors
+    /// If the system cannot write them.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
+    pub fn state(&mut self) -> Result<OutputState, OutputError> {
+        let snapshots = self.snapshots.as_mut().map(SnapshotWriter::state).transpose()?;
+        Ok(OutputState { history: self.history.state()?, snapshots })
     }
 
     pub fn history(&self) -> &History {
@@ -48,7 +81,7 @@ impl<'a> Recorder<'a> {
         if let Some(progress) = &mut self.progress {
             progress.finish(outcome.time, outcome.steps, outcome.particle_steps);
         }
-        if self.last_snapshot == Some(outcome.time) {
+        if self.snapshots.as_ref().and_then(SnapshotWriter::last_time) == Some(outcome.time) {
             return Ok(());
         }
         self.write_snapshot(outcome.time, &outcome.particles)
@@ -70,10 +103,24 @@ impl<'a> Recorder<'a> {
                 spin_energy: (f64::from(particle.spin) * scales.reference_mass) as f32,
             })
             .collect();
-        writer.write(time, &rows)?;
-        self.last_snapshot = Some(time);
-        Ok(())
+        writer.write(time, &rows).map(|_| ())
     }
+}
+
+/// What a run has done so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Totals {
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    pub particle_steps: u64,
+}
+
+fn write_walls(writer: &SnapshotWriter, model: &Model) -> Result<(), OutputError> {
+    let triangles = &model.vessel.triangles;
+    let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.vertices).collect();
+    let walls: Vec<u32> = triangles.iter().map(|triangle| triangle.wall).collect();
+    writer.write_walls(&model.vessel.vertices, &corners, &walls).map(|_| ())
 }
 
 /// The error's text names the file.
@@ -94,5 +141,96 @@ impl Observer for Recorder<'_> {
         if let Some(progress) = &mut self.progress {
             progress.update(time, steps, particle_steps);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::run::chart;
+    use crate::simulation::{SurfaceState, ZoneState};
+    use std::path::PathBuf;
+
+    fn model() -> Model {
+        let text = include_str!("../../../scenes/tank.toml").replace("particles = 1000000", "particles = 2000");
+        Model::new(crate::scene::parse(&text, "tank.toml", Path::new("")).unwrap()).unwrap()
+    }
+
+    fn row(model: &Model, k: usize) -> Row {
+        let x = k as f64;
+        let zone = ZoneState {
+            pressure: 1e5 + 0.1 * x,
+            temperature: 300.0 / (x + 1.0),
+            density: 1.2,
+            velocity: [0.0, -x, 0.3],
+            particles: vec![x / 3.0, 0.0],
+        };
+        Row {
+            time: 1e-3 * x,
+            window: [1e-3 * (x - 0.5), 1e-3 * (x + 0.5)],
+            step: 1e-7,
+            particles: 2000,
+            chambers: vec![zone.clone(); model.scene.chambers.len()],
+            probes: vec![zone; model.scene.probes.len()],
+            surfaces: vec![SurfaceState::default(); model.scene.surfaces.len()],
+        }
+    }
+
+    /// Ten rows and five snapshots; every second event of the run is both.
+    fn go_on(recorder: &mut Recorder<'_>, from: usize, to: usize, model: &Model) {
+        for k in from..to {
+            recorder.row(&row(model, k)).unwrap();
+            if k % 2 == 0 {
+                let particle = GpuParticle { position: [k as u32; 3], ..GpuParticle::default() };
+                recorder.snapshot(1e-3 * k as f64, &vec![particle; k], &vec![0; k]).unwrap();
+            }
+        }
+        recorder.progress(0.0, 0, 0);
+    }
+
+    fn draw(recorder: &Recorder<'_>, dir: &Path, model: &Model) {
+        chart::draw(&dir.join("pressure.svg"), &model.scene, recorder.history()).unwrap();
+    }
+
+    fn files(dir: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut found = Vec::new();
+        for folder in [dir.to_path_buf(), dir.join("snapshots")] {
+            for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|p| p.is_file()) {
+                let content = std::fs::read(&path).unwrap();
+                found.push((path.strip_prefix(dir).unwrap().to_path_buf(), content));
+            }
+        }
+        found.sort();
+        found
+    }
+
+    /// Wherever a run is cut, and however much it had written beyond, its files end as those of a run without
+    /// interruption, the chart included.
+    #[test]
+    fn resumed_files_end_as_uninterrupted_ones() {
+        let model = model();
+        let totals = Totals { time: 0.0, steps: 0, particle_steps: 0 };
+        let whole = tempfile::tempdir().unwrap();
+        let mut recorder = Recorder::new(&model, Reference::new(&model), whole.path(), false).unwrap();
+        go_on(&mut recorder, 0, 10, &model);
+        draw(&recorder, whole.path(), &model);
+        for (cut, lost) in [(0, 4), (3, 0), (4, 3), (7, 1), (10, 0)] {
+            let dir = tempfile::tempdir().unwrap();
+            let mut recorder = Recorder::new(&model, Reference::new(&model), dir.path(), false).unwrap();
+            go_on(&mut recorder, 0, cut, &model);
+            let state = recorder.state().unwrap();
+            let bytes = postcard::to_stdvec(&state).unwrap();
+            assert_eq!(postcard::from_bytes::<OutputState>(&bytes).unwrap(), state);
+            // What the end of a stopped run writes, too.
+            go_on(&mut recorder, cut, (cut + lost).min(10), &model);
+            draw(&recorder, dir.path(), &model);
+            drop(recorder);
+            let reference = Reference::new(&model);
+            let mut resumed = Recorder::resume(&model, reference, dir.path(), false, &state, totals).unwrap();
+            go_on(&mut resumed, cut, 10, &model);
+            draw(&resumed, dir.path(), &model);
+            assert!(files(dir.path()) == files(whole.path()), "cut {cut}, lost {lost}");
+        }
+        assert_eq!(files(whole.path()).len(), 2 + 5 + 2);
     }
 }

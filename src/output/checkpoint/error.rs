@@ -1,0 +1,75 @@
+//! Why a checkpoint cannot be written or taken up.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Says file, what was found, what was expected and what can be done.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CheckpointError {
+    #[error("cannot {action} {path}: {source}", path = path.display())]
+    Io { action: &'static str, path: PathBuf, source: io::Error },
+    #[error("{path} holds no complete checkpoint", path = path.display())]
+    #[diagnostic(help("name a run's folder, its `checkpoints` or one of the folders `step-...` in there"))]
+    None { path: PathBuf },
+    #[error("{path} is missing from the checkpoint", path = path.display())]
+    #[diagnostic(help("the folder was copied in part, or changed; copy all of it again"))]
+    Missing { path: PathBuf },
+    #[error("{path} is no checkpoint's manifest: it begins {found:?}, where {expected:?} should stand", path = path.display())]
+    Foreign { path: PathBuf, found: String, expected: String },
+    #[error("{path} is of checkpoint format {found}, this program reads format {expected}", path = path.display())]
+    #[diagnostic(help("resume with the version of the program that wrote it: its `version` line says which"))]
+    OtherFormat { path: PathBuf, found: u64, expected: u32 },
+    #[error("{path} has {found} bytes where {expected} were written: it was truncated or altered", path = path.display())]
+    #[diagnostic(help("copy the checkpoint again if this is a copy"))]
+    Length { path: PathBuf, found: u64, expected: u64 },
+    #[error("{path} was truncated or altered: its checksum is {found:08x}, {expected} was written", path = path.display())]
+    #[diagnostic(help("copy the checkpoint again if this is a copy"))]
+    Checksum { path: PathBuf, found: u32, expected: String },
+    #[error("{path} does not hold what it should: {problem}", path = path.display())]
+    Content { path: PathBuf, problem: String },
+    #[error("{path} cannot be used: {source}", path = path.display())]
+    #[diagnostic(help("{}", remedy(older.as_deref())))]
+    Broken {
+        path: PathBuf,
+        #[source]
+        source: Box<CheckpointError>,
+        /// The complete checkpoint before it.
+        older: Option<PathBuf>,
+    },
+    #[error(
+        "the mesh {path} was changed since the run began: it has {found_bytes} bytes with checksum {found_crc32:08x}, \
+         it had {expected_bytes} with {expected_crc32:08x}",
+        path = path.display()
+    )]
+    #[diagnostic(help("put the file of that run back"))]
+    Mesh { path: PathBuf, found_bytes: u64, found_crc32: u32, expected_bytes: u64, expected_crc32: u32 },
+    #[error("this program plans the scene otherwise than {version} did: {found:?} where {expected:?} stood")]
+    #[diagnostic(help("resume with version {version} of the program"))]
+    OtherPlan { version: String, found: String, expected: String },
+    #[error("{found} particles were handed over for a checkpoint of {expected}")]
+    Particles { found: u64, expected: u64 },
+    #[error("cannot put {what} into a checkpoint: {problem}")]
+    Encode { what: &'static str, problem: String },
+}
+
+fn remedy(older: Option<&Path>) -> String {
+    match older {
+        Some(older) => format!("copy it again if it is a copy, or resume from the one before: {}", older.display()),
+        None => "copy it again if it is a copy; there is no older one beside it".to_owned(),
+    }
+}
+
+impl CheckpointError {
+    /// For `map_err`: what was being done to which file.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+        move |source| CheckpointError::Io { action, path: path.to_path_buf(), source }
+    }
+
+    /// As [`CheckpointError::io`], of a file that a checkpoint must have.
+    pub(super) fn reading(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+        move |source| match source.kind() {
+            io::ErrorKind::NotFound => CheckpointError::Missing { path: path.to_path_buf() },
+            _ => CheckpointError::Io { action: "read", path: path.to_path_buf(), source },
+        }
+    }
+}

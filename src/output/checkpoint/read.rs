@@ -1,0 +1,253 @@
+//! Reading a checkpoint: nothing is believed before its checksum.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+
+use super::error::CheckpointError;
+use super::manifest::{self, Adapter, FileRecord, Manifest};
+use super::origin::length_and_crc;
+use super::{ID_MASK, ID_OFFSET, MANIFEST, OutputState, PLAN, RECORD_BYTES, SCENE, STATE, complete};
+
+/// The state is far smaller: it does not grow with the particles.
+const MOST_STATE_BYTES: u64 = 1 << 30;
+/// What is taken at once for a length that a file claims; more as data come.
+const FIRST_ALLOCATION: u64 = 64 << 20;
+
+/// A checkpoint whose manifest is sound, with the rest checked as [`Checkpoint::open`] or the accessors say.
+#[derive(Debug, Clone)]
+pub struct Checkpoint {
+    path: PathBuf,
+    manifest: Manifest,
+}
+
+impl Checkpoint {
+    /// Opens the checkpoint in the folder `path` and checks all of it: sizes, checksums, meshes, and that the particles'
+    /// ids are each there once.
+    ///
+    /// # Errors
+    /// Why it cannot be used, and which older one there is.
+    pub fn open(path: &Path) -> Result<Checkpoint, CheckpointError> {
+        let whole = || {
+            let checkpoint = Checkpoint::manifest_of(path)?;
+            checkpoint.check_files()?;
+            checkpoint.check_ids()?;
+            Ok(checkpoint)
+        };
+        let checkpoint = whole().map_err(|source| CheckpointError::Broken {
+            path: path.to_path_buf(),
+            source: Box::new(source),
+            older: older_than(path),
+        })?;
+        // The checkpoint is sound; what it needs beside it may not be.
+        checkpoint.manifest.mesh.iter().try_for_each(manifest::MeshRecord::check)?;
+        Ok(checkpoint)
+    }
+
+    /// For other ranks than the one that has opened and checked it: reads the manifest only. What is read later is
+    /// checked then.
+    ///
+    /// # Errors
+    /// If the manifest is not sound.
+    pub fn open_checked(path: &Path) -> Result<Checkpoint, CheckpointError> {
+        Checkpoint::manifest_of(path)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// The scene, TOML.
+    ///
+    /// # Errors
+    /// If the file is not as it was written.
+    pub fn scene(&self) -> Result<String, CheckpointError> {
+        self.text(SCENE)
+    }
+
+    /// The plan, TOML.
+    ///
+    /// # Errors
+    /// If the file is not as it was written.
+    pub fn plan(&self) -> Result<String, CheckpointError> {
+        self.text(PLAN)
+    }
+
+    /// That this program's plan of the scene is the checkpoint's: positions and times are in its units.
+    ///
+    /// # Errors
+    /// If it is not.
+    pub fn check_plan(&self, plan: &str) -> Result<(), CheckpointError> {
+        let written = self.plan()?;
+        if plan == written {
+            return Ok(());
+        }
+        let (mut own, mut theirs) = (plan.lines(), written.lines());
+        loop {
+            let (found, expected) = (own.next(), theirs.next());
+            if found != expected || found.is_none() {
+                let line = |line: Option<&str>| line.unwrap_or_default().to_owned();
+                let version = self.manifest.version.clone();
+                return Err(CheckpointError::OtherPlan { version, found: line(found), expected: line(expected) });
+            }
+        }
+    }
+
+    /// What may make the continuation differ from that of the same machine and program.
+    pub fn warnings(&self, adapter: &Adapter) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let version = env!("CARGO_PKG_VERSION");
+        if self.manifest.version != version {
+            let theirs = &self.manifest.version;
+            warnings
+                .push(format!("the checkpoint was written by version {theirs}, this is {version}: bits may differ"));
+        }
+        let written = &self.manifest.adapter;
+        if written != adapter {
+            warnings.push(format!(
+                "the checkpoint was computed on {} ({}), this is {} ({}): bits may differ from here on",
+                written.name, written.driver, adapter.name, adapter.driver
+            ));
+        }
+        warnings
+    }
+
+    /// The state of the time loop and of the files of the run.
+    ///
+    /// # Errors
+    /// If the file is not as it was written, or holds another kind of state.
+    pub fn state<S: DeserializeOwned>(&self) -> Result<(OutputState, S), CheckpointError> {
+        let (path, bytes) = self.checked(self.record(STATE)?)?;
+        let content = |problem: String| CheckpointError::Content { path: path.clone(), problem };
+        let state = decompress(&bytes, MOST_STATE_BYTES).map_err(content)?;
+        match postcard::take_from_bytes(&state) {
+            Ok((state, [])) => Ok(state),
+            Ok((_, rest)) => Err(content(format!("{} bytes follow the state", rest.len()))),
+            Err(error) => Err(content(error.to_string())),
+        }
+    }
+
+    /// Files of particles; any rank may read any of them.
+    pub fn particle_files(&self) -> usize {
+        self.manifest.particle_files().count()
+    }
+
+    /// The records of file `index`.
+    ///
+    /// # Errors
+    /// If the file is not as it was written.
+    pub fn particles(&self, index: usize) -> Result<Vec<u8>, CheckpointError> {
+        let Some(record) = self.manifest.particle_files().nth(index) else {
+            return Err(CheckpointError::Missing { path: self.path.join(super::particle_file(index)) });
+        };
+        let (path, bytes) = self.checked(record)?;
+        let content = |problem: String| CheckpointError::Content { path: path.clone(), problem };
+        let expected = record.particles * RECORD_BYTES as u64;
+        let records = decompress(&bytes, expected).map_err(content)?;
+        if records.len() as u64 != expected {
+            return Err(content(format!("it has {} bytes of particles, {expected} were written", records.len())));
+        }
+        Ok(records)
+    }
+
+    fn manifest_of(path: &Path) -> Result<Checkpoint, CheckpointError> {
+        let file = path.join(MANIFEST);
+        let bytes = read_up_to(&file, manifest::MOST_BYTES)?;
+        let manifest = Manifest::from_bytes(&file, &bytes)?;
+        Ok(Checkpoint { path: path.to_path_buf(), manifest })
+    }
+
+    fn check_files(&self) -> Result<(), CheckpointError> {
+        for record in &self.manifest.file {
+            let path = self.path.join(&record.name);
+            let mut file = File::open(&path).map_err(CheckpointError::reading(&path))?;
+            let found = length_and_crc(&mut file).map_err(CheckpointError::reading(&path))?;
+            compare(&path, record, found)?;
+        }
+        Ok(())
+    }
+
+    /// Files were found sound one by one; they must also belong together.
+    fn check_ids(&self) -> Result<(), CheckpointError> {
+        let Manifest { ids, .. } = self.manifest;
+        let mut seen: Vec<u64> = Vec::new();
+        for (index, record) in self.manifest.particle_files().enumerate() {
+            let problem = |problem: String| CheckpointError::Content { path: self.path.join(&record.name), problem };
+            for particle in self.particles(index)?.chunks_exact(RECORD_BYTES) {
+                let mut word = [0; 4];
+                word.copy_from_slice(&particle[ID_OFFSET..ID_OFFSET + 4]);
+                let id = u32::from_le_bytes(word) & ID_MASK;
+                if u64::from(id) >= ids {
+                    return Err(problem(format!("it has particle {id}, and only {ids} had entered")));
+                }
+                let (slot, bit) = (id as usize / 64, 1 << (id % 64));
+                if slot >= seen.len() {
+                    seen.resize(slot + 1, 0);
+                }
+                if seen[slot] & bit != 0 {
+                    return Err(problem(format!("particle {id} is in the checkpoint twice, so another is missing")));
+                }
+                seen[slot] |= bit;
+            }
+        }
+        Ok(())
+    }
+
+    fn record(&self, name: &str) -> Result<&FileRecord, CheckpointError> {
+        let found = self.manifest.file.iter().find(|file| file.name == name);
+        found.ok_or_else(|| CheckpointError::Missing { path: self.path.join(name) })
+    }
+
+    fn checked(&self, record: &FileRecord) -> Result<(PathBuf, Vec<u8>), CheckpointError> {
+        let path = self.path.join(&record.name);
+        let bytes = read_up_to(&path, record.bytes.saturating_add(1))?;
+        compare(&path, record, (bytes.len() as u64, crc32fast::hash(&bytes)))?;
+        Ok((path, bytes))
+    }
+
+    fn text(&self, name: &str) -> Result<String, CheckpointError> {
+        let (path, bytes) = self.checked(self.record(name)?)?;
+        String::from_utf8(bytes).map_err(|error| CheckpointError::Content { path, problem: error.to_string() })
+    }
+}
+
+/// The complete checkpoint before that of `path`.
+fn older_than(path: &Path) -> Option<PathBuf> {
+    let mut older = complete(path.parent()?).ok()?.into_iter().rev().map(|(_, other)| other);
+    let name = path.file_name()?;
+    older.find(|other| other.file_name().is_some_and(|other| other < name))
+}
+
+fn compare(path: &Path, record: &FileRecord, (bytes, crc32): (u64, u32)) -> Result<(), CheckpointError> {
+    let path = || path.to_path_buf();
+    if bytes != record.bytes {
+        return Err(CheckpointError::Length { path: path(), found: bytes, expected: record.bytes });
+    }
+    if crc32 != record.crc32 {
+        let expected = format!("{:08x}", record.crc32);
+        return Err(CheckpointError::Checksum { path: path(), found: crc32, expected });
+    }
+    Ok(())
+}
+
+fn read_up_to(path: &Path, most: u64) -> Result<Vec<u8>, CheckpointError> {
+    let file = File::open(path).map_err(CheckpointError::reading(path))?;
+    let mut bytes = Vec::new();
+    file.take(most).read_to_end(&mut bytes).map_err(CheckpointError::reading(path))?;
+    Ok(bytes)
+}
+
+/// At most `most` bytes, or what is wrong.
+fn decompress(bytes: &[u8], most: u64) -> Result<Vec<u8>, String> {
+    let mut content = Vec::with_capacity(most.min(FIRST_ALLOCATION).min(64 * bytes.len() as u64) as usize);
+    let decoder = zstd::Decoder::new(bytes).map_err(|error| error.to_string())?;
+    let mut limited = decoder.take(most.saturating_add(1));
+    limited.read_to_end(&mut content).map_err(|error| error.to_string())?;
+    if content.len() as u64 > most { Err(format!("it holds more than {most} bytes")) } else { Ok(content) }
+}

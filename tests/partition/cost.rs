@@ -1,0 +1,146 @@
+use corpuscle::partition::*;
+
+use super::clouds::Random;
+
+/// Seconds per particle, candidate, wall test and step.
+const TRUE: [f64; 4] = [2e-8, 3e-9, 9e-8, 4e-4];
+
+fn seconds(work: &Work) -> f64 {
+    TRUE[0] * work.particles as f64
+        + TRUE[1] * work.candidates as f64
+        + TRUE[2] * work.wall_tests as f64
+        + TRUE[3] * work.steps as f64
+}
+
+/// Ranks of different gas: some dense, some near walls, and changing in time.
+fn works(ranks: usize, random: &mut Random) -> Vec<Work> {
+    let mut work = || {
+        let particles = 64.0 * (20_000.0 + 100_000.0 * random.unit());
+        Work {
+            particles: particles as u64,
+            candidates: (particles * (2.0 + 28.0 * random.unit())) as u64,
+            wall_tests: (particles * 0.5 * random.unit()) as u64,
+            steps: 64,
+        }
+    };
+    (0..ranks).map(|_| work()).collect()
+}
+
+/// Observes intervals with relative noise on the timers.
+fn observe(model: &mut CostModel, speeds: &[f64], intervals: usize, noise: f64, random: &mut Random) {
+    for _ in 0..intervals {
+        let works = works(speeds.len(), random);
+        let measured = works.iter().zip(speeds).map(|(work, speed)| {
+            let seconds = seconds(work) / speed * (1.0 + noise * random.normal()).max(0.1);
+            Measurement { work: *work, seconds }
+        });
+        let measured: Vec<_> = measured.collect();
+        model.observe(&measured);
+    }
+}
+
+/// Coefficients are recovered from timings with 5 % of noise.
+#[test]
+fn known_coefficients_are_recovered() {
+    let mut model = CostModel::new(By::Cost, 8);
+    observe(&mut model, &[1.0; 8], 60, 0.05, &mut Random(1));
+    let found = model.coefficients();
+    println!("{found:?}");
+    for (feature, tolerance) in [(0, 0.2), (1, 0.1), (2, 0.1)] {
+        assert!((found[feature] / TRUE[feature] - 1.0).abs() < tolerance, "{found:?} against {TRUE:?}");
+    }
+    let work = works(1, &mut Random(2))[0];
+    assert!((model.cost(&work) / seconds(&work) - 1.0).abs() < 0.02);
+    let weights = model.weights();
+    assert_eq!(weights.wall, 16_384, "the largest");
+    assert!((f64::from(weights.candidate) / f64::from(weights.wall) / (TRUE[1] / TRUE[2]) - 1.0).abs() < 0.15);
+}
+
+/// A device of half the speed gets half the share of the others, and the coefficients stay.
+#[test]
+fn a_slow_device_is_found() {
+    let mut model = CostModel::new(By::Cost, 4);
+    observe(&mut model, &[1.0, 1.0, 0.5, 1.0], 60, 0.1, &mut Random(3));
+    let shares = model.shares();
+    println!("{shares:?} {:?}", model.coefficients());
+    assert!((shares[2] / shares[0] - 0.5).abs() < 0.05, "{shares:?}");
+    assert_eq!((shares[0], shares[0]), (shares[1], shares[3]), "the others are alike to the last bit");
+    let candidate = model.coefficients()[1];
+    assert!((candidate / TRUE[1] - 1.0).abs() < 0.2, "{candidate}");
+}
+
+/// 20 % of noise on equal devices moves no share, ever.
+#[test]
+fn noise_moves_no_share() {
+    for seed in 0..10 {
+        let (mut model, mut random) = (CostModel::new(By::Cost, 12), Random(seed));
+        for interval in 0..300 {
+            observe(&mut model, &[1.0; 12], 1, 0.2, &mut random);
+            assert_eq!(model.shares(), [1.0; 12], "seed {seed}, interval {interval}");
+        }
+    }
+}
+
+/// Where the ranks' gas is all alike, nothing can be told apart: the weights keep the prior's ratios.
+#[test]
+fn uniform_gas_keeps_the_prior() {
+    let mut model = CostModel::new(By::Cost, 4);
+    let prior = model.weights();
+    let work = Work { particles: 6_400_000, candidates: 64_000_000, wall_tests: 640_000, steps: 64 };
+    for _ in 0..50 {
+        model.observe(&[Measurement { work, seconds: 0.3 }; 4]);
+    }
+    assert!((model.cost(&work) - 0.3).abs() < 1e-3);
+    let weights = model.weights();
+    assert!(weights.particle.abs_diff(prior.particle) <= prior.particle / 50, "{weights:?} {prior:?}");
+    assert!(weights.candidate.abs_diff(prior.candidate) <= prior.candidate / 50, "{weights:?} {prior:?}");
+}
+
+/// A cost that is none is found to be none, never negative; the coefficients follow when costs change.
+#[test]
+fn coefficients_are_never_negative_and_follow() {
+    let mut model = CostModel::new(By::Cost, 6);
+    let mut random = Random(8);
+    for (candidate, intervals) in [(0.0, 50), (5e-9, 120)] {
+        for _ in 0..intervals {
+            let measured: Vec<_> = works(6, &mut random)
+                .into_iter()
+                .map(|work| {
+                    let seconds = 1e-8 * work.particles as f64 + candidate * work.candidates as f64;
+                    Measurement { work, seconds: seconds * (1.0 + 0.03 * random.normal()) }
+                })
+                .collect();
+            model.observe(&measured);
+            assert!(model.coefficients().iter().all(|cost| *cost >= 0.0));
+        }
+        assert!((model.coefficients()[1] - candidate).abs() < 3e-10, "{:?}", model.coefficients());
+    }
+}
+
+/// Ranks that observe the same hold the same state, also after it was stored; rows without work or time change nothing
+/// but the age of the others.
+#[test]
+fn the_state_is_a_function_of_the_measurements() {
+    let mut one = CostModel::new(By::Cost, 3);
+    let mut other = one.clone();
+    observe(&mut one, &[1.0, 0.7, 1.0], 30, 0.1, &mut Random(4));
+    observe(&mut other, &[1.0, 0.7, 1.0], 15, 0.1, &mut Random(4));
+    assert_ne!(one, other);
+    let mut again = CostModel::new(By::Cost, 3);
+    observe(&mut again, &[1.0, 0.7, 1.0], 30, 0.1, &mut Random(4));
+    assert_eq!(one, again);
+    assert_eq!(one, toml::from_str(&toml::to_string(&one).unwrap()).unwrap());
+    let nothing = Measurement { work: Work::default(), seconds: f64::NAN };
+    again.observe(&[nothing; 3]);
+    assert!(again.coefficients().iter().all(|cost| cost.is_finite() && *cost >= 0.0));
+    assert_eq!(again.shares(), one.shares());
+}
+
+/// By particles, a particle is what counts.
+#[test]
+fn by_particles_counts_particles() {
+    let mut model = CostModel::new(By::Particles, 4);
+    observe(&mut model, &[1.0, 0.5, 1.0, 1.0], 40, 0.01, &mut Random(5));
+    assert_eq!(model.weights(), IntegerWeights { particle: 1, candidate: 0, wall: 0 });
+    assert_eq!(model.shares(), [1.0; 4]);
+}
