@@ -26,7 +26,11 @@ impl Way {
     pub fn new(ranks: usize, mode: BalanceMode, halo_rounds: impl Into<Option<u32>>) -> Way {
         let halo_rounds = halo_rounds.into();
         // Both paces, whole and small batches.
-        let pace = if (ranks as u32 + halo_rounds.unwrap_or_default()).is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime };
+        let pace = if (ranks as u32 + halo_rounds.unwrap_or_default()).is_multiple_of(2) {
+            Pace::Together
+        } else {
+            Pace::OneAtATime
+        };
         Way { ranks, mode, halo_rounds, pace, batch: None, order: None }
     }
 

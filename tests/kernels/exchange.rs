@@ -55,6 +55,9 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
         assert_eq!(rig.counter(COUNT_DROPPED) as usize, dropped);
         assert!(dropped > here / 4 && dropped < here - 200, "some are dropped and some are not: {dropped}");
         assert!(found[here..].iter().all(|bin| *bin == [7, 7]));
+        let came = particles[first..here].iter().filter(|p| local.own.holds(cell(p))).count();
+        assert_eq!(rig.counter(MOVED) as usize, came);
+        assert_eq!(came > 0, more > 0, "arrivals for the own cells");
     }
     let expected: Vec<[u32; 2]> = (0..count)
         .filter(|&i| particles[i].tag != NOBODY && !local.inner.holds(cell(&particles[i])))
@@ -78,12 +81,12 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
     let border: Vec<(usize, [u32; 3])> =
         (0..COUNT / 2).map(|k| (2 * k, std::array::from_fn(|axis| 1 + stream.below(local.grid[axis] - 2)))).collect();
     let mut expected: Vec<(u32, u32)> = Vec::new();
-    let (mut strays, mut moved) = (0, 0);
+    let (mut strays, mut movers) = (0, 0);
     for &(i, cell) in &border {
         let to = (0..).zip(&local.others).filter(|(_, other)| other.away(cell) <= local.depth);
         expected.extend(to.map(|(p, _)| (p, particles[i].tag)));
         let theirs = local.others.iter().any(|other| other.holds(cell));
-        moved += u32::from(theirs);
+        movers += usize::from(theirs);
         strays += u32::from(!theirs && !local.own.holds(cell));
     }
     expected.sort_unstable();
@@ -99,7 +102,7 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
         rig.step(GpuStep { count: COUNT as u32, ..local.step() });
         rig.run("pack", border.len() + 64);
         assert_eq!(rig.counter(COUNT_OUTBOX) as usize, expected.len());
-        assert_eq!([rig.counter(STRAYS), rig.counter(MOVED)], [strays, moved]);
+        assert_eq!(rig.counter(STRAYS), strays);
         let peers: Vec<u32> = rig.get("outbox_peer", room);
         let sent: Vec<GpuParticle> = rig.get("outbox", COUNT * 4);
         let written = room.min(expected.len());
@@ -117,7 +120,7 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
         }
     }
     // The check can fail: there are strays, movers, and particles for two.
-    assert!(strays > 20 && moved > 100 && expected.len() > moved as usize && expected.len() > 400);
+    assert!(strays > 20 && movers > 100 && expected.len() > movers && expected.len() > 400);
 }
 
 /// A crowd in the order of the bins: the cell of each, and where each bin starts.
@@ -218,6 +221,9 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     let elsewhere = (0..COUNT).find(|&s| cells[s] != cells[told[0]]).unwrap();
     updates.push(GpuUpdate { particle: particles[elsewhere], ..updates[0] });
     stream.shuffle(&mut updates);
+    // The first entry says how many follow; what lies beyond is of an earlier message.
+    updates.insert(0, GpuUpdate { cell: updates.len() as u32, ..GpuUpdate::default() });
+    updates.push(GpuUpdate { particle: unknown, ..GpuUpdate::default() });
     let touched: Vec<u32> = (0..COUNT).map(|_| ROUND + stream.below(2)).collect();
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
@@ -227,7 +233,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     rig.put("touched", &touched);
     rig.put("rechoose", &vec![0u32; COUNT]);
     rig.put("peers", &local.peers());
-    rig.step(GpuStep { count: COUNT as u32, round: ROUND, updates: updates.len() as u32, ..local.step() });
+    rig.step(GpuStep { count: COUNT as u32, round: ROUND, ..local.step() });
     rig.run("receive", updates.len());
     assert_eq!(rig.counter(MISSING), 2);
     for &s in &told {
