@@ -123,7 +123,7 @@ fn the_outermost_ghosts_have_no_neighbours() {
     let mut crowd = crowd(14);
     let room = 64;
     let expected = crowd.all_pairs();
-    let layers: Vec<u32> = (0..COUNT as u32).map(|s| s % 4 | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
+    let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
     crowd.rig.put("layers", &layers);
     for depth in [2, 3, 0] {
         crowd.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
