@@ -16,6 +16,7 @@ mod resume;
 mod run;
 mod schema;
 mod settings;
+mod sweep;
 mod terminal;
 
 use std::process::ExitCode;
@@ -54,6 +55,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Run(raw) => run::run(raw, quiet),
         Verb::Refine(raw) => refine::refine(raw),
         Verb::Resume(raw) => resume::resume(raw, quiet),
+        Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),

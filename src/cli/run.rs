@@ -9,6 +9,7 @@ mod devices;
 mod recorder;
 mod reference;
 pub(super) mod table;
+mod timing;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -137,7 +138,8 @@ impl Job<'_> {
         };
         let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         if comm.rank() > 0 {
-            simulation.run(&mut checkpoints)?;
+            let outcome = simulation.run(&mut checkpoints)?;
+            timing::of_ranks(comm, &outcome)?;
             return Ok(());
         }
         let adapter = record(device);
@@ -145,6 +147,9 @@ impl Job<'_> {
         let (folder, recorder) = self.files(adapter)?;
         let step = self.from.as_ref().map_or(0, Beginning::step);
         let mut recorder = recorder.checkpointing(checkpoints.leading(execution.checkpoints, step, origin));
+        if comm.size() > 1 {
+            recorder = recorder.among(folder.path(), step)?;
+        }
         let set_up = self.started.elapsed();
         let result = simulation.run(&mut recorder);
         // What a run that stopped early has measured is of use, above all to find out why it stopped.
@@ -155,6 +160,7 @@ impl Job<'_> {
         if outcome.time >= model.plan.end_time {
             folder.end(&format!("{}\n{}", outcome.audit.render(), totals(&outcome)))?;
         }
+        timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
     }
 

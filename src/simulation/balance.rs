@@ -109,6 +109,8 @@ pub enum BalanceMode {
     /// By the load, whenever that pays.
     #[default]
     Dynamic,
+    /// By the load, so many times as soon as it is known, whether it pays or not: to study a state.
+    AtOnce { times: u32 },
     /// At pseudo-random times to pseudo-random cuts: to test that results do not change.
     Forced { seed: u64 },
 }
@@ -217,6 +219,11 @@ impl Balance {
         }
     }
 
+    /// The interval that was read last, if there are loads of it.
+    pub fn latest(&self) -> Option<&BalanceRecord> {
+        self.records.last()
+    }
+
     pub fn into_records(self) -> Vec<BalanceRecord> {
         self.records
     }
@@ -239,7 +246,7 @@ impl Balance {
                 Some(shares) => ([1, 1, 1], shares),
                 None => return Ok(0.0),
             },
-            BalanceMode::Dynamic => {
+            BalanceMode::Dynamic | BalanceMode::AtOnce { .. } => {
                 if !self.due(step) {
                     return Ok(0.0);
                 }
@@ -259,7 +266,13 @@ impl Balance {
 
     /// Whether it is time to look, and what is seen asks for a rebalance.
     fn due(&mut self, step: u64) -> bool {
-        if step < self.next_check || self.predicted.is_empty() || self.since.is_some() {
+        if self.predicted.is_empty() || self.since.is_some() {
+            return false;
+        }
+        if let BalanceMode::AtOnce { times } = self.options.mode {
+            return self.rebalances.len() < times as usize;
+        }
+        if step < self.next_check {
             return false;
         }
         self.next_check = step + self.options.every;

@@ -3,6 +3,7 @@
 //! Boxes of cells come from recursive coordinate bisection. Without collisions no particle needs to know of
 //! another, so the particles are dealt out by their ids, nothing is exchanged and there is nothing to balance.
 
+use crate::geometry::Grid;
 use crate::gpu::Device;
 use crate::partition::{Bisection, CellBox, Node, PartitionError, TOLERANCE, Tree, bisect};
 use crate::plan::Plan;
@@ -74,6 +75,12 @@ impl Decomposition {
             scattered: self.scattered,
         };
         (peers, place)
+    }
+
+    /// Low and high corner of each rank's box, m.
+    pub fn boxes(&self, grid: &Grid) -> Vec<[[f64; 3]; 2]> {
+        let corner = |cell: [u32; 3]| std::array::from_fn(|a| grid.origin[a] + f64::from(cell[a]) * grid.cell);
+        self.tree.boxes().iter().map(|extent| [corner(extent.low), corner(extent.high)]).collect()
     }
 
     /// Puts the subdomain and its exchange where the tree says.

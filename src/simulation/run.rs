@@ -4,6 +4,7 @@
 //! host code on the inflow. Rank 0 tells the observer.
 
 use std::collections::VecDeque;
+use std::time::Instant;
 
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
@@ -64,6 +65,17 @@ pub trait Observer {
         Ok(())
     }
 
+    /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
+    fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
+
+    /// What the ranks had to do in an interval.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn balance(&mut self, _record: &BalanceRecord) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
     /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
     fn request(&mut self, _steps: u64) -> Request {
         Request::None
@@ -119,6 +131,8 @@ pub struct Outcome {
     /// What this rank sent and waited for.
     pub traffic: Traffic,
     pub balance: Vec<BalanceRecord>,
+    /// Wall time of the steps, s: without the set-up, and without the account at the end.
+    pub stepping_seconds: f64,
 }
 
 /// The ranks of a run.
@@ -169,6 +183,8 @@ pub struct Simulation<'a> {
     /// The run goes on from a state; its start has been accounted for.
     resumed: bool,
     options: Options<'a>,
+    /// The steps began.
+    began: Instant,
 }
 
 impl<'a> Simulation<'a> {
@@ -245,6 +261,7 @@ impl<'a> Simulation<'a> {
             next_snapshot: 0,
             read_until: 0.0,
             repeated: 0,
+            began: Instant::now(),
             wish: Request::None,
             request: Request::None,
             stopping: false,
@@ -315,6 +332,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.began = Instant::now();
         if self.resumed {
             return Ok(());
         }
@@ -322,7 +340,9 @@ impl<'a> Simulation<'a> {
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
-        self.snapshot(observer)
+        self.snapshot(observer)?;
+        self.began = Instant::now();
+        Ok(())
     }
 
     /// Reads an interval that is done and submits one; false, and nothing is done, where the run has
@@ -361,6 +381,7 @@ impl<'a> Simulation<'a> {
         if self.options.checkpoint_at_stop && self.stopped() && !self.stopping && !self.clock.done() {
             self.checkpoint(observer)?;
         }
+        let stepping_seconds = self.began.elapsed().as_secs_f64();
         if self.averages.ready() {
             self.emit_row(observer)?;
         }
@@ -384,6 +405,7 @@ impl<'a> Simulation<'a> {
             time: self.clock.time(),
             repeated: self.repeated,
             step_range: self.account.step_range,
+            stepping_seconds,
         })
     }
 
@@ -549,7 +571,12 @@ impl<'a> Simulation<'a> {
             let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
             self.tuner.measured(slowest, interval.steps, interval.particles);
         }
-        self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+        if !loads.is_empty() {
+            self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+            if let Some(record) = self.balance.latest() {
+                observer.balance(record)?;
+            }
+        }
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
@@ -622,6 +649,9 @@ impl<'a> Simulation<'a> {
         }
         let own = self.subdomain.particles(self.device)?;
         if let Some((particles, owners)) = self.gather(own)? {
+            if let Some(decomposition) = &self.decomposition {
+                observer.boxes(&decomposition.boxes(&self.model.plan.grid));
+            }
             observer.snapshot(self.clock.time(), &particles, &owners)?;
         }
         while self.snapshot_due() && self.next_snapshot <= asked {
