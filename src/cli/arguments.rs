@@ -213,7 +213,9 @@ mod tests {
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }
-        for (option, value) in [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1"), ("--stop-after", "90s")] {
+        for (option, value) in
+            [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1"), ("--stop-after", "90s")]
+        {
             assert!(parse(option, value).is_ok(), "{option} {value}");
         }
     }

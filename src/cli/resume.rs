@@ -143,6 +143,9 @@ mod tests {
         for from in [Path::new("a/b/checkpoints"), &inside("a/b/checkpoints")] {
             assert_eq!(run_folder(from, &inside("a/b/checkpoints")), whole);
         }
-        assert_eq!(run_folder(Path::new("checkpoints"), &inside("checkpoints")), std::path::absolute("").unwrap_or_else(|_| std::env::current_dir().unwrap()));
+        assert_eq!(
+            run_folder(Path::new("checkpoints"), &inside("checkpoints")),
+            std::path::absolute("").unwrap_or_else(|_| std::env::current_dir().unwrap())
+        );
     }
 }

@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{AdapterDescription, Device};
 use crate::output::{
-    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Environment, Origin, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, forget_after,
-    grouped,
+    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Environment, Origin, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE,
+    SCENE_FILE, forget_after, grouped,
 };
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
 use crate::scene::to_toml;
@@ -28,8 +28,8 @@ use super::resume::Beginning;
 use super::settings::RunSettings;
 use super::terminal::say;
 
-pub use checkpoints::Wanted;
 use checkpoints::Checkpoints;
+pub use checkpoints::Wanted;
 use recorder::{Recorder, Totals};
 use reference::Reference;
 
@@ -135,8 +135,7 @@ impl Job<'_> {
             None => Simulation::among(model, device, setup, comm, options)?,
             Some(from) => Simulation::resume(model, device, setup, comm, options, &from.state)?,
         };
-        let mut checkpoints =
-            Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
+        let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         if comm.rank() > 0 {
             simulation.run(&mut checkpoints)?;
             return Ok(());
@@ -175,22 +174,13 @@ impl Job<'_> {
         folder.go_on()?;
         // First, since they count on what is cut off then.
         forget_after(&folder.checkpoints(), from.step())?;
-        let totals = Totals {
-            time: from.time(),
-            steps: from.step(),
-            particle_steps: from.state.account.particle_steps(),
-        };
+        let totals =
+            Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps() };
         let recorder = Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?;
         Ok((folder, recorder))
     }
 
-    fn tell(
-        &self,
-        outcome: &Outcome,
-        set_up: Duration,
-        folder: &OutputFolder,
-        stopped: bool,
-    ) -> Result<(), CliError> {
+    fn tell(&self, outcome: &Outcome, set_up: Duration, folder: &OutputFolder, stopped: bool) -> Result<(), CliError> {
         let limits = audit_limits(&self.settings.model.plan);
         for warning in outcome.audit.warnings(&limits) {
             tracing::warn!("{warning}");

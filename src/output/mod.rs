@@ -30,8 +30,8 @@ pub use checkpoint::{
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    AUDIT_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
-    SNAPSHOT_FOLDER,
+    AUDIT_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE,
+    SCENE_FILE, SNAPSHOT_FOLDER,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use phases::PhaseTable;

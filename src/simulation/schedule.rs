@@ -135,12 +135,7 @@ pub struct Schedule {
 
 impl Schedule {
     /// For a run whose time loop starts, or goes on, at `step` after `elapsed`.
-    pub fn new(
-        every: Option<CheckpointEvery>,
-        stop_after: Option<WallTime>,
-        elapsed: Duration,
-        step: u64,
-    ) -> Schedule {
+    pub fn new(every: Option<CheckpointEvery>, stop_after: Option<WallTime>, elapsed: Duration, step: u64) -> Schedule {
         Schedule {
             every,
             stop_after,
