@@ -228,7 +228,7 @@ pub struct EmulationArguments {
     /// Also run these counts, and set the model beside them; more than 1 needs --launcher
     #[arg(long, requires = "emulate", value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub validate: Vec<u32>,
-    /// Intervals of two steps that are measured
+    /// Intervals of three steps that are measured
     #[arg(long, requires = "emulate", value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10000))]
     pub intervals: u32,
     /// Assumed: microseconds of an exchange with all neighbours

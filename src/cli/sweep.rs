@@ -22,8 +22,8 @@ use super::arguments::{Balance, BalanceBy, EmulationArguments, SweepArguments};
 use super::settings::{model_of, scene_of};
 use super::terminal::say;
 
-/// Steps of an interval that is measured in an emulation: one lap and the step that brings its loads.
-const EMULATED_STEPS: u32 = 2;
+/// Steps of an interval that is measured in an emulation: of the first and last another thing is measured.
+const EMULATED_STEPS: u32 = 3;
 const RUNS_FOLDER: &str = "runs";
 
 pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {

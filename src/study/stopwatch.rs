@@ -4,9 +4,10 @@
 //! between them is its own: its device's, the host's work, and the waits for its device. What it takes to bring
 //! messages is not in it.
 //!
-//! A *stage* is an exchange: messages sent to some, then received. The stages of an interval of k steps are k times
-//! those of a step, and a *lap* goes from the first message of a step to that of the next: what is done once per
-//! interval lies between intervals and is in no lap.
+//! A *stage* is an exchange: messages sent to some, then received. An interval of k steps has k times the stages of a
+//! step, and one more in its first step, where lost collisions are counted. A *lap* goes from the first message of a
+//! step to that of the next. The first step and the last, which is timed by phases, are in no lap, nor is what is done
+//! once per interval: so a lap is a step like most.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -162,11 +163,11 @@ fn laps_of(interval: &[Event], steps: usize) -> Vec<Lap> {
 fn laps_between(run: &[Event], steps: usize) -> Vec<Lap> {
     let sends = |at: usize| matches!(run[at].call, Call::Send(_));
     let stages: Vec<usize> = (0..run.len()).filter(|&at| sends(at) && (at == 0 || !sends(at - 1))).collect();
-    if !stages.len().is_multiple_of(steps) {
+    let (of_step, more) = (stages.len() / steps, stages.len() % steps);
+    if of_step == 0 || more > 1 {
         return Vec::new();
     }
-    let of_step = stages.len() / steps;
-    let firsts: Vec<usize> = stages.iter().copied().step_by(of_step.max(1)).collect();
+    let firsts: Vec<usize> = stages.iter().copied().skip(of_step + more).step_by(of_step).collect();
     let lap = |bounds: &[usize]| {
         let sent = run[bounds[0]..bounds[1]].iter().filter_map(|event| match event.call {
             Call::Send(bytes) => Some(bytes),
@@ -191,34 +192,40 @@ mod tests {
         Event { own: Duration::from_millis(milliseconds), call }
     }
 
-    /// Two steps of two stages with two peers; the numbers are powers of two, so that a sum tells its terms.
-    fn interval() -> Vec<Event> {
-        let mut events = vec![event(512, Call::Mark), event(1024, Call::Collective)];
-        for (k, bytes) in [(0, 10), (1, 20), (2, 30), (3, 40)] {
+    /// Three steps of two stages, and one more in the first, with two peers; the numbers are powers of two, so that a
+    /// sum tells its terms.
+    fn interval(stages: u64) -> Vec<Event> {
+        let mut events = vec![event(1 << 12, Call::Mark), event(1 << 11, Call::Collective)];
+        for k in 0..stages {
+            let bytes = 10 * (k as usize + 1);
             events.push(event(1 << k, Call::Send(bytes)));
             events.push(event(0, Call::Send(bytes + 1)));
             events.push(event(0, Call::Receive));
             events.push(event(0, Call::Receive));
         }
-        events.push(event(256, Call::Collective));
+        events.push(event(1 << 10, Call::Collective));
         events
     }
 
+    /// Of three steps the one in the middle.
     #[test]
     fn a_lap_goes_from_a_steps_first_message_to_the_next_steps() {
-        let laps = laps(&interval(), 2);
-        let expected = Lap { seconds: 0.002 + 0.004, stages: 2.0, messages: 4.0, bytes: 10.0 + 11.0 + 20.0 + 21.0 };
-        assert_eq!(laps, [vec![expected]]);
-        assert_eq!(super::laps(&interval(), 4)[0].len(), 3, "four steps of one stage");
+        let expected = Lap { seconds: 0.016 + 0.032, stages: 2.0, messages: 4.0, bytes: 40.0 + 41.0 + 50.0 + 51.0 };
+        assert_eq!(laps(&interval(7), 3), [vec![expected]]);
+        // Without the counting of lost collisions.
+        let expected = Lap { seconds: 0.008 + 0.016, stages: 2.0, messages: 4.0, bytes: 30.0 + 31.0 + 40.0 + 41.0 };
+        assert_eq!(laps(&interval(6), 3), [vec![expected]]);
+        assert_eq!(laps(&interval(9), 4)[0].len(), 2);
     }
 
     #[test]
     fn what_is_no_whole_interval_of_steps_gives_no_laps() {
-        assert_eq!(laps(&interval(), 3), [vec![]]);
+        assert_eq!(laps(&interval(8), 3), [vec![]]);
+        assert_eq!(laps(&interval(2), 3), [vec![]]);
         // Run again: two runs of exchanges.
-        let again = [interval(), interval()[1..].to_vec()].concat();
-        assert_eq!(laps(&again, 2), [vec![]]);
-        assert_eq!(laps(&[interval(), interval()].concat(), 2).len(), 2);
+        let again = [interval(7), interval(7)[1..].to_vec()].concat();
+        assert_eq!(laps(&again, 3), [vec![]]);
+        assert_eq!(laps(&[interval(7), interval(7)].concat(), 3).len(), 2);
     }
 
     #[test]

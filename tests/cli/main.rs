@@ -73,7 +73,7 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 7] = ["run", "plan", "check", "schema", "adapters", "completions", "man"];
+const VERBS: [&str; 8] = ["run", "sweep", "plan", "check", "schema", "adapters", "completions", "man"];
 
 #[test]
 fn every_verb_has_its_help() {
@@ -85,7 +85,7 @@ fn every_verb_has_its_help() {
 
 #[test]
 fn every_scene_of_the_package_is_sound() {
-    let scenes = ["check", "scenes/box.toml", "scenes/effusion.toml", "scenes/tank.toml"];
+    let scenes = ["check", "scenes/box.toml", "scenes/corner.toml", "scenes/effusion.toml", "scenes/tank.toml"];
     insta::assert_snapshot!("check_scenes", printed(&scenes));
 }
 
@@ -186,7 +186,7 @@ fn a_failed_audit_is_4_and_leaves_its_results() {
     }
 }
 
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
     ".corpuscle-run",
     "environment.json",
     "history.csv",
@@ -197,6 +197,7 @@ const FILES: [&str; 10] = [
     "snapshots/particles_000000.vtu",
     "snapshots/particles_000001.vtu",
     "snapshots/walls.vtp",
+    "timing.json",
 ];
 
 const HEADER: &str = "time_s,window_end_s,step_s,particles,\
