@@ -49,7 +49,10 @@ fn killed(kills: usize, seed: u64, programs: &[Program]) {
             if ended {
                 break;
             }
-            let whom = if processes.len() > 1 { format!("rank {one} of {}", processes.len()) } else { "it".into() };
+            let whom = match processes.len() {
+                1 => "the process".to_owned(),
+                ranks => format!("rank {one} of {ranks}"),
+            };
             let from = newest(&out).map_or("the start".to_owned(), |step| format!("step {step}"));
             lines.push(format!("{whom} killed at row {}, goes on from {from}", rows(&out)));
         }
