@@ -11,10 +11,12 @@ mod completions;
 mod error;
 mod man;
 mod plan;
+mod refine;
 mod resume;
 mod run;
 mod schema;
 mod settings;
+mod sweep;
 mod terminal;
 
 use std::process::ExitCode;
@@ -51,7 +53,9 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
     let quiet = arguments.quiet;
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
+        Verb::Refine(raw) => refine::refine(raw),
         Verb::Resume(raw) => resume::resume(raw, quiet),
+        Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),

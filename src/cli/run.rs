@@ -8,7 +8,8 @@ mod checkpoints;
 mod devices;
 mod recorder;
 mod reference;
-mod table;
+pub(super) mod table;
+mod timing;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -137,7 +138,8 @@ impl Job<'_> {
         };
         let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         if comm.rank() > 0 {
-            simulation.run(&mut checkpoints)?;
+            let outcome = simulation.run(&mut checkpoints)?;
+            timing::of_ranks(comm, &outcome)?;
             return Ok(());
         }
         let adapter = record(device);
@@ -145,6 +147,9 @@ impl Job<'_> {
         let (folder, recorder) = self.files(adapter)?;
         let step = self.from.as_ref().map_or(0, Beginning::step);
         let mut recorder = recorder.checkpointing(checkpoints.leading(execution.checkpoints, step, origin));
+        if comm.size() > 1 {
+            recorder = recorder.among(folder.path(), step)?;
+        }
         let set_up = self.started.elapsed();
         let result = simulation.run(&mut recorder);
         // What a run that stopped early has measured is of use, above all to find out why it stopped.
@@ -152,6 +157,7 @@ impl Job<'_> {
         let outcome = result?;
         drawn?;
         recorder.finish(&outcome)?;
+        timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         if outcome.time >= model.plan.end_time {
             folder.end(&format!("{}\n{}", outcome.audit.render(), totals(&outcome)))?;
         }

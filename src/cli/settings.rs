@@ -66,7 +66,7 @@ pub struct Sharing {
 
 impl Sharing {
     fn new(raw: &SharingArguments) -> Result<Sharing, CliError> {
-        let threshold = raw.balance_threshold;
+        let threshold = raw.tuning.balance_threshold;
         if !(threshold.is_finite() && threshold >= 1.0) {
             return Err(CliError::Threshold { found: threshold });
         }
@@ -75,14 +75,14 @@ impl Sharing {
             Balance::Initial => BalanceMode::Initial,
             Balance::Dynamic => BalanceMode::Dynamic,
         };
-        let by = match raw.balance_by {
+        let by = match raw.tuning.balance_by {
             BalanceBy::Cost => By::Cost,
             BalanceBy::Particles => By::Particles,
         };
         Ok(Sharing {
             subdomains: raw.subdomains.unwrap_or(1) as usize,
-            balance: BalanceOptions { mode, by, every: raw.balance_every, threshold },
-            halo_rounds: raw.halo_rounds,
+            balance: BalanceOptions { mode, by, every: raw.tuning.balance_every, threshold },
+            halo_rounds: raw.tuning.halo_rounds,
         })
     }
 }

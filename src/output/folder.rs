@@ -18,15 +18,36 @@ pub const ENVIRONMENT_FILE: &str = "environment.json";
 pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
 /// Only there once the run has reached its end and all else is written.
 pub const AUDIT_FILE: &str = "audit.txt";
+pub const BALANCE_FILE: &str = "balance.csv";
+pub const SUBDOMAIN_CHART_FILE: &str = "subdomains.svg";
+pub const TIMING_FILE: &str = "timing.json";
+pub const SWEEP_FILE: &str = "sweep.csv";
+pub const SWEEP_TABLE_FILE: &str = "sweep.md";
+pub const SWEEP_CHART_FILE: &str = "sweep.svg";
+pub const SWEEP_MODEL_CHART_FILE: &str = "sweep_modelled.svg";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
-/// Everything a run writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 7] =
-    [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE, AUDIT_FILE];
+/// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
+const RESULT_FILES: [&str; 14] = [
+    MARKER_FILE,
+    HISTORY_FILE,
+    PLAN_FILE,
+    SCENE_FILE,
+    ENVIRONMENT_FILE,
+    PRESSURE_CHART_FILE,
+    AUDIT_FILE,
+    BALANCE_FILE,
+    SUBDOMAIN_CHART_FILE,
+    TIMING_FILE,
+    SWEEP_FILE,
+    SWEEP_TABLE_FILE,
+    SWEEP_CHART_FILE,
+    SWEEP_MODEL_CHART_FILE,
+];
 
 /// A folder that exists, holds no earlier results, and carries the marker.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -77,7 +77,7 @@ impl Setup {
 
 /// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without
 /// surfaces.
-fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
+pub(super) fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
     let mut patches = Vec::new();
     if model.scene.surfaces.is_empty() {
         return (Vec::new(), patches);
