@@ -6,7 +6,7 @@ use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
 
 use crate::simulation::{CheckpointEvery, WallTime};
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input, 3 device trouble, 4 the audit failed.";
+const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked, 2 bad input, 3 device trouble, 4 the audit failed.";
 
 /// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags
 #[derive(Debug, Parser)]

@@ -2,7 +2,7 @@
 //!
 //! Raw arguments ([`Arguments`], what was typed) become settings (what is meant: a scene with its overrides, a
 //! folder) before anything is done. Results go to standard output, messages to standard error. Exit codes:
-//! 0 done; 2 bad input; 3 device trouble; 4 the audit failed.
+//! 0 done, or stopped as asked with a checkpoint; 2 bad input; 3 device trouble; 4 the audit failed.
 
 mod adapters;
 mod arguments;

@@ -157,10 +157,10 @@ impl Job<'_> {
         let outcome = result?;
         drawn?;
         recorder.finish(&outcome)?;
+        timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         if outcome.time >= model.plan.end_time {
             folder.end(&format!("{}\n{}", outcome.audit.render(), totals(&outcome)))?;
         }
-        timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
     }
 

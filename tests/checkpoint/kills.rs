@@ -31,11 +31,12 @@ fn killed(kills: usize, seed: u64, programs: &[Program]) {
                 None => case.run(program, &name, &every),
                 Some(_) => case.resume(program, &name, &every),
             };
-            // Mostly while it computes and writes; sometimes while it sets up or reads the checkpoint.
+            // Mostly anywhere in what is left, while it computes and writes; sometimes while it sets up or reads.
             if numbers.between(0, 5) > 0 {
-                running.until(|| newest(&out) > before);
+                let target = numbers.between(before.unwrap_or(0), case.steps - 32);
+                running.until(|| newest(&out) > before.max(Some(target)));
             }
-            std::thread::sleep(Duration::from_millis(numbers.between(0, 500)));
+            std::thread::sleep(Duration::from_millis(numbers.between(0, 200)));
             let processes = running.processes();
             ended = running.has_ended();
             if ended || processes.is_empty() {
@@ -49,7 +50,10 @@ fn killed(kills: usize, seed: u64, programs: &[Program]) {
             if ended {
                 break;
             }
-            let whom = if processes.len() > 1 { format!("rank {one} of {}", processes.len()) } else { "it".into() };
+            let whom = match processes.len() {
+                1 => "the process".to_owned(),
+                ranks => format!("rank {one} of {ranks}"),
+            };
             let from = newest(&out).map_or("the start".to_owned(), |step| format!("step {step}"));
             lines.push(format!("{whom} killed at row {}, goes on from {from}", rows(&out)));
         }

@@ -18,7 +18,7 @@ fn stopped() -> (Case, PathBuf) {
 /// What is said; messages are broken into lines where they like.
 fn refused(case: &Case, name: &str, more: &[&str]) -> String {
     let (code, stdout, stderr) = case.resume(&Program::alone(), name, more).end();
-    assert_eq!((code, stdout.as_str()), (Some(2), ""), "{stderr}");
+    assert!(code == Some(2) && !stdout.contains("Audit"), "{code:?} {stdout}{stderr}");
     stderr.replace(['\n', '│', ' '], "")
 }
 
