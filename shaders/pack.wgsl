@@ -28,10 +28,7 @@ fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
                 outbox[k] = particle;
                 outbox_peer[k] = p;
             }
-            if (owns(peers[p], place, 0)) {
-                owned = true;
-                atomicAdd(&counters[MOVED], 1u);
-            }
+            owned = owned || owns(peers[p], place, 0);
         }
     }
     if (!owned) {

@@ -13,8 +13,9 @@
 
 @compute @workgroup_size(WORKGROUP)
 fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = linear(id, groups);
-    if (entry >= step.updates) {
+    // The first entry says how many follow.
+    let entry = linear(id, groups) + 1u;
+    if (entry > updates_in[0].cell) {
         return;
     }
     let tag = updates_in[entry].particle.tag;

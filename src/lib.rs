@@ -12,4 +12,5 @@ pub mod plan;
 pub mod ranks;
 pub mod scene;
 pub mod simulation;
+pub mod study;
 pub mod subdomain;

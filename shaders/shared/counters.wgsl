@@ -17,4 +17,4 @@ const FOREIGN: u32 = 44;            // pairs settled here that another device co
 const STRAYS: u32 = 45;             // particles whose owner is none of the peers
 const MISSING: u32 = 46;            // updates of ghosts that are not here
 const CANDIDATES: u32 = 47;         // entries of the neighbour lists at the last step before the read
-const MOVED: u32 = 48;              // particles sent to another owner since the last read
+const MOVED: u32 = 48;              // particles that came from another owner since the last read

@@ -36,8 +36,7 @@ struct Step {
     // The first slot to bin.
     first: u32,
     inner_high: vec3<u32>,
-    // Updates of ghosts that came in for this round.
-    updates: u32,
+    pad: u32,
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
     near_peers: u32,

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input, 3 device trouble, 4 the audit failed.";
+use crate::simulation::{CheckpointEvery, WallTime};
+
+const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked, 2 bad input, 3 device trouble, 4 the audit failed.";
 
 /// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags
 #[derive(Debug, Parser)]
@@ -46,6 +48,10 @@ pub enum Verb {
     Run(RunArguments),
     /// Split the particles of a checkpoint into more and smaller ones; opens no device
     Refine(RefineArguments),
+    /// Go on with a run from its last checkpoint, on any number of devices
+    Resume(ResumeArguments),
+    /// Run a scene on several counts of devices, or emulate them, and compare
+    Sweep(SweepArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -85,15 +91,38 @@ pub struct RunArguments {
     /// Write into a folder that holds more than an earlier run's results
     #[arg(long)]
     pub force: bool,
+    #[command(flatten)]
+    pub execution: ExecutionArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct ResumeArguments {
+    /// The folder of the run, or one of its checkpoints
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub from: PathBuf,
+    #[command(flatten)]
+    pub execution: ExecutionArguments,
+}
+
+/// How a run is done; changes no result.
+#[derive(Debug, Args)]
+pub struct ExecutionArguments {
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,
     /// Steps per submission to the device; changes no result
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub batch: Option<u32>,
-    /// Stop after that many steps, at the end of an interval
+    /// Stop after that many steps since the start of the run, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
+    /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
+    #[arg(long, value_name = "STEPS|WALLTIME")]
+    pub checkpoint_every: Option<CheckpointEvery>,
+    /// Write a checkpoint and stop before the program has run so long (3h50m, 3:50:00)
+    #[arg(long, value_name = "WALLTIME")]
+    pub stop_after: Option<WallTime>,
     #[command(flatten)]
     pub sharing: SharingArguments,
 }
@@ -108,6 +137,14 @@ pub struct SharingArguments {
     /// Who owns which part of the space: equal boxes, boxes balanced at the start, or balanced as the gas moves
     #[arg(long, value_enum, default_value_t = Balance::Dynamic)]
     pub balance: Balance,
+    #[command(flatten)]
+    pub tuning: TuningArguments,
+}
+
+/// When and by what the work is shared out anew.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sharing the work (changes no result)")]
+pub struct TuningArguments {
     /// Steps between two looks at the balance
     #[arg(long, value_name = "STEPS", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..))]
     pub balance_every: u64,
@@ -117,7 +154,7 @@ pub struct SharingArguments {
     /// What is balanced: the measured cost, or the number of particles
     #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
     pub balance_by: BalanceBy,
-    /// Rounds of collisions between two exchanges of the subdomains' borders: more rounds, wider borders
+    /// Rounds of collisions between two exchanges of borders: more are fewer messages and wider borders [default: what proves fastest]
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
     pub halo_rounds: Option<u32>,
 }
@@ -133,6 +170,82 @@ pub enum Balance {
 pub enum BalanceBy {
     Cost,
     Particles,
+}
+
+/// Counts of devices that the machine has are run, others can be emulated on one of its devices.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct SweepArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The counts of devices
+    #[arg(long, required = true, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub devices: Vec<u32>,
+    /// The ways to share the work out, each with every count
+    #[arg(long, value_enum, value_name = "WAY,...", value_delimiter = ',', default_values_t = [Balance::Off, Balance::Dynamic])]
+    pub balance: Vec<Balance>,
+    /// The folder for the results [default: results/<name of the scene file>-sweep]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than an earlier sweep's results
+    #[arg(long)]
+    pub force: bool,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+    #[command(flatten)]
+    pub runs: RealRunArguments,
+    #[command(flatten)]
+    pub emulation: EmulationArguments,
+    #[command(flatten)]
+    pub tuning: TuningArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Real runs")]
+pub struct RealRunArguments {
+    /// What starts a rank per device, such as "mpirun --bind-to none"; it is given `-n N` [default: none, the
+    /// devices are subdomains of one process on one device]
+    #[arg(long, value_name = "COMMAND")]
+    pub launcher: Option<String>,
+    /// Times that every count is run; medians are told
+    #[arg(long, value_name = "TIMES", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub repeat: u32,
+    /// Stop each run after that many steps, at the end of an interval
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub steps: Option<u64>,
+    /// So many times the particles on so many devices: hold the particles of each device
+    #[arg(long, conflicts_with = "emulate")]
+    pub weak: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Emulation")]
+pub struct EmulationArguments {
+    /// Measure the subdomains one at a time on one device, and model the time on so many
+    #[arg(long)]
+    pub emulate: bool,
+    /// Also run these counts, and set the model beside them; more than 1 needs --launcher
+    #[arg(long, requires = "emulate", value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub validate: Vec<u32>,
+    /// Intervals of two steps that are measured
+    #[arg(long, requires = "emulate", value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    pub intervals: u32,
+    /// Assumed: microseconds of an exchange with all neighbours
+    #[arg(long, requires = "emulate", value_name = "US", default_value_t = 5.0)]
+    pub latency_us: f64,
+    /// Assumed: gigabytes per second that a device sends
+    #[arg(long, requires = "emulate", value_name = "GB/S", default_value_t = 10.0)]
+    pub bandwidth_gbs: f64,
+    /// Assumed of a GPU: nanoseconds per unit of work, that of a mean particle's step
+    #[arg(long, requires = "emulate", value_name = "NS", default_value_t = 1.0)]
+    pub gpu_particle_ns: f64,
+    /// Assumed of a GPU: microseconds per pass
+    #[arg(long, requires = "emulate", value_name = "US", default_value_t = 10.0)]
+    pub gpu_pass_us: f64,
+    /// Assumed of a GPU: microseconds until the host knows that it is done, in each exchange
+    #[arg(long, requires = "emulate", value_name = "US", default_value_t = 20.0)]
+    pub gpu_wait_us: f64,
 }
 
 #[derive(Debug, Args)]
@@ -199,10 +312,15 @@ mod tests {
             ("--seed", "72057594037927936"),
             ("--batch", "0"),
             ("--steps", "-1"),
+            ("--checkpoint-every", "0"),
+            ("--checkpoint-every", "often"),
+            ("--stop-after", "90"),
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }
-        for (option, value) in [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1")] {
+        for (option, value) in
+            [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1"), ("--stop-after", "90s")]
+        {
             assert!(parse(option, value).is_ok(), "{option} {value}");
         }
     }

@@ -9,6 +9,7 @@ use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
 use crate::scene::SceneError;
 use crate::simulation::{ModelError, RefineError, SimulationError};
+use crate::study::StudyError;
 
 pub const BAD_INPUT: u8 = 2;
 pub const DEVICE_TROUBLE: u8 = 3;
@@ -54,8 +55,25 @@ pub enum CliError {
     #[error("{}: this is the folder of the run to be refined", path.display())]
     #[diagnostic(help("name another with --out: the refined run is a run of its own"))]
     RefinedOntoItself { path: PathBuf },
+    #[error("--steps {asked}: the run has done {done} steps already")]
+    #[diagnostic(help("--steps counts from the start of the run; leave it out to go on to the end of the scene"))]
+    StepsDone { asked: u64, done: u64 },
+    #[error("the system does not let signals be caught: {0}")]
+    Signals(std::io::Error),
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
+    #[error("{option} {found}: expected {expected}")]
+    SweepFigure { option: &'static str, found: f64, expected: &'static str },
+    #[error("--launcher is empty: expected a program and its arguments, such as \"mpirun --bind-to none\"")]
+    NoLauncher,
+    #[error(
+        "--validate {devices} without --launcher: subdomains of one process share one device, the model has {devices}"
+    )]
+    #[diagnostic(help("add --launcher \"mpirun --bind-to none\", or validate 1"))]
+    ValidateOnOne { devices: u32 },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Study(#[from] StudyError),
     #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
     #[diagnostic(help("leave out --subdomains, or start the program without the launcher"))]
     SubdomainsOfRanks { asked: usize, ranks: usize },
@@ -79,6 +97,7 @@ impl CliError {
 
     pub fn exit_code(&self) -> u8 {
         match self {
+            CliError::Study(error) => study_code(error),
             CliError::Gpu(_)
             | CliError::Rank(_)
             | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => DEVICE_TROUBLE,
@@ -99,12 +118,36 @@ impl CliError {
             | CliError::Checkpoint(_)
             | CliError::Refine(_)
             | CliError::RefinedOntoItself { .. }
+            | CliError::StepsDone { .. }
+            | CliError::Signals(_)
             | CliError::Threshold { .. }
+            | CliError::SweepFigure { .. }
+            | CliError::NoLauncher
+            | CliError::ValidateOnOne { .. }
             | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)
             | CliError::SchemaJson(_)
             | CliError::StandardOutput(_)
             | CliError::UnknownVerb { .. } => BAD_INPUT,
+        }
+    }
+}
+
+/// A run that failed says itself whose fault it was.
+fn study_code(error: &StudyError) -> u8 {
+    match error {
+        StudyError::Bits { .. } => AUDIT_FAILED,
+        StudyError::Run { code, .. } => match code {
+            Some(2) => BAD_INPUT,
+            Some(4) => AUDIT_FAILED,
+            _ => DEVICE_TROUBLE,
+        },
+        StudyError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) | StudyError::Rank(_) => {
+            DEVICE_TROUBLE
+        }
+        StudyError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
+        StudyError::Start { .. } | StudyError::TooShort { .. } | StudyError::Output(_) | StudyError::Simulation(_) => {
+            BAD_INPUT
         }
     }
 }

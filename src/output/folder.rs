@@ -16,15 +16,38 @@ pub const PLAN_FILE: &str = "plan.toml";
 pub const SCENE_FILE: &str = "scene.toml";
 pub const ENVIRONMENT_FILE: &str = "environment.json";
 pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
+/// Only there once the run has reached its end and all else is written.
+pub const AUDIT_FILE: &str = "audit.txt";
+pub const BALANCE_FILE: &str = "balance.csv";
+pub const SUBDOMAIN_CHART_FILE: &str = "subdomains.svg";
+pub const TIMING_FILE: &str = "timing.json";
+pub const SWEEP_FILE: &str = "sweep.csv";
+pub const SWEEP_TABLE_FILE: &str = "sweep.md";
+pub const SWEEP_CHART_FILE: &str = "sweep.svg";
+pub const SWEEP_MODEL_CHART_FILE: &str = "sweep_modelled.svg";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
-/// Everything a run writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 6] =
-    [MARKER_FILE, HISTORY_FILE, PLAN_FILE, SCENE_FILE, ENVIRONMENT_FILE, PRESSURE_CHART_FILE];
+/// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
+const RESULT_FILES: [&str; 14] = [
+    MARKER_FILE,
+    HISTORY_FILE,
+    PLAN_FILE,
+    SCENE_FILE,
+    ENVIRONMENT_FILE,
+    PRESSURE_CHART_FILE,
+    AUDIT_FILE,
+    BALANCE_FILE,
+    SUBDOMAIN_CHART_FILE,
+    TIMING_FILE,
+    SWEEP_FILE,
+    SWEEP_TABLE_FILE,
+    SWEEP_CHART_FILE,
+    SWEEP_MODEL_CHART_FILE,
+];
 
 /// A folder that exists, holds no earlier results, and carries the marker.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -75,6 +98,25 @@ impl OutputFolder {
 
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether the run in it has reached its end.
+    pub fn has_ended(&self) -> bool {
+        self.path.join(AUDIT_FILE).exists()
+    }
+
+    /// Writes the audit: the run has reached its end.
+    pub fn end(&self, audit: &str) -> Result<PathBuf, OutputError> {
+        self.write_text(AUDIT_FILE, audit)
+    }
+
+    /// The run in it goes on: it has not ended.
+    pub fn go_on(&self) -> Result<(), OutputError> {
+        let path = self.path.join(AUDIT_FILE);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(OutputError::io("remove", &path)(error)),
+            _ => Ok(()),
+        }
     }
 
     /// Where the run's checkpoints are; made with the first.
@@ -248,6 +290,21 @@ mod tests {
         finished_run(dir.path());
         OutputFolder::open(dir.path()).unwrap();
         assert!(dir.path().join(HISTORY_FILE).exists());
+    }
+
+    /// The audit is there from the end of a run until it goes on or another takes its place.
+    #[test]
+    fn only_an_ended_run_has_its_audit() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(dir.path(), false).unwrap();
+        assert!(!folder.has_ended());
+        folder.go_on().unwrap();
+        folder.end("all is well").unwrap();
+        assert!(OutputFolder::open(dir.path()).unwrap().has_ended());
+        folder.go_on().unwrap();
+        assert!(!folder.has_ended());
+        folder.end("all is well").unwrap();
+        assert!(!OutputFolder::create(dir.path(), false).unwrap().has_ended());
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 mod appended;
 mod audit;
+mod balance;
 mod chart;
 mod checkpoint;
 mod environment;
@@ -16,12 +17,15 @@ mod history;
 mod phases;
 mod progress;
 mod snapshot;
+mod subdomains;
 mod table;
 mod ticks;
+mod timing;
 mod vtk;
 
 pub use appended::{AppendedFile, AppendedState};
 pub use audit::{Audit, AuditLimits};
+pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
     Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, MeshRecord, Moment, Origin,
@@ -30,11 +34,14 @@ pub use checkpoint::{
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE,
-    SNAPSHOT_FOLDER,
+    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE,
+    PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER, SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE,
+    SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use phases::PhaseTable;
 pub use progress::Progress;
 pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
+pub use subdomains::{Frame, subdomain_chart};
 pub use table::grouped;
+pub use timing::{RankTiming, Timing};

@@ -114,8 +114,22 @@ impl SnapshotWriter {
     /// Writes the particles at `time` (s) in the order given and lists the file in the collection.
     /// Returns the new file's path.
     pub fn write(&mut self, time: f64, particles: &[ParticleRow]) -> Result<PathBuf, OutputError> {
+        self.write_among(time, particles, None)
+    }
+
+    /// The same with the subdomain of each particle, as an array of that name.
+    pub fn write_among(
+        &mut self,
+        time: f64,
+        particles: &[ParticleRow],
+        subdomains: Option<&[u32]>,
+    ) -> Result<PathBuf, OutputError> {
         let path = self.folder.join(file_name(self.written.len()));
-        let data = particle_data(time, particles);
+        let mut data = particle_data(time, particles);
+        if let Some(subdomains) = subdomains {
+            let array = Array::new("subdomain", "UInt32", subdomains.iter(), |rank| [rank.to_le_bytes()]);
+            data.sections[0].arrays.push(array);
+        }
         write_atomically(&path, |out| data.write(out))?;
         let bytes = fs::metadata(&path).map_err(OutputError::io("measure", &path))?.len();
         self.written.push(Written { time, bytes });

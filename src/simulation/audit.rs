@@ -80,6 +80,13 @@ pub struct AccountState {
     phases: Vec<(String, f64, u64)>,
 }
 
+impl AccountState {
+    /// The particles of each step, summed.
+    pub fn particle_steps(&self) -> u64 {
+        self.particle_steps
+    }
+}
+
 impl Account {
     pub fn new(plan: &Plan) -> Account {
         Account {

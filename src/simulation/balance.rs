@@ -30,14 +30,16 @@ pub struct Load {
     pub walls: u64,
     /// Particles that it owns.
     pub owned: u64,
-    /// In the interval: particles that went to another owner, and bytes that were sent.
+    /// In the interval: particles that came from another owner, and bytes that were sent.
     pub moved: u64,
     pub bytes: u64,
+    /// Wall time of the interval, s.
+    pub wall: f64,
     /// Spent on a rebalance and on bringing the particles home, s.
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 8;
+const LOAD_WORDS: usize = 9;
 
 impl Load {
     /// `traffic`: that of the interval.
@@ -50,6 +52,7 @@ impl Load {
             owned: own.blocks.iter().map(|block| block.number).sum(),
             moved: own.counters.moved.into(),
             bytes: traffic.bytes,
+            wall: traffic.wall_seconds,
             rebalancing: traffic.rebalancing_seconds,
         }
     }
@@ -67,6 +70,7 @@ impl Load {
             self.moved,
             self.bytes,
             nanoseconds(self.rebalancing),
+            nanoseconds(self.wall),
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -84,6 +88,7 @@ impl Load {
             moved: w[5],
             bytes: w[6],
             rebalancing: 1e-9 * w[7] as f64,
+            wall: 1e-9 * w[8] as f64,
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }
@@ -104,6 +109,8 @@ pub enum BalanceMode {
     /// By the load, whenever that pays.
     #[default]
     Dynamic,
+    /// By the load, so many times as soon as it is known, whether it pays or not: to study a state.
+    AtOnce { times: u32 },
     /// At pseudo-random times to pseudo-random cuts: to test that results do not change.
     Forced { seed: u64 },
 }
@@ -212,6 +219,11 @@ impl Balance {
         }
     }
 
+    /// The interval that was read last, if there are loads of it.
+    pub fn latest(&self) -> Option<&BalanceRecord> {
+        self.records.last()
+    }
+
     pub fn into_records(self) -> Vec<BalanceRecord> {
         self.records
     }
@@ -234,7 +246,7 @@ impl Balance {
                 Some(shares) => ([1, 1, 1], shares),
                 None => return Ok(0.0),
             },
-            BalanceMode::Dynamic => {
+            BalanceMode::Dynamic | BalanceMode::AtOnce { .. } => {
                 if !self.due(step) {
                     return Ok(0.0);
                 }
@@ -254,7 +266,13 @@ impl Balance {
 
     /// Whether it is time to look, and what is seen asks for a rebalance.
     fn due(&mut self, step: u64) -> bool {
-        if step < self.next_check || self.predicted.is_empty() || self.since.is_some() {
+        if self.predicted.is_empty() || self.since.is_some() {
+            return false;
+        }
+        if let BalanceMode::AtOnce { times } = self.options.mode {
+            return self.rebalances.len() < times as usize;
+        }
+        if step < self.next_check {
             return false;
         }
         self.next_check = step + self.options.every;

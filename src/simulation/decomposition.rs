@@ -3,6 +3,7 @@
 //! Boxes of cells come from recursive coordinate bisection. Without collisions no particle needs to know of
 //! another, so the particles are dealt out by their ids, nothing is exchanged and there is nothing to balance.
 
+use crate::geometry::Grid;
 use crate::gpu::Device;
 use crate::partition::{Bisection, CellBox, Node, PartitionError, TOLERANCE, Tree, bisect};
 use crate::plan::Plan;
@@ -76,6 +77,12 @@ impl Decomposition {
         (peers, place)
     }
 
+    /// Low and high corner of each rank's box, m.
+    pub fn boxes(&self, grid: &Grid) -> Vec<[[f64; 3]; 2]> {
+        let corner = |cell: [u32; 3]| std::array::from_fn(|a| grid.origin[a] + f64::from(cell[a]) * grid.cell);
+        self.tree.boxes().iter().map(|extent| [corner(extent.low), corner(extent.high)]).collect()
+    }
+
     /// Puts the subdomain and its exchange where the tree says.
     ///
     /// # Errors
@@ -89,6 +96,12 @@ impl Decomposition {
         let (peers, place) = self.place();
         exchange.set_peers(peers, place.near);
         Ok(subdomain.move_to(device, place)?)
+    }
+
+    /// Rounds between two exchanges from now on; true if that is a change.
+    pub fn set_rounds(&mut self, rounds: u32) -> bool {
+        let depth = 2 * rounds;
+        std::mem::replace(&mut self.depth, depth) != depth
     }
 
     /// From now on particles may be with anyone, until the exchange of a step has brought them home.

@@ -1,6 +1,8 @@
 //! One interval of steps: what it needs to run, and to run again. Its step size is fixed, its newborns are
 //! known, and its tallies are read one interval late.
 
+use std::time::Instant;
+
 use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
@@ -157,6 +159,7 @@ impl Machine<'_, '_> {
     /// Encodes and submits the interval, `batch` steps a submission. Neither the batches nor the timed step
     /// change a bit of the result.
     pub fn submit(&mut self, interval: Interval, spare: Option<wgpu::Buffer>) -> Result<InFlight, SimulationError> {
+        let start = Instant::now();
         let (plan, device) = (self.plan, self.device);
         if let Some(decomposition) = self.decomposition.as_deref_mut()
             && decomposition.is_scattered()
@@ -179,7 +182,7 @@ impl Machine<'_, '_> {
         for (k, mut slot) in slots.into_iter().enumerate() {
             let sampling = Sampling { lost: k == 0, tally: tallied(plan, interval.first_step + k as u64) };
             rec.time(self.timer.filter(|_| k == last));
-            self.subdomain.begin_step(device, &mut slot);
+            self.subdomain.begin_step(device, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);
@@ -199,6 +202,7 @@ impl Machine<'_, '_> {
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;
         let submission = rec.submit();
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
+        self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();
         Ok(InFlight { before, tallies, phases, present, traffic, interval })
     }

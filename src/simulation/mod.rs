@@ -21,6 +21,7 @@ mod run_state;
 mod schedule;
 mod setup;
 mod step;
+mod tuning;
 
 pub use audit::{AccountState, audit_limits};
 pub use averages::{AveragesState, Layout, Row, SurfaceState, ZoneState};

@@ -4,6 +4,7 @@
 //! host code on the inflow. Rank 0 tells the observer.
 
 use std::collections::VecDeque;
+use std::time::Instant;
 
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
@@ -24,13 +25,11 @@ use super::ladder::{Demand, Ladder};
 use super::model::Model;
 use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::{Setup, Shuffle};
+use super::tuning::Tuner;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
-/// Rounds of collisions between two exchanges, unless said otherwise: the halo has twice as many layers.
-const HALO_ROUNDS: u32 = 2;
-
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
@@ -40,7 +39,10 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
-    /// Rounds of collisions between two exchanges of ghosts; a divisor of the plan's rounds wastes least.
+    /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
+    pub checkpoint_at_stop: bool,
+    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
+    /// many layers of cells.
     pub halo_rounds: Option<u32>,
     pub balance: BalanceOptions,
 }
@@ -60,6 +62,17 @@ pub trait Observer {
     /// # Errors
     /// What stops the run.
     fn snapshot(&mut self, _time: f64, _particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
+    fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
+
+    /// What the ranks had to do in an interval.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn balance(&mut self, _record: &BalanceRecord) -> Result<(), SimulationError> {
         Ok(())
     }
 
@@ -93,6 +106,8 @@ pub struct Moment<'a> {
     /// Of this rank.
     pub own: &'a [GpuParticle],
     pub comm: &'a dyn Communicator,
+    /// The run stops here because it was asked to.
+    pub stopping: bool,
 }
 
 /// What a run leaves.
@@ -116,6 +131,8 @@ pub struct Outcome {
     /// What this rank sent and waited for.
     pub traffic: Traffic,
     pub balance: Vec<BalanceRecord>,
+    /// Wall time of the steps, s: without the set-up, and without the account at the end.
+    pub stepping_seconds: f64,
 }
 
 /// The ranks of a run.
@@ -142,6 +159,7 @@ pub struct Simulation<'a> {
     /// `None` on a rank alone, and where particles are dealt out by their ids.
     decomposition: Option<Decomposition>,
     balance: Balance,
+    tuner: Tuner,
     inflow: Inflow,
     clock: Clock,
     ladder: Ladder,
@@ -165,6 +183,8 @@ pub struct Simulation<'a> {
     /// The run goes on from a state; its start has been accounted for.
     resumed: bool,
     options: Options<'a>,
+    /// The steps began.
+    began: Instant,
 }
 
 impl<'a> Simulation<'a> {
@@ -205,7 +225,7 @@ impl<'a> Simulation<'a> {
         let (size, rank) = (comm.size() as u32, comm.rank() as u32);
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
-            let rounds = options.halo_rounds.unwrap_or(HALO_ROUNDS).clamp(1, plan.rounds.max(1));
+            let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
             let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
             let cut = Decomposition::new(plan, comm, rounds, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
@@ -226,6 +246,7 @@ impl<'a> Simulation<'a> {
             },
             decomposition,
             balance: Balance::new(options.balance, comm.size()),
+            tuner: Tuner::new(plan.rounds, options.halo_rounds),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -240,6 +261,7 @@ impl<'a> Simulation<'a> {
             next_snapshot: 0,
             read_until: 0.0,
             repeated: 0,
+            began: Instant::now(),
             wish: Request::None,
             request: Request::None,
             stopping: false,
@@ -310,6 +332,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn begin(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.began = Instant::now();
         if self.resumed {
             return Ok(());
         }
@@ -317,7 +340,9 @@ impl<'a> Simulation<'a> {
         self.account.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
-        self.snapshot(observer)
+        self.snapshot(observer)?;
+        self.began = Instant::now();
+        Ok(())
     }
 
     /// Reads an interval that is done and submits one; false, and nothing is done, where the run has
@@ -353,6 +378,10 @@ impl<'a> Simulation<'a> {
     /// As [`Simulation::run`].
     pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
+        if self.options.checkpoint_at_stop && self.stopped() && !self.stopping && !self.clock.done() {
+            self.checkpoint(observer)?;
+        }
+        let stepping_seconds = self.began.elapsed().as_secs_f64();
         if self.averages.ready() {
             self.emit_row(observer)?;
         }
@@ -376,6 +405,7 @@ impl<'a> Simulation<'a> {
             time: self.clock.time(),
             repeated: self.repeated,
             step_range: self.account.step_range,
+            stepping_seconds,
         })
     }
 
@@ -393,6 +423,7 @@ impl<'a> Simulation<'a> {
             state: &self.state(),
             own: &own,
             comm: self.ranks.comm(),
+            stopping: self.stopping,
         })
     }
 
@@ -428,6 +459,9 @@ impl<'a> Simulation<'a> {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
             let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
             self.exchange.rebalanced(seconds);
+            if decomposition.set_rounds(self.tuner.next()) {
+                decomposition.apply(self.device, &mut self.subdomain, &mut self.exchange)?;
+            }
         }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
@@ -533,7 +567,16 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
-        self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+        if self.decomposition.is_some() {
+            let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
+            self.tuner.measured(slowest, interval.steps, interval.particles);
+        }
+        if !loads.is_empty() {
+            self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+            if let Some(record) = self.balance.latest() {
+                observer.balance(record)?;
+            }
+        }
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             self.emit_row(observer)?;
@@ -565,6 +608,7 @@ impl<'a> Simulation<'a> {
         strayed: bool,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
+        self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
         let mut later = Vec::new();
         for flight in std::mem::take(&mut self.flying) {
@@ -605,6 +649,9 @@ impl<'a> Simulation<'a> {
         }
         let own = self.subdomain.particles(self.device)?;
         if let Some((particles, owners)) = self.gather(own)? {
+            if let Some(decomposition) = &self.decomposition {
+                observer.boxes(&decomposition.boxes(&self.model.plan.grid));
+            }
             observer.snapshot(self.clock.time(), &particles, &owners)?;
         }
         while self.snapshot_due() && self.next_snapshot <= asked {

@@ -34,7 +34,7 @@ pub struct Counters {
     pub strays: u32,
     /// Updates of ghosts that were not there.
     pub missing: u32,
-    /// Particles sent to another owner.
+    /// Particles that came from another owner.
     pub moved: u32,
     /// Of the last step: entries of all neighbour lists, and particles that may meet a wall.
     pub candidates: u32,

@@ -23,7 +23,6 @@ pub struct StepSlot {
     pub(super) arrivals: u32,
     /// Entries of `sorted`.
     pub(super) total: u32,
-    pub(super) updates: u32,
 }
 
 impl StepSlot {
@@ -81,7 +80,6 @@ impl Subdomain {
                 stride,
                 arrivals: 0,
                 total: self.count + born,
-                updates: 0,
             };
             entered += born;
             if self.place.depth == 0 {
@@ -95,12 +93,17 @@ impl Subdomain {
     }
 
     /// Starts a step of a device among others, whose number of particles is known only now.
-    pub fn begin_step(&mut self, device: &Device, slot: &mut StepSlot) {
+    ///
+    /// # Errors
+    /// If room must be made and the device has none.
+    pub fn begin_step(&mut self, device: &Device, slot: &mut StepSlot) -> Result<(), GpuError> {
         if self.place.depth > 0 {
+            self.make_room(device, slot.newborns.into(), 0, 0)?;
             slot.count = self.count;
             slot.total = self.count + slot.newborns;
             self.write_parameters(device, slot);
         }
+        Ok(())
     }
 
     pub(super) fn write_parameters(&self, device: &Device, slot: &StepSlot) {
@@ -137,7 +140,7 @@ impl Subdomain {
                 // The arrivals are binned after the others.
                 first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
                 inner_high,
-                updates: slot.updates,
+                pad: 0,
                 peers: self.place.peers.len() as u32,
                 near_peers: self.place.near as u32,
                 list: self.particle.list as u32,
@@ -162,7 +165,6 @@ impl Subdomain {
             stride: 1,
             arrivals: 0,
             total: self.count,
-            updates: 0,
         };
         self.write_parameters(device, &slot);
         slot

@@ -98,7 +98,7 @@ impl Subdomain {
             if count > self.exchange.room {
                 self.make_exchange_room(device, |room| room.particles = count + count / 4)?;
             }
-            self.clear_list(device, counters::OUTBOX, false);
+            device.write(&self.fixed.counters, 4 * counters::OUTBOX as u64, &[0u32]);
             let outgoing = self.pack(rec, step)?;
             return self.packed(rec, step, outgoing);
         }
@@ -121,11 +121,7 @@ impl Subdomain {
         let slots = u64::from(step.count) + u64::from(step.newborns);
         let arrivals = messages.iter().map(|message| message.len() as u64 / PARTICLE).sum::<u64>();
         self.make_room(device, slots - u64::from(self.count) + arrivals, 0, 0)?;
-        let mut at = slots * PARTICLE;
-        for message in messages {
-            device.write(&self.particle.particles, at, message);
-            at += message.len() as u64;
-        }
+        device.write(&self.particle.particles, slots * PARTICLE, &messages.concat());
         step.arrivals = arrivals as u32;
         step.total += step.arrivals;
         self.write_parameters(device, step);
@@ -149,6 +145,11 @@ impl Subdomain {
         let encoder = rec.encoder();
         encoder.copy_buffer_to_buffer(&self.fixed.counters, 0, &staging, 0, HEADER);
         encoder.copy_buffer_to_buffer(&self.exchange.updates_out, 0, &staging, HEADER, entries * UPDATE);
+        // The lists start anew after the exchange.
+        for list in [counters::CHANGED, counters::UPDATES] {
+            encoder.clear_buffer(&self.fixed.counters, 4 * list as u64, Some(4));
+        }
+        encoder.clear_buffer(&self.fixed.rechoose_dispatches, 12 * counters::CHANGED as u64, Some(4));
         let submission = rec.submit();
         Ok(Outgoing { readback: device.read_later(staging, submission), entries })
     }
@@ -167,27 +168,28 @@ impl Subdomain {
         let device = rec.device();
         let near = self.place.near;
         let entries = outgoing.entries as usize;
-        let ((count, messages), staging) = outgoing.readback.finish(device, |bytes| {
-            let count = header_of(bytes)[counters::UPDATES];
+        let ((changed, count, messages), staging) = outgoing.readback.finish(device, |bytes| {
+            let header = header_of(bytes);
+            let (changed, count) = (header[counters::CHANGED], header[counters::UPDATES]);
             let mut messages = vec![Vec::new(); near];
             let updates = bytes[HEADER as usize..].chunks_exact(UPDATE as usize);
             for update in updates.take((count as usize).min(entries)) {
                 let peer = bytemuck::pod_read_unaligned::<GpuUpdate>(update).peer;
                 messages[peer as usize].extend(update);
             }
-            (u64::from(count), messages)
+            (changed, u64::from(count), messages)
         })?;
         self.spare_staging.push(staging);
         self.update_guess.follow(count);
-        self.clear_list(device, counters::UPDATES, false);
         if count > entries as u64 {
+            // More than was copied, or than there was room for: once more, with room for all.
+            self.fill_list(device, counters::CHANGED, changed);
             if count > self.exchange.update_room {
                 self.make_exchange_room(device, |room| room.updates = count + count / 4)?;
             }
             let outgoing = self.pack_updates(rec, step, round)?;
             return self.packed_updates(rec, step, round, outgoing);
         }
-        self.clear_list(device, counters::CHANGED, true);
         Ok(messages)
     }
 
@@ -198,7 +200,7 @@ impl Subdomain {
     pub fn receive(
         &mut self,
         rec: &mut Recording<'_>,
-        step: &mut StepSlot,
+        step: &StepSlot,
         round: u32,
         messages: &[Vec<u8>],
     ) -> Result<(), GpuError> {
@@ -207,16 +209,14 @@ impl Subdomain {
         if updates == 0 {
             return Ok(());
         }
-        if updates * UPDATE > self.exchange.updates_in.size() {
-            self.make_exchange_room(device, |room| room.received = updates + updates / 4)?;
+        if (updates + 1) * UPDATE > self.exchange.updates_in.size() {
+            self.make_exchange_room(device, |room| room.received = updates + updates / 4 + 1)?;
         }
-        let mut at = 0;
-        for message in messages {
-            device.write(&self.exchange.updates_in, at, message);
-            at += message.len() as u64;
-        }
-        step.updates = updates as u32;
-        self.write_parameters(device, step);
+        // The first entry says how many follow.
+        let count = GpuUpdate { cell: updates as u32, ..GpuUpdate::default() };
+        let mut bytes = bytemuck::bytes_of(&count).to_vec();
+        bytes.extend(messages.iter().flatten());
+        device.write(&self.exchange.updates_in, 0, &bytes);
         if let Some(kernels) = &self.kernels.exchange {
             let offset = self.offset(device, step, round);
             kernels.receive.dispatch(rec.phase("update"), offset, threads(device, updates));
@@ -266,12 +266,11 @@ impl Subdomain {
         Ok(words.iter().map(|word| u64::from(word[0]) | (u64::from(word[1]) << 32)).collect())
     }
 
-    /// Empties a list of this step; `dispatched` for one with a dispatch of its own.
-    fn clear_list(&self, device: &Device, list: usize, dispatched: bool) {
-        device.write(&self.fixed.counters, 4 * list as u64, &[0u32]);
-        if dispatched {
-            device.write(&self.fixed.rechoose_dispatches, 12 * list as u64, &[0u32, 1]);
-        }
+    /// Gives a list that was emptied its length again; its entries are still there.
+    fn fill_list(&self, device: &Device, list: usize, length: u32) {
+        let [x, y, z] = threads(device, length.into());
+        device.write(&self.fixed.counters, 4 * list as u64, &[length]);
+        device.write(&self.fixed.rechoose_dispatches, 12 * list as u64, &[x, y, z]);
     }
 
     fn staging_of(&mut self, device: &Device, bytes: u64) -> Result<wgpu::Buffer, GpuError> {

@@ -1,11 +1,15 @@
 //! What a run leaves behind while it goes on: rows, snapshots, and the display of its progress.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::output::{History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress, SnapshotWriter};
-use crate::simulation::{Model, Observer, Outcome, Row, SimulationError};
+use crate::output::{
+    BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
+    SUBDOMAIN_CHART_FILE, SnapshotWriter, over_mean, subdomain_chart,
+};
+use crate::simulation::{BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, imbalance};
 use crate::subdomain::{GpuParticle, Scales};
 
+use super::checkpoints::Checkpoints;
 use super::reference::Reference;
 use super::table::{columns, values};
 
@@ -16,7 +20,22 @@ pub struct Recorder<'a> {
     /// `None` in a scene that wants no snapshots.
     snapshots: Option<SnapshotWriter>,
     progress: Option<Progress>,
+    checkpoints: Option<Checkpoints<'a>>,
+    /// `None` on a rank alone.
+    among: Option<Among>,
 }
+
+/// What there is to tell of several ranks.
+struct Among {
+    dir: PathBuf,
+    balance: BalanceWriter,
+    /// Of the next snapshot.
+    boxes: Vec<[[f64; 3]; 2]>,
+    frames: Vec<Frame>,
+}
+
+/// Particles of a frame that are drawn, about.
+const DRAWN: usize = 4000;
 
 impl<'a> Recorder<'a> {
     /// Starts the files in the existing folder `dir`; the walls are written at once.
@@ -31,7 +50,7 @@ impl<'a> Recorder<'a> {
             }
         };
         let progress = shown.then(|| Progress::new(model.plan.end_time));
-        Ok(Recorder { model, reference, history, snapshots, progress })
+        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
     }
 
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
@@ -39,7 +58,6 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// If a file is not the one that the checkpoint knows.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
     pub fn resume(
         model: &'a Model,
         reference: Reference,
@@ -59,14 +77,33 @@ impl<'a> Recorder<'a> {
         };
         let Totals { time, steps, particle_steps } = totals;
         let progress = shown.then(|| Progress::resume(model.plan.end_time, time, steps, particle_steps));
-        Ok(Recorder { model, reference, history, snapshots, progress })
+        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
+    }
+
+    /// Also writes checkpoints.
+    pub fn checkpointing(self, checkpoints: Checkpoints<'a>) -> Recorder<'a> {
+        Recorder { checkpoints: Some(checkpoints), ..self }
+    }
+
+    /// The checkpoint at which the run was stopped, if it was asked to.
+    pub fn stopped_at(&self) -> Option<&Path> {
+        self.checkpoints.as_ref().and_then(Checkpoints::stopped_at)
+    }
+
+    /// Also tells how the work is shared out among several ranks. `step`: the run goes on from there.
+    ///
+    /// # Errors
+    /// If the system cannot write the files.
+    pub fn among(mut self, dir: &Path, step: u64) -> Result<Recorder<'a>, OutputError> {
+        let balance = if step > 0 { BalanceWriter::resume(dir, step)? } else { BalanceWriter::create(dir)? };
+        self.among = Some(Among { dir: dir.to_path_buf(), balance, boxes: Vec::new(), frames: Vec::new() });
+        Ok(self)
     }
 
     /// How far the files have got, all of them on the disc: for a checkpoint of this moment.
     ///
     /// # Errors
     /// If the system cannot write them.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
     pub fn state(&mut self) -> Result<OutputState, OutputError> {
         let snapshots = self.snapshots.as_mut().map(SnapshotWriter::state).transpose()?;
         Ok(OutputState { history: self.history.state()?, snapshots })
@@ -76,23 +113,47 @@ impl<'a> Recorder<'a> {
         self.history.history()
     }
 
-    /// The state at the end, if the run was stopped between two snapshots, and the rates of the whole run.
+    /// The state at the end, if the run ended between two snapshots, and the rates of the whole run. What stopped at a
+    /// checkpoint has its state there.
     pub fn finish(&mut self, outcome: &Outcome) -> Result<(), OutputError> {
         if let Some(progress) = &mut self.progress {
             progress.finish(outcome.time, outcome.steps, outcome.particle_steps);
         }
-        if self.snapshots.as_ref().and_then(SnapshotWriter::last_time) == Some(outcome.time) {
+        if self.stopped_at().is_some() {
             return Ok(());
         }
-        self.write_snapshot(outcome.time, &outcome.particles)
+        if self.snapshots.as_ref().and_then(SnapshotWriter::last_time) != Some(outcome.time) {
+            if let Some(among) = &mut self.among {
+                // Those of the snapshot before may no longer be right.
+                among.boxes.clear();
+            }
+            self.write_snapshot(outcome.time, &outcome.particles, &outcome.owners)?;
+        }
+        match &self.among {
+            Some(Among { dir, frames, .. }) if !frames.is_empty() => {
+                let title = format!("{}: particles by the rank that owns them", self.model.scene.title);
+                subdomain_chart(&dir.join(SUBDOMAIN_CHART_FILE), &title, frames)
+            }
+            _ => Ok(()),
+        }
     }
 
-    fn write_snapshot(&mut self, time: f64, particles: &[GpuParticle]) -> Result<(), OutputError> {
+    fn write_snapshot(&mut self, time: f64, particles: &[GpuParticle], owners: &[u32]) -> Result<(), OutputError> {
         let Some(writer) = &mut self.snapshots else {
             return Ok(());
         };
         let plan = &self.model.plan;
         let scales = Scales::new(plan);
+        if let Some(among) = &mut self.among {
+            let every = particles.len().div_ceil(DRAWN).max(1);
+            let sample = particles.iter().zip(owners).step_by(every);
+            among.frames.push(Frame {
+                time,
+                particles: particles.len(),
+                points: sample.map(|(particle, &owner)| (plan.grid.to_metres(particle.position), owner)).collect(),
+                boxes: among.boxes.clone(),
+            });
+        }
         let rows: Vec<ParticleRow> = particles
             .iter()
             .map(|particle| ParticleRow {
@@ -103,7 +164,7 @@ impl<'a> Recorder<'a> {
                 spin_energy: (f64::from(particle.spin) * scales.reference_mass) as f32,
             })
             .collect();
-        writer.write(time, &rows).map(|_| ())
+        writer.write_among(time, &rows, self.among.is_some().then_some(owners)).map(|_| ())
     }
 }
 
@@ -123,6 +184,23 @@ fn write_walls(writer: &SnapshotWriter, model: &Model) -> Result<(), OutputError
     writer.write_walls(&model.vessel.vertices, &corners, &walls).map(|_| ())
 }
 
+fn balance_row(record: &BalanceRecord) -> BalanceRow {
+    let loads = &record.loads;
+    let seconds: Vec<f64> = loads.iter().map(|load| load.seconds).collect();
+    BalanceRow {
+        step: record.step,
+        time: record.time,
+        owned: loads.iter().map(|load| load.owned).collect(),
+        ghosts: loads.iter().map(|load| load.particles.saturating_sub(load.owned)).collect(),
+        imbalance_work: imbalance(record.predicted.iter().copied()),
+        imbalance_seconds: seconds.iter().any(|&s| s > 0.0).then(|| over_mean(&seconds)),
+        rebalanced: record.rebalanced,
+        moved: loads.iter().map(|load| load.moved).sum(),
+        bytes: loads.iter().map(|load| load.bytes).sum(),
+        rebalance_seconds: loads.iter().map(|load| load.rebalancing).fold(0.0, f64::max),
+    }
+}
+
 /// The error's text names the file.
 fn stop(error: OutputError) -> SimulationError {
     SimulationError::Observer(error.to_string())
@@ -130,11 +208,42 @@ fn stop(error: OutputError) -> SimulationError {
 
 impl Observer for Recorder<'_> {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
+        if self.stopped_at().is_some() {
+            // The window that the checkpoint cuts in two: the run that goes on has the whole of it.
+            return Ok(());
+        }
         self.history.row(&values(row, &self.reference)).map_err(stop)
     }
 
-    fn snapshot(&mut self, time: f64, particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
-        self.write_snapshot(time, particles).map_err(stop)
+    fn snapshot(&mut self, time: f64, particles: &[GpuParticle], owners: &[u32]) -> Result<(), SimulationError> {
+        self.write_snapshot(time, particles, owners).map_err(stop)
+    }
+
+    fn boxes(&mut self, boxes: &[[[f64; 3]; 2]]) {
+        if let Some(among) = &mut self.among {
+            among.boxes = boxes.to_vec();
+        }
+    }
+
+    fn balance(&mut self, record: &BalanceRecord) -> Result<(), SimulationError> {
+        match &mut self.among {
+            Some(among) => among.balance.row(&balance_row(record)).map_err(stop),
+            None => Ok(()),
+        }
+    }
+
+    fn request(&mut self, steps: u64) -> Request {
+        self.checkpoints.as_mut().map_or(Request::None, |checkpoints| checkpoints.request(steps))
+    }
+
+    fn checkpoint(&mut self, moment: &Moment<'_>) -> Result<(), SimulationError> {
+        let Some(mut checkpoints) = self.checkpoints.take() else { return Ok(()) };
+        let written = checkpoints.write(moment, Some(&mut || self.state()));
+        self.checkpoints = Some(checkpoints);
+        if let (Some(written), Some(progress)) = (written?, &self.progress) {
+            progress.note(&written.to_string());
+        }
+        Ok(())
     }
 
     fn progress(&mut self, time: f64, steps: u64, particle_steps: u64) {
@@ -182,7 +291,7 @@ mod tests {
             recorder.row(&row(model, k)).unwrap();
             if k % 2 == 0 {
                 let particle = GpuParticle { position: [k as u32; 3], ..GpuParticle::default() };
-                recorder.snapshot(1e-3 * k as f64, &vec![particle; k]).unwrap();
+                recorder.snapshot(1e-3 * k as f64, &vec![particle; k], &vec![0; k]).unwrap();
             }
         }
         recorder.progress(0.0, 0, 0);

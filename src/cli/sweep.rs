@@ -1,0 +1,328 @@
+//! `corpuscle sweep`: a scene on several counts of devices, run or emulated, and compared.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::gpu::Device;
+use crate::output::{
+    OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, grouped,
+};
+use crate::partition::By;
+use crate::scene::{Scene, to_toml};
+use crate::simulation::{Model, Setup};
+use crate::study::emulation::{Effort, Emulated, State, emulate};
+use crate::study::launched::{Case, Measured, Program, compare, take_turns};
+use crate::study::modelled::{Costs, Gpu, Network, Point, point};
+use crate::study::report;
+use crate::study::{Strategy, StudyError};
+
+use super::CliError;
+use super::arguments::{Balance, BalanceBy, EmulationArguments, SweepArguments};
+use super::settings::{model_of, scene_of};
+use super::terminal::say;
+
+/// Steps of an interval that is measured in an emulation: one lap and the step that brings its loads.
+const EMULATED_STEPS: u32 = 2;
+const RUNS_FOLDER: &str = "runs";
+
+pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
+    let plan = SweepPlan::new(raw)?;
+    let folder = OutputFolder::create(&plan.folder, plan.raw.force)?;
+    folder.write_text(SCENE_FILE, &to_toml(&plan.scene))?;
+    let emulated = if plan.raw.emulation.emulate { Some(plan.emulate()?) } else { None };
+    let measured = plan.run(folder.path())?;
+    let points = emulated.as_ref().map_or(&[][..], |emulated| &emulated.points);
+    let text = plan.text(&measured, emulated.as_ref());
+    folder.write_text(SWEEP_FILE, &report::csv(&measured, points))?;
+    folder.write_text(SWEEP_TABLE_FILE, &text)?;
+    let title = &plan.scene.title;
+    if !measured.is_empty() {
+        report::measured_chart(&folder.path().join(SWEEP_CHART_FILE), title, &measured)?;
+    }
+    if !points.is_empty() {
+        report::modelled_chart(&folder.path().join(SWEEP_MODEL_CHART_FILE), title, points)?;
+    }
+    say(&text)?;
+    say(&format!("{}\n", folder.path().display()))
+}
+
+/// A sweep as it will be done.
+struct SweepPlan {
+    raw: SweepArguments,
+    scene: Scene,
+    folder: PathBuf,
+    devices: Vec<usize>,
+    /// Counts that are run.
+    real: Vec<usize>,
+    strategies: Vec<Strategy>,
+    launcher: Vec<String>,
+}
+
+/// What an emulation found.
+struct Emulation {
+    adapter: String,
+    particles: u64,
+    costs: Costs,
+    points: Vec<Point>,
+}
+
+impl SweepPlan {
+    fn new(raw: SweepArguments) -> Result<SweepPlan, CliError> {
+        check(&raw)?;
+        let mut scene = scene_of(&raw.scene)?;
+        // They would be timed.
+        scene.output.snapshots = 0;
+        let path = &raw.scene.scene;
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+        let folder = raw.out.clone().unwrap_or_else(|| Path::new("results").join(format!("{name}-sweep")));
+        let launcher: Vec<String> =
+            raw.runs.launcher.iter().flat_map(|text| text.split_whitespace()).map(str::to_owned).collect();
+        let devices = sorted(&raw.devices);
+        let real = if raw.emulation.emulate { sorted(&raw.emulation.validate) } else { devices.clone() };
+        let mut strategies = Vec::new();
+        for balance in &raw.balance {
+            let strategy = match balance {
+                Balance::Off => Strategy::Off,
+                Balance::Initial => Strategy::Initial,
+                Balance::Dynamic => Strategy::Dynamic,
+            };
+            if !strategies.contains(&strategy) {
+                strategies.push(strategy);
+            }
+        }
+        Ok(SweepPlan { raw, scene, folder, devices, real, strategies, launcher })
+    }
+
+    /// Every count with every strategy; one device has nothing to share out.
+    fn pairs(&self, devices: &[usize]) -> Vec<(usize, Strategy)> {
+        let of = |&devices: &usize| {
+            let strategies = if devices == 1 { &self.strategies[..1] } else { &self.strategies[..] };
+            strategies.iter().map(move |&strategy| (devices, strategy)).collect::<Vec<_>>()
+        };
+        devices.iter().flat_map(of).collect()
+    }
+
+    fn run(&self, folder: &Path) -> Result<Vec<Measured>, CliError> {
+        if self.real.is_empty() {
+            return Ok(Vec::new());
+        }
+        let runs = folder.join(RUNS_FOLDER);
+        fs::create_dir_all(&runs).map_err(|error| io("create", &runs, error))?;
+        let mut cases = Vec::new();
+        for (devices, strategy) in self.pairs(&self.real) {
+            cases.push(Case { devices, strategy, scene: self.scene_file(&runs, devices)? });
+        }
+        let path = std::env::current_exe().map_err(|error| io("find", Path::new("the program"), error))?;
+        let program = Program { path, launcher: self.launcher.clone(), arguments: self.run_arguments() };
+        let turns = self.raw.runs.repeat as usize;
+        let timings = take_turns(&cases, turns, |case, turn| {
+            let name = format!("{}-{}", case.name(), turn + 1);
+            tracing::info!("run {name}");
+            program.run(case, &runs.join(name))
+        })?;
+        // Nothing but equal histories is in them; on an error they stay.
+        fs::remove_dir_all(&runs).map_err(|error| io("remove", &runs, error))?;
+        Ok(compare(&cases, &timings))
+    }
+
+    /// The scene that a count runs: one for all, but where each device has its own particles.
+    fn scene_file(&self, runs: &Path, devices: usize) -> Result<PathBuf, CliError> {
+        let mut scene = self.scene.clone();
+        let mut name = "scene.toml".to_owned();
+        if self.raw.runs.weak {
+            let one = model_of(&self.raw.scene.scene, scene.clone())?.plan.particles;
+            scene.model.particles = Some(one * devices as u64);
+            name = format!("scene-{devices}.toml");
+        }
+        let path = runs.join(name);
+        fs::write(&path, to_toml(&scene)).map_err(|error| io("write", &path, error))?;
+        Ok(path)
+    }
+
+    fn run_arguments(&self) -> Vec<String> {
+        let tuning = &self.raw.tuning;
+        let by = match tuning.balance_by {
+            BalanceBy::Cost => "cost",
+            BalanceBy::Particles => "particles",
+        };
+        let mut words = vec![
+            ("--balance-every", tuning.balance_every.to_string()),
+            ("--balance-threshold", tuning.balance_threshold.to_string()),
+            ("--balance-by", by.to_owned()),
+        ];
+        words.extend(tuning.halo_rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
+        words.extend(self.raw.runs.steps.map(|steps| ("--steps", steps.to_string())));
+        words.extend(self.raw.gpu.as_ref().map(|gpu| ("--gpu", gpu.clone())));
+        words.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect()
+    }
+
+    fn emulate(&self) -> Result<Emulation, CliError> {
+        let path = &self.raw.scene.scene;
+        let device = Device::open(self.raw.gpu.as_deref())?;
+        let (network, gpu) = assumed(&self.raw.emulation);
+        let by = match self.raw.tuning.balance_by {
+            BalanceBy::Cost => By::Cost,
+            BalanceBy::Particles => By::Particles,
+        };
+        let effort =
+            Effort { intervals: self.raw.emulation.intervals as usize, by, halo_rounds: self.raw.tuning.halo_rounds };
+        // A device alone has its intervals as they are: it exchanges nothing from which a step could be told.
+        let alone = model_of(path, self.scene.clone())?;
+        let mut among = model_of(path, self.scene.clone())?;
+        among.plan.steps_per_interval = EMULATED_STEPS;
+        let several = self.devices.iter().any(|&devices| devices > 1);
+        let shared = several.then(|| Setup::new(&among, &device, 2, None)).transpose()?;
+        let mut of_pairs: Vec<Vec<(f64, Emulated)>> = Vec::new();
+        for (devices, strategy) in self.pairs(&self.devices) {
+            let model = if devices == 1 { &alone } else { &among };
+            let own = if devices == 1 { Some(Setup::new(model, &device, 1, None)?) } else { None };
+            let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
+            let mut states = Vec::new();
+            for state in states_of(model) {
+                tracing::info!("{}: {devices} subdomains, {}", state.name, strategy.title());
+                states.push((state.steps, emulate(&state, &device, setup, devices, strategy, &effort)?));
+            }
+            of_pairs.push(states);
+        }
+        let costs = Costs::fit(of_pairs.iter().flatten().flat_map(|(_, emulated)| &emulated.shares));
+        let points = of_pairs.iter().filter_map(|states| {
+            let states: Vec<(f64, &Emulated)> = states.iter().map(|(steps, state)| (*steps, state)).collect();
+            point(&states, &costs, &network, &gpu)
+        });
+        let adapter = device.adapter().info.name.clone();
+        Ok(Emulation { adapter, particles: among.plan.particles, costs, points: points.collect() })
+    }
+
+    fn text(&self, measured: &[Measured], emulated: Option<&Emulation>) -> String {
+        let mut text = format!("# {}: sweep over counts of devices\n", self.scene.title);
+        if !measured.is_empty() {
+            text += &self.measured_text(measured);
+        }
+        if let Some(emulation) = emulated {
+            text += &self.modelled_text(emulation, measured);
+        }
+        text
+    }
+
+    fn measured_text(&self, measured: &[Measured]) -> String {
+        let started = if self.launcher.is_empty() {
+            "The devices are subdomains of one process on one device: what is seen is the cost of dividing, not a \
+             speed-up of several devices."
+                .to_owned()
+        } else {
+            format!("Each device is a rank of `{}`.", self.launcher.join(" "))
+        };
+        let held = if self.raw.runs.weak {
+            " The particles of each device are held, so there are as many times more as devices."
+        } else {
+            ""
+        };
+        format!(
+            "\n## Measured\n\nWall time of {} steps without set-up, median of {} turns. {started}{held} All runs of a \
+             scene left the same bytes in `history.csv`.\n\n{}",
+            measured.first().map_or_else(String::new, |m| grouped(m.steps)),
+            self.raw.runs.repeat,
+            report::measured_table(measured),
+        )
+    }
+
+    fn modelled_text(&self, emulation: &Emulation, measured: &[Measured]) -> String {
+        let Emulation { adapter, particles, costs, points } = emulation;
+        let raw = &self.raw.emulation;
+        let steps = points.first().map_or(0.0, |point| point.steps);
+        let relative = |cost: f64| cost / costs.particle.max(f64::MIN_POSITIVE);
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "\n## Modelled: work alone\n\nSubdomains of {} particles, measured one at a time on {adapter}: {} intervals \
+             of {EMULATED_STEPS} steps of each state (the start of the scene), dynamic cuts made for the state. Speed-up \
+             of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
+             a wall test {:.2} of a particle, as fitted to the device times.\n\n{}",
+            grouped(*particles),
+            raw.intervals,
+            relative(costs.candidate),
+            relative(costs.wall),
+            report::work_table(points),
+        );
+        let _ = write!(
+            text,
+            "\n## Modelled: time, with the fixed costs of {adapter}\n\nFor {steps:.0} steps: the slowest subdomain's own \
+             time (measured alone), and {} us per exchange and {} GB/s (assumed) for the messages that were \
+             exchanged.\n\n{}",
+            raw.latency_us,
+            raw.bandwidth_gbs,
+            report::time_table(points),
+        );
+        let _ = write!(
+            text,
+            "\n## Modelled: time on an assumed GPU\n\nThe work above, and as assumed:\n\n| per mean particle | per pass | \
+             host's wait per exchange | exchange | bandwidth |\n|--:|--:|--:|--:|--:|\n| {} ns | {} us | {} us | {} us | \
+             {} GB/s |\n\n{}",
+            raw.gpu_particle_ns,
+            raw.gpu_pass_us,
+            raw.gpu_wait_us,
+            raw.latency_us,
+            raw.bandwidth_gbs,
+            report::gpu_table(points),
+        );
+        if let Some(table) = report::validation_table(points, measured) {
+            let _ = write!(text, "\n## The model beside real runs\n\n{table}");
+        }
+        text
+    }
+}
+
+/// The states of a run that are measured, and the steps that each stands for: its start stands for all.
+fn states_of(model: &Model) -> Vec<State<'_>> {
+    vec![State { name: "the start".into(), model, steps: model.plan.estimated_steps }]
+}
+
+fn assumed(raw: &EmulationArguments) -> (Network, Gpu) {
+    let network = Network { latency: 1e-6 * raw.latency_us, bandwidth: 1e9 * raw.bandwidth_gbs };
+    let gpu = Gpu { unit: 1e-9 * raw.gpu_particle_ns, pass: 1e-6 * raw.gpu_pass_us, wait: 1e-6 * raw.gpu_wait_us };
+    (network, gpu)
+}
+
+fn check(raw: &SweepArguments) -> Result<(), CliError> {
+    let emulation = &raw.emulation;
+    let times = [
+        ("--latency-us", emulation.latency_us),
+        ("--gpu-particle-ns", emulation.gpu_particle_ns),
+        ("--gpu-pass-us", emulation.gpu_pass_us),
+        ("--gpu-wait-us", emulation.gpu_wait_us),
+    ];
+    for (option, found) in times {
+        if !(found.is_finite() && found >= 0.0) {
+            return Err(CliError::SweepFigure { option, found, expected: "a number of at least 0" });
+        }
+    }
+    let bandwidth = emulation.bandwidth_gbs;
+    if !(bandwidth > 0.0) {
+        let expected = "a number above 0";
+        return Err(CliError::SweepFigure { option: "--bandwidth-gbs", found: bandwidth, expected });
+    }
+    let threshold = raw.tuning.balance_threshold;
+    if !(threshold.is_finite() && threshold >= 1.0) {
+        return Err(CliError::Threshold { found: threshold });
+    }
+    if raw.runs.launcher.as_ref().is_some_and(|text| text.trim().is_empty()) {
+        return Err(CliError::NoLauncher);
+    }
+    match emulation.validate.iter().find(|&&devices| devices > 1) {
+        Some(&devices) if raw.runs.launcher.is_none() => Err(CliError::ValidateOnOne { devices }),
+        _ => Ok(()),
+    }
+}
+
+fn sorted(counts: &[u32]) -> Vec<usize> {
+    let mut counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+fn io(action: &'static str, path: &Path, source: std::io::Error) -> CliError {
+    StudyError::from(crate::output::OutputError::Io { action, path: path.to_path_buf(), source }).into()
+}

@@ -1,0 +1,179 @@
+//! Counts of devices that the machine lacks: so many subdomains in one process, one at a time on one device, each
+//! measured alone.
+//!
+//! A state is measured as it is: a few steps of it in short intervals, by the cuts of the start or by cuts made for
+//! the state. Nothing here changes a result of the steps.
+
+use crate::gpu::Device;
+use crate::partition::By;
+use crate::ranks::{Communicator, Pace, in_process};
+use crate::simulation::{BalanceMode, BalanceOptions, Model, Options, Setup, Simulation, SimulationError};
+
+use super::stopwatch::{Event, Lap, Stopwatch, laps};
+use super::{Strategy, StudyError};
+
+/// A moment of a run.
+pub struct State<'a> {
+    pub name: String,
+    /// Its plan's `steps_per_interval` is the length of the intervals that are measured.
+    pub model: &'a Model,
+    /// Steps of the run that it stands for.
+    pub steps: f64,
+}
+
+/// How a state is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Intervals that are measured, after those that bring the state about.
+    pub intervals: usize,
+    pub by: By,
+    pub halo_rounds: Option<u32>,
+}
+
+/// A step of one subdomain, measured alone.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Share {
+    pub owned: f64,
+    /// Ghosts included.
+    pub particles: f64,
+    /// Entries of the neighbour lists.
+    pub candidates: f64,
+    /// Particles that may meet a wall.
+    pub walls: f64,
+    /// Time of its passes on the device; zero where the device does not time.
+    pub device_seconds: f64,
+    /// All its own time: device and host.
+    pub own_seconds: f64,
+    /// Exchanges, messages sent in them, and their bytes.
+    pub stages: f64,
+    pub messages: f64,
+    pub bytes: f64,
+}
+
+/// A state shared out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Emulated {
+    pub strategy: Strategy,
+    pub shares: Vec<Share>,
+    /// Passes of a step.
+    pub passes: f64,
+    /// Fullest over mean by weight after the last rebalance.
+    pub after: Option<f64>,
+}
+
+/// Rebalances before a measurement: the second knows the costs better.
+const REBALANCES: u32 = 2;
+/// Intervals until a rebalance's first loads are read, and until the cuts are those asked for.
+const LATE: usize = 2;
+
+/// # Errors
+/// If the device fails, or there are more subdomains than cells.
+pub fn emulate(
+    state: &State<'_>,
+    device: &Device,
+    setup: &Setup,
+    devices: usize,
+    strategy: Strategy,
+    effort: &Effort,
+) -> Result<Emulated, StudyError> {
+    let (mode, settling) = match strategy {
+        Strategy::Off => (BalanceMode::Off, LATE),
+        Strategy::Initial => (BalanceMode::Initial, LATE),
+        Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
+    };
+    let balance = BalanceOptions { mode, by: effort.by, ..BalanceOptions::default() };
+    let options = Options { balance, halo_rounds: effort.halo_rounds, ..Options::default() };
+    let intervals = settling + effort.intervals;
+    let mut ranks = Vec::new();
+    for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {
+        let done = one(state.model, device, setup, comm, options, intervals);
+        if let Err(error) = &done {
+            comm.fail(&error.to_string(), 1);
+        }
+        done
+    })? {
+        ranks.push(rank?);
+    }
+    let steps = state.model.plan.steps_per_interval as usize;
+    shared_out(&ranks, strategy, steps, settling).ok_or_else(|| StudyError::TooShort { state: state.name.clone() })
+}
+
+/// What a rank has seen.
+struct Seen {
+    events: Vec<Event>,
+    balance: Vec<crate::simulation::BalanceRecord>,
+    passes: f64,
+}
+
+fn one(
+    model: &Model,
+    device: &Device,
+    setup: &Setup,
+    comm: &dyn Communicator,
+    options: Options<'_>,
+    intervals: usize,
+) -> Result<Seen, SimulationError> {
+    let watch = Stopwatch::new(comm);
+    let outcome = {
+        let mut simulation = Simulation::among(model, device, setup, &watch, options)?;
+        simulation.begin(&mut ())?;
+        for _ in 0..intervals {
+            watch.mark();
+            if !simulation.advance(&mut ())? {
+                break;
+            }
+        }
+        // What follows is no interval's.
+        watch.mark();
+        simulation.finish(&mut ())?
+    };
+    let passes = outcome.phases.rows.iter().map(|(_, _, count)| count).sum::<u64>() as f64;
+    Ok(Seen { events: watch.events(), balance: outcome.balance, passes: passes / outcome.steps.max(1) as f64 })
+}
+
+/// `None` if no interval was as it should be.
+fn shared_out(ranks: &[Seen], strategy: Strategy, steps: usize, settling: usize) -> Option<Emulated> {
+    let records = &ranks[0].balance;
+    let last = records.iter().rposition(|record| record.rebalanced.is_some());
+    // In the interval of a rebalance particles come home.
+    let first = settling.max(last.map_or(0, |at| at + 1));
+    let mut shares = Vec::with_capacity(ranks.len());
+    for (rank, seen) in ranks.iter().enumerate() {
+        // What follows the last mark is the end of the run.
+        let mut timed = laps(&seen.events, steps);
+        timed.pop();
+        let timed: Vec<Lap> = timed.into_iter().skip(first).flatten().collect();
+        let own_seconds = median(timed.iter().map(|lap| lap.seconds))?;
+        let mean = |of: fn(&Lap) -> f64| timed.iter().map(of).sum::<f64>() / timed.len() as f64;
+        let mut share = Share {
+            own_seconds,
+            stages: mean(|lap| lap.stages),
+            messages: mean(|lap| lap.messages),
+            bytes: mean(|lap| lap.bytes),
+            ..Share::default()
+        };
+        // A rank alone has no records.
+        let loads: Vec<_> = records.iter().skip(first).map(|record| record.loads[rank]).collect();
+        if !loads.is_empty() {
+            let mean = |of: fn(&crate::simulation::Load) -> u64| {
+                loads.iter().map(|load| of(load) as f64).sum::<f64>() / loads.len() as f64
+            };
+            share.owned = mean(|load| load.owned);
+            share.particles = mean(|load| load.particles);
+            share.candidates = mean(|load| load.candidates);
+            share.walls = mean(|load| load.walls);
+            share.device_seconds = median(loads.iter().map(|load| load.seconds))?;
+        }
+        shares.push(share);
+    }
+    let after = last.and_then(|at| records[at].rebalanced).map(|[_, after]| after);
+    Some(Emulated { strategy, shares, passes: ranks[0].passes, after })
+}
+
+/// The middle one, or the mean of the two in the middle.
+pub fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    (count > 0).then(|| 0.5 * (values[(count - 1) / 2] + values[count / 2]))
+}

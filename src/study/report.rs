@@ -1,0 +1,401 @@
+//! What a sweep found: `sweep.csv`, tables in the form of the published ones, and curves of the speed-up.
+//!
+//! A speed-up is against the fewest devices, shared in the same way; one device alone stands for every strategy.
+
+use std::path::Path;
+
+use crate::output::{OutputError, PALETTE, Series, line_chart};
+
+use super::Strategy;
+use super::launched::Measured;
+use super::modelled::Point;
+
+/// What has a place in a sweep.
+trait Placed {
+    fn devices(&self) -> usize;
+    fn strategy(&self) -> Strategy;
+}
+
+impl Placed for Measured {
+    fn devices(&self) -> usize {
+        self.devices
+    }
+
+    fn strategy(&self) -> Strategy {
+        self.strategy
+    }
+}
+
+impl Placed for Point {
+    fn devices(&self) -> usize {
+        self.devices
+    }
+
+    fn strategy(&self) -> Strategy {
+        self.strategy
+    }
+}
+
+/// One device is of every strategy.
+fn at<T: Placed>(all: &[T], devices: usize, strategy: Strategy) -> Option<&T> {
+    all.iter().find(|one| one.devices() == devices && (devices == 1 || one.strategy() == strategy))
+}
+
+fn counts<T: Placed>(all: &[T]) -> Vec<usize> {
+    let mut counts: Vec<usize> = all.iter().map(Placed::devices).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+/// In the order of their first mention; one device alone mentions none, unless there is nothing else.
+fn strategies<T: Placed>(all: &[T]) -> Vec<Strategy> {
+    let mut found = Vec::new();
+    let several = all.iter().filter(|one| one.devices() > 1);
+    for one in several.chain(all.iter().filter(|_| all.iter().all(|one| one.devices() == 1))) {
+        if !found.contains(&one.strategy()) {
+            found.push(one.strategy());
+        }
+    }
+    found
+}
+
+/// The first count's value over this one's, with the same strategy.
+fn speed_up(points: &[Point], of: &dyn Fn(&Point) -> Option<f64>, point: &Point) -> Option<f64> {
+    // One device counts no work: then the fewest that does.
+    let base = counts(points).into_iter().find_map(|devices| at(points, devices, point.strategy).and_then(of))?;
+    Some(base / of(point)?)
+}
+
+const CSV_HEADER: &str = "kind,devices,balance,turns,steps,seconds,seconds_min,seconds_max,ms_per_step,\
+    particle_steps_per_s,speed_up,efficiency,waiting,owned_max,work_max,owned_speed_up,work_speed_up,\
+    owned_imbalance,work_imbalance,weight_imbalance_after,ghosts_per_owned,own_ms,messages_ms,gpu_ms,gpu_speed_up";
+
+/// `sweep.csv`: a row per count and strategy; blank where a column is not of the row's kind.
+pub fn csv(measured: &[Measured], points: &[Point]) -> String {
+    let mut text = format!("{CSV_HEADER}\n");
+    let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    for m in measured {
+        let [median, least, most] = m.seconds;
+        let known = [
+            "measured".to_owned(),
+            m.devices.to_string(),
+            m.strategy.name().to_owned(),
+            m.turns.to_string(),
+            m.steps.to_string(),
+            median.to_string(),
+            least.to_string(),
+            most.to_string(),
+            (1e3 * median / m.steps.max(1) as f64).to_string(),
+            m.particle_steps.to_string(),
+            m.speed_up.to_string(),
+            m.efficiency.to_string(),
+            optional(m.waiting),
+        ];
+        let blank = CSV_HEADER.split(',').count() - known.len();
+        text += &format!("{}{}\n", known.join(","), ",".repeat(blank));
+    }
+    for point in points {
+        let fewest = counts(points)[0];
+        let faster = speed_up(points, &|p| Some(p.time), point);
+        let row = [
+            "modelled".to_owned(),
+            point.devices.to_string(),
+            point.strategy.name().to_owned(),
+            String::new(),
+            point.steps.to_string(),
+            (point.time * point.steps).to_string(),
+            String::new(),
+            String::new(),
+            (1e3 * point.time).to_string(),
+            String::new(),
+            optional(faster),
+            optional(faster.map(|faster| faster * fewest as f64 / point.devices as f64)),
+            String::new(),
+            optional(point.owned),
+            optional(point.work),
+            optional(speed_up(points, &|p| p.owned, point)),
+            optional(speed_up(points, &|p| p.work, point)),
+            optional(point.owned_imbalance),
+            optional(point.work_imbalance),
+            optional(point.after),
+            optional(point.halo),
+            (1e3 * point.own).to_string(),
+            (1e3 * point.messages).to_string(),
+            optional(point.gpu.map(|seconds| 1e3 * seconds)),
+            optional(speed_up(points, &|p| p.gpu, point)),
+        ];
+        text += &format!("{}\n", row.join(","));
+    }
+    text
+}
+
+/// A table of Markdown with aligned columns.
+fn table(head: &[String], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = std::iter::once(&head[column]).chain(rows.iter().map(|row| &row[column]));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0).max(3)
+    };
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let line = |cells: &[String]| {
+        let padded = cells.iter().zip(&widths).map(|(cell, &width)| format!(" {cell:>width$} |"));
+        format!("|{}\n", padded.collect::<String>())
+    };
+    let rule: Vec<String> = widths.iter().map(|&width| format!("{}:", "-".repeat(width - 1))).collect();
+    line(head) + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
+}
+
+/// A column for each strategy and quantity.
+fn pivot<T: Placed>(all: &[T], quantities: &[(&str, &dyn Fn(&T) -> String)]) -> String {
+    let strategies = strategies(all);
+    let columns =
+        || quantities.iter().flat_map(|quantity| strategies.iter().map(move |strategy| (quantity, *strategy)));
+    let mut head = vec!["devices".to_owned()];
+    head.extend(columns().map(|((name, _), strategy)| format!("{name}{}", strategy.title())));
+    let row = |devices: usize| {
+        let cell = |((_, value), strategy): (&(&str, &dyn Fn(&T) -> String), Strategy)| {
+            at(all, devices, strategy).map_or_else(|| "-".to_owned(), *value)
+        };
+        std::iter::once(devices.to_string()).chain(columns().map(cell)).collect()
+    };
+    let rows: Vec<Vec<String>> = counts(all).into_iter().map(row).collect();
+    table(&head, &rows)
+}
+
+fn dash(value: Option<f64>, text: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "-".to_owned(), text)
+}
+
+/// With three or four figures.
+fn figures(value: f64) -> String {
+    match value.abs() {
+        v if v >= 100.0 => format!("{value:.0}"),
+        v if v >= 10.0 => format!("{value:.1}"),
+        v if v >= 1.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+/// Measured: wall time of the steps, and efficiency.
+pub fn measured_table(measured: &[Measured]) -> String {
+    pivot(
+        measured,
+        &[
+            ("s, ", &|m| figures(m.seconds[0])),
+            ("speed-up, ", &|m| format!("{:.2}", m.speed_up)),
+            ("efficiency, ", &|m| format!("{:.0} %", 100.0 * m.efficiency)),
+        ],
+    )
+}
+
+/// Modelled from counts: speed-up of the work alone.
+pub fn work_table(points: &[Point]) -> String {
+    let owned = |point: &Point| dash(speed_up(points, &|p| p.owned, point), |x| format!("{x:.2}"));
+    let work = |point: &Point| dash(speed_up(points, &|p| p.work, point), |x| format!("{x:.2}"));
+    let excess = |point: &Point| dash(point.work_imbalance, |x| format!("{x:.3}"));
+    pivot(points, &[("owned particles, ", &owned), ("work with halo, ", &work), ("work, fullest over mean, ", &excess)])
+}
+
+/// Modelled from times measured alone: the time of the run, and its speed-up.
+pub fn time_table(points: &[Point]) -> String {
+    let faster = |point: &Point| dash(speed_up(points, &|p| Some(p.time), point), |x| format!("{x:.2}"));
+    let share = |point: &Point| format!("{:.0} %", 100.0 * point.messages / point.time);
+    let seconds = |point: &Point| figures(point.time * point.steps);
+    pivot(points, &[("s, ", &seconds), ("speed-up, ", &faster), ("of it messages, ", &share)])
+}
+
+/// Modelled on an assumed GPU.
+pub fn gpu_table(points: &[Point]) -> String {
+    let faster = |point: &Point| dash(speed_up(points, &|p| p.gpu, point), |x| format!("{x:.2}"));
+    let seconds = |point: &Point| dash(point.gpu.map(|seconds| seconds * point.steps), figures);
+    pivot(points, &[("s, ", &seconds), ("speed-up, ", &faster)])
+}
+
+/// The model beside real runs; `None` if no count was both modelled and measured.
+pub fn validation_table(points: &[Point], measured: &[Measured]) -> Option<String> {
+    let row = |m: &Measured| {
+        let modelled = 1e3 * at(points, m.devices, m.strategy)?.time;
+        let found = 1e3 * m.seconds[0] / m.steps.max(1) as f64;
+        let strategy = if m.devices == 1 { "-" } else { m.strategy.name() };
+        let ratio = format!("{:.2}", modelled / found);
+        Some(vec![m.devices.to_string(), strategy.to_owned(), figures(modelled), figures(found), ratio])
+    };
+    let rows: Vec<Vec<String>> = measured.iter().filter_map(row).collect();
+    let head = ["devices", "balance", "modelled, ms per step", "measured, ms per step", "modelled over measured"];
+    (!rows.is_empty()).then(|| table(&head.map(str::to_owned), &rows))
+}
+
+/// A curve of a chart of speed-ups.
+struct Curve {
+    name: String,
+    points: Vec<[f64; 2]>,
+}
+
+fn curves<T: Placed>(all: &[T], name: &str, value: &dyn Fn(&T) -> Option<f64>) -> Vec<Curve> {
+    let of = |strategy: Strategy| {
+        let point = |devices: usize| Some([devices as f64, value(at(all, devices, strategy)?)?]);
+        Curve {
+            name: format!("{name}{}", strategy.title()),
+            points: counts(all).into_iter().filter_map(point).collect(),
+        }
+    };
+    strategies(all).into_iter().map(of).collect()
+}
+
+fn chart(path: &Path, title: &str, counts: &[usize], curves: Vec<Curve>) -> Result<(), OutputError> {
+    let fewest = counts.first().copied().unwrap_or(1) as f64;
+    let ideal = counts.iter().map(|&devices| [devices as f64, devices as f64 / fewest]).collect();
+    let mut series = vec![Series { name: "ideal".into(), points: ideal, dashed: true, colour: PALETTE[6] }];
+    let colour = |k: usize| PALETTE[k % (PALETTE.len() - 1)];
+    let drawn = curves.into_iter().enumerate();
+    series.extend(drawn.map(|(k, Curve { name, points })| Series { name, points, dashed: false, colour: colour(k) }));
+    line_chart(path, title, "devices", &format!("speed-up over {fewest}"), &series)
+}
+
+/// `sweep.svg`: measured.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn measured_chart(path: &Path, scene: &str, measured: &[Measured]) -> Result<(), OutputError> {
+    let curves = curves(measured, "", &|m: &Measured| Some(m.speed_up));
+    chart(path, &format!("{scene}: speed-up, measured"), &counts(measured), curves)
+}
+
+/// `sweep_modelled.svg`: modelled, of the work and of the time.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn modelled_chart(path: &Path, scene: &str, points: &[Point]) -> Result<(), OutputError> {
+    let mut all = curves(points, "work: ", &|p: &Point| speed_up(points, &|p| p.work, p));
+    all.extend(curves(points, "time: ", &|p: &Point| speed_up(points, &|p| Some(p.time), p)));
+    chart(path, &format!("{scene}: speed-up, modelled"), &counts(points), all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(devices: usize, strategy: Strategy, seconds: f64, efficiency: f64) -> Measured {
+        Measured {
+            devices,
+            strategy,
+            seconds: [seconds, 0.9 * seconds, 1.1 * seconds],
+            turns: 3,
+            steps: 100,
+            particle_steps: 1e6,
+            efficiency,
+            speed_up: efficiency * devices as f64,
+            waiting: None,
+        }
+    }
+
+    fn point(devices: usize, strategy: Strategy, work: Option<f64>, time: f64) -> Point {
+        Point {
+            devices,
+            strategy,
+            steps: 1000.0,
+            owned: work.map(|work| 0.8 * work),
+            work,
+            halo: work.map(|_| 0.25),
+            owned_imbalance: work.map(|_| 1.1),
+            work_imbalance: work.map(|_| 1.2),
+            after: None,
+            own: 0.75 * time,
+            messages: 0.25 * time,
+            time,
+            gpu: work.map(|work| 1e-9 * work),
+        }
+    }
+
+    #[test]
+    fn the_measured_table_has_the_form_of_the_published_one() {
+        let all = [
+            measured(1, Strategy::Off, 8.0, 1.0),
+            measured(2, Strategy::Off, 6.0, 0.667),
+            measured(2, Strategy::Dynamic, 4.4, 0.909),
+        ];
+        let text = measured_table(&all);
+        let rows: Vec<Vec<&str>> =
+            text.lines().map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect();
+        assert_eq!(
+            rows[0],
+            [
+                "devices",
+                "s, static, equal boxes",
+                "s, dynamic RCB",
+                "speed-up, static, equal boxes",
+                "speed-up, dynamic RCB",
+                "efficiency, static, equal boxes",
+                "efficiency, dynamic RCB"
+            ]
+        );
+        assert_eq!(rows[2], ["1", "8.00", "8.00", "1.00", "1.00", "100 %", "100 %"]);
+        assert_eq!(rows[3], ["2", "6.00", "4.40", "1.33", "1.82", "67 %", "91 %"]);
+        assert!(text.lines().all(|line| line.chars().count() == text.lines().next().unwrap().chars().count()));
+    }
+
+    #[test]
+    fn modelled_speed_ups_are_over_the_fewest_devices_of_the_strategy() {
+        let all = [
+            point(12, Strategy::Off, Some(600.0), 0.6),
+            point(12, Strategy::Dynamic, Some(500.0), 0.5),
+            point(24, Strategy::Off, Some(400.0), 0.4),
+            point(24, Strategy::Dynamic, Some(250.0), 0.4),
+        ];
+        let work = work_table(&all);
+        let last: Vec<&str> = work.lines().last().unwrap().split('|').map(str::trim).collect();
+        assert_eq!(last[1..8], ["24", "1.50", "2.00", "1.50", "2.00", "1.200", "1.200"]);
+        let time = time_table(&all);
+        let last: Vec<&str> = time.lines().last().unwrap().split('|').map(str::trim).collect();
+        assert_eq!(last[1..8], ["24", "400", "400", "1.50", "1.25", "25 %", "25 %"]);
+        assert!(gpu_table(&all).contains("2.00"));
+        // A count without work is no base for it.
+        let mut with_one = vec![point(1, Strategy::Off, None, 5.0)];
+        with_one.extend(all);
+        assert_eq!(speed_up(&with_one, &|p| p.work, &all[3]), Some(2.0));
+        assert_eq!(speed_up(&with_one, &|p| Some(p.time), &all[3]), Some(12.5));
+        assert!(work_table(&with_one).lines().nth(2).unwrap().contains(" - "));
+    }
+
+    #[test]
+    fn every_row_of_the_csv_has_its_columns_and_says_whether_it_is_measured() {
+        let text = csv(
+            &[measured(1, Strategy::Off, 8.0, 1.0)],
+            &[point(12, Strategy::Off, Some(600.0), 0.6), point(24, Strategy::Off, Some(400.0), 0.4)],
+        );
+        let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{text}");
+        let value = |row: usize, name: &str| {
+            rows[row][rows[0].iter().position(|head| *head == name).unwrap_or_else(|| panic!("{name}"))]
+        };
+        assert_eq!((value(1, "kind"), value(1, "seconds"), value(1, "ms_per_step")), ("measured", "8", "80"));
+        assert_eq!((value(1, "work_max"), value(2, "work_max"), value(2, "turns")), ("", "600", ""));
+        assert_eq!((value(3, "kind"), value(3, "work_speed_up"), value(3, "efficiency")), ("modelled", "1.5", "0.75"));
+        assert_eq!((value(3, "own_ms"), value(3, "messages_ms"), value(3, "seconds")), ("300", "100", "400"));
+    }
+
+    #[test]
+    fn the_model_stands_beside_the_runs_that_it_is_of() {
+        let points = [point(1, Strategy::Off, None, 0.08), point(2, Strategy::Dynamic, Some(1.0), 0.05)];
+        let runs = [measured(1, Strategy::Off, 8.0, 1.0), measured(2, Strategy::Dynamic, 4.0, 1.0)];
+        let text = validation_table(&points, &runs).unwrap();
+        let last: Vec<&str> = text.lines().last().unwrap().split('|').map(str::trim).collect();
+        assert_eq!(last[1..6], ["2", "dynamic", "50.0", "40.0", "1.25"]);
+        assert_eq!(text.lines().count(), 4);
+        assert_eq!(validation_table(&points, &[measured(4, Strategy::Off, 1.0, 1.0)]), None);
+    }
+
+    #[test]
+    fn the_charts_say_what_is_measured_and_what_is_modelled() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("sweep.svg");
+        measured_chart(&path, "Tank", &[measured(1, Strategy::Off, 8.0, 1.0), measured(2, Strategy::Off, 6.0, 0.6)])
+            .unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(["Tank: speed-up, measured", "ideal", "static, equal boxes"].iter().all(|part| text.contains(part)));
+        let points = [point(12, Strategy::Dynamic, Some(2.0), 0.2), point(24, Strategy::Dynamic, Some(1.0), 0.15)];
+        modelled_chart(&path, "Tank", &points).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(["modelled", "work: dynamic RCB", "time: dynamic RCB"].iter().all(|part| text.contains(part)));
+    }
+}
