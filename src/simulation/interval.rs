@@ -7,7 +7,7 @@ use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, Remembered, Scales, Subdomain, Tallies};
+use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -167,15 +167,13 @@ impl Machine<'_, '_> {
             decomposition.apply(device, self.subdomain, self.exchange)?;
         }
         let before = self.subdomain.remember(device, spare)?;
-        let slots = self.subdomain.begin_interval(
-            device,
-            interval.first_step,
-            interval.dt,
-            &interval.newborns_of,
-            &interval.newborns,
-            interval.first_id,
-            interval.stride,
-        )?;
+        let newborns = Newborns {
+            of_step: &interval.newborns_of,
+            list: &interval.newborns,
+            first_id: interval.first_id,
+            stride: interval.stride,
+        };
+        let slots = self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;

@@ -135,6 +135,9 @@ pub struct Outcome {
     pub stepping_seconds: f64,
 }
 
+/// Particles by id, and the rank that owns each.
+type Owned = (Vec<GpuParticle>, Vec<u32>);
+
 /// The ranks of a run.
 enum Ranks<'a> {
     Alone(Solo),
@@ -661,7 +664,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// All particles by id, and the rank that owns each, at rank 0. Collective.
-    fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<(Vec<GpuParticle>, Vec<u32>)>, SimulationError> {
+    fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<Owned>, SimulationError> {
         let Some(messages) = self.ranks.comm().gather(bytemuck::cast_slice(&own).to_vec())? else {
             return Ok(None);
         };
