@@ -132,6 +132,14 @@ pub fn thin_wall() -> &'static Cut {
     CUT.get_or_init(|| cut(&text, 64))
 }
 
+/// The same plate across two chambers of one state: gas on either side of it is in both.
+pub fn across() -> &'static Cut {
+    static CUT: OnceLock<Cut> = OnceLock::new();
+    let text = TWO_CHAMBERS.replace("HOLE", "").replace("GAS", "\"nitrogen\"");
+    let text = text.replace("[0.0, 0.05, 0.05] } }", "[0.1, 0.0, 0.05] } }").replace("500.0", "300.0");
+    CUT.get_or_init(|| cut(&text.replace("10000.0", "100000.0"), 64))
+}
+
 /// A mixture that flows through a hole in it.
 pub fn mixing() -> &'static Cut {
     static CUT: OnceLock<Cut> = OnceLock::new();
