@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuTriangle, GpuZone};
+use corpuscle::subdomain::{
+    GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+};
 use naga::{Module, TypeInner};
 
 /// A Rust struct as the shaders should see it.
@@ -23,7 +25,34 @@ macro_rules! twin {
 
 fn twins() -> Vec<Twin> {
     vec![
-        twin!("Step", GpuStep, count, newborns, newborn_offset, newborn_first_id, index, dt, round, pad),
+        twin!(
+            "Step",
+            GpuStep,
+            count,
+            newborns,
+            newborn_offset,
+            newborn_first_id,
+            index,
+            dt,
+            round,
+            arrivals,
+            low,
+            total,
+            size,
+            bins,
+            own_low,
+            depth,
+            own_high,
+            reach,
+            inner_low,
+            first,
+            inner_high,
+            pad,
+            peers,
+            near_peers,
+            list,
+            stride
+        ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
@@ -31,6 +60,9 @@ fn twins() -> Vec<Twin> {
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, pad, normal, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
+        twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
+        twin!("Peer", GpuPeer, low, pad, high, pad2),
+        twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
     ]
 }
 

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input, 3 device trouble, 4 the audit failed.";
+use crate::simulation::{CheckpointEvery, WallTime};
+
+const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked, 2 bad input, 3 device trouble, 4 the audit failed.";
 
 /// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags
 #[derive(Debug, Parser)]
@@ -44,6 +46,10 @@ impl Arguments {
 pub enum Verb {
     /// Run a scene
     Run(RunArguments),
+    /// Split the particles of a checkpoint into more and smaller ones; opens no device
+    Refine(RefineArguments),
+    /// Go on with a run from its last checkpoint, on any number of devices
+    Resume(ResumeArguments),
     /// Run a scene on several counts of devices, or emulate them, and compare
     Sweep(SweepArguments),
     /// Print what a run would model, and why; opens no device
@@ -85,15 +91,38 @@ pub struct RunArguments {
     /// Write into a folder that holds more than an earlier run's results
     #[arg(long)]
     pub force: bool,
+    #[command(flatten)]
+    pub execution: ExecutionArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct ResumeArguments {
+    /// The folder of the run, or one of its checkpoints
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub from: PathBuf,
+    #[command(flatten)]
+    pub execution: ExecutionArguments,
+}
+
+/// How a run is done; changes no result.
+#[derive(Debug, Args)]
+pub struct ExecutionArguments {
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,
     /// Steps per submission to the device; changes no result
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub batch: Option<u32>,
-    /// Stop after that many steps, at the end of an interval
+    /// Stop after that many steps since the start of the run, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
+    /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
+    #[arg(long, value_name = "STEPS|WALLTIME")]
+    pub checkpoint_every: Option<CheckpointEvery>,
+    /// Write a checkpoint and stop before the program has run so long (3h50m, 3:50:00)
+    #[arg(long, value_name = "WALLTIME")]
+    pub stop_after: Option<WallTime>,
     #[command(flatten)]
     pub sharing: SharingArguments,
 }
@@ -125,7 +154,7 @@ pub struct TuningArguments {
     /// What is balanced: the measured cost, or the number of particles
     #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
     pub balance_by: BalanceBy,
-    /// Rounds of collisions between two exchanges of the subdomains' borders: more rounds, wider borders
+    /// Rounds of collisions between two exchanges of borders: more are fewer messages and wider borders [default: what proves fastest]
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
     pub halo_rounds: Option<u32>,
 }
@@ -220,6 +249,23 @@ pub struct EmulationArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct RefineArguments {
+    /// The folder of the run, or one of its checkpoints
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub from: PathBuf,
+    /// How many particles each becomes
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(2..(1 << 28)))]
+    pub times: u64,
+    /// The folder of the refined run [default: beside the run's, as <name>-x<K>]
+    #[arg(short, long, value_name = "NEWDIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than an earlier run's results
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct PlanArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
@@ -266,10 +312,15 @@ mod tests {
             ("--seed", "72057594037927936"),
             ("--batch", "0"),
             ("--steps", "-1"),
+            ("--checkpoint-every", "0"),
+            ("--checkpoint-every", "often"),
+            ("--stop-after", "90"),
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }
-        for (option, value) in [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1")] {
+        for (option, value) in
+            [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1"), ("--stop-after", "90s")]
+        {
             assert!(parse(option, value).is_ok(), "{option} {value}");
         }
     }

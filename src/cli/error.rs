@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 
 use crate::gpu::GpuError;
-use crate::output::OutputError;
+use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
 use crate::scene::SceneError;
-use crate::simulation::{ModelError, SimulationError};
+use crate::simulation::{ModelError, RefineError, SimulationError};
 use crate::study::StudyError;
 
 pub const BAD_INPUT: u8 = 2;
@@ -46,6 +46,20 @@ pub enum CliError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Refine(#[from] RefineError),
+    #[error("{}: this is the folder of the run to be refined", path.display())]
+    #[diagnostic(help("name another with --out: the refined run is a run of its own"))]
+    RefinedOntoItself { path: PathBuf },
+    #[error("--steps {asked}: the run has done {done} steps already")]
+    #[diagnostic(help("--steps counts from the start of the run; leave it out to go on to the end of the scene"))]
+    StepsDone { asked: u64, done: u64 },
+    #[error("the system does not let signals be caught: {0}")]
+    Signals(std::io::Error),
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
     #[error("{option} {found}: expected {expected}")]
@@ -101,6 +115,11 @@ impl CliError {
             | CliError::Model { .. }
             | CliError::Check { .. }
             | CliError::Output(_)
+            | CliError::Checkpoint(_)
+            | CliError::Refine(_)
+            | CliError::RefinedOntoItself { .. }
+            | CliError::StepsDone { .. }
+            | CliError::Signals(_)
             | CliError::Threshold { .. }
             | CliError::SweepFigure { .. }
             | CliError::NoLauncher

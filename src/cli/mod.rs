@@ -2,7 +2,7 @@
 //!
 //! Raw arguments ([`Arguments`], what was typed) become settings (what is meant: a scene with its overrides, a
 //! folder) before anything is done. Results go to standard output, messages to standard error. Exit codes:
-//! 0 done; 2 bad input; 3 device trouble; 4 the audit failed.
+//! 0 done, or stopped as asked with a checkpoint; 2 bad input; 3 device trouble; 4 the audit failed.
 
 mod adapters;
 mod arguments;
@@ -11,6 +11,8 @@ mod completions;
 mod error;
 mod man;
 mod plan;
+mod refine;
+mod resume;
 mod run;
 mod schema;
 mod settings;
@@ -51,6 +53,8 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
     let quiet = arguments.quiet;
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
+        Verb::Refine(raw) => refine::refine(raw),
+        Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Check(raw) => check::check(raw),

@@ -1,35 +1,48 @@
 //! `corpuscle run`: a scene from its file to the results.
 //!
 //! An earlier run's results are removed only once the scene, the device and the set-up have shown that this
-//! run can start.
+//! run can start. A run that goes on from a checkpoint takes the same way.
 
 mod chart;
+mod checkpoints;
 mod devices;
 mod recorder;
 mod reference;
-mod table;
+pub(super) mod table;
 mod timing;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{AdapterDescription, Device};
-use crate::output::{AdapterRecord, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, grouped};
+use crate::output::{
+    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Environment, Origin, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE,
+    SCENE_FILE, forget_after, grouped,
+};
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
 use crate::scene::to_toml;
-use crate::simulation::{Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits};
+use crate::simulation::{Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits};
 
 use super::CliError;
 use super::arguments::RunArguments;
+use super::resume::Beginning;
 use super::settings::RunSettings;
 use super::terminal::say;
 
-use recorder::Recorder;
+use checkpoints::Checkpoints;
+pub use checkpoints::Wanted;
+use recorder::{Recorder, Totals};
 use reference::Reference;
 
 pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
+    let started = Instant::now();
+    among_ranks(|comm| launch(&RunSettings::new(raw)?, None, comm, quiet, started))
+}
+
+/// What this process does as a rank of those that a launcher may have started.
+pub fn among_ranks(work: impl FnOnce(&dyn Communicator) -> Result<(), CliError>) -> Result<(), CliError> {
     let comm = from_environment()?;
-    let done = with_ranks(raw, quiet, &*comm);
+    let done = work(&*comm);
     if let Err(error) = &done {
         // Under a launcher this ends all ranks; alone it changes nothing.
         comm.fail(&error.to_string(), error.exit_code().into());
@@ -37,11 +50,17 @@ pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
     done
 }
 
-fn with_ranks(raw: RunArguments, quiet: bool, comm: &dyn Communicator) -> Result<(), CliError> {
-    let started = Instant::now();
-    let settings = RunSettings::new(raw)?;
+/// A run, from its start or from a checkpoint; `started`: this process did.
+pub fn launch(
+    settings: &RunSettings,
+    from: Option<Beginning>,
+    comm: &dyn Communicator,
+    quiet: bool,
+    started: Instant,
+) -> Result<(), CliError> {
     let quiet = quiet || comm.rank() > 0;
-    let subdomains = settings.sharing.subdomains;
+    let execution = &settings.execution;
+    let subdomains = execution.sharing.subdomains;
     if subdomains > 1 && comm.size() > 1 {
         return Err(CliError::SubdomainsOfRanks { asked: subdomains, ranks: comm.size() });
     }
@@ -51,7 +70,7 @@ fn with_ranks(raw: RunArguments, quiet: bool, comm: &dyn Communicator) -> Result
             tracing::warn!("{warning}");
         }
     }
-    let device = devices::open(settings.gpu.as_deref(), comm)?;
+    let device = devices::open(execution.gpu.as_deref(), comm)?;
     devices::agree(&device, model, comm)?;
     if !quiet {
         say(&heading(device.adapter(), model))?;
@@ -60,8 +79,17 @@ fn with_ranks(raw: RunArguments, quiet: bool, comm: &dyn Communicator) -> Result
         devices::map(&device, comm)?;
     }
     let ranks = comm.size().max(subdomains);
-    let setup = Setup::new(model, &device, ranks, None)?;
-    let job = Job { settings: &settings, device: &device, setup: &setup, quiet, started };
+    let setup = match &from {
+        None => Setup::new(model, &device, ranks, None)?,
+        Some(from) => {
+            if comm.rank() == 0 {
+                from.warn(&Adapter::from(&record(&device)));
+            }
+            Setup::with_particles(model, &device, ranks, from.particles()?)?
+        }
+    };
+    let interrupt = Interrupt::catch().map_err(CliError::Signals)?;
+    let job = Job { settings, from, device: &device, setup: &setup, interrupt: &interrupt, quiet, started };
     if subdomains == 1 {
         return job.run(comm);
     }
@@ -83,8 +111,10 @@ fn with_ranks(raw: RunArguments, quiet: bool, comm: &dyn Communicator) -> Result
 /// What all ranks of this process share.
 struct Job<'a> {
     settings: &'a RunSettings,
+    from: Option<Beginning>,
     device: &'a Device,
     setup: &'a Setup,
+    interrupt: &'a Interrupt,
     quiet: bool,
     started: Instant,
 }
@@ -93,26 +123,32 @@ impl Job<'_> {
     fn run(&self, comm: &dyn Communicator) -> Result<(), CliError> {
         let Job { settings, device, setup, .. } = self;
         let model = &settings.model;
+        let execution = &settings.execution;
         let options = Options {
-            batch: settings.batch,
-            stop_after_steps: settings.stop_after_steps,
-            halo_rounds: settings.sharing.halo_rounds,
-            balance: settings.sharing.balance,
+            batch: execution.batch,
+            stop_after_steps: execution.stop_after_steps,
+            checkpoint_at_stop: execution.checkpoints.every.is_some(),
+            halo_rounds: execution.sharing.halo_rounds,
+            balance: execution.sharing.balance,
             ..Options::default()
         };
-        let simulation = Simulation::among(model, device, setup, comm, options)?;
+        let simulation = match &self.from {
+            None => Simulation::among(model, device, setup, comm, options)?,
+            Some(from) => Simulation::resume(model, device, setup, comm, options, &from.state)?,
+        };
+        let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         if comm.rank() > 0 {
-            let outcome = simulation.run(&mut ())?;
+            let outcome = simulation.run(&mut checkpoints)?;
             timing::of_ranks(comm, &outcome)?;
             return Ok(());
         }
-        let folder = OutputFolder::create(&settings.folder, settings.force)?;
-        folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
-        folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
-        Environment::of_this_host(command(), record(device)).write(folder.path())?;
-        let mut recorder = Recorder::new(model, Reference::new(model), folder.path(), !self.quiet)?;
+        let adapter = record(device);
+        let origin = Origin::new(&model.scene, model.plan.to_toml()?, Adapter::from(&adapter))?;
+        let (folder, recorder) = self.files(adapter)?;
+        let step = self.from.as_ref().map_or(0, Beginning::step);
+        let mut recorder = recorder.checkpointing(checkpoints.leading(execution.checkpoints, step, origin));
         if comm.size() > 1 {
-            recorder = recorder.among(folder.path(), 0)?;
+            recorder = recorder.among(folder.path(), step)?;
         }
         let set_up = self.started.elapsed();
         let result = simulation.run(&mut recorder);
@@ -122,10 +158,35 @@ impl Job<'_> {
         drawn?;
         recorder.finish(&outcome)?;
         timing::of(comm, &outcome, set_up)?.write(folder.path())?;
-        self.tell(&outcome, set_up, &folder)
+        if outcome.time >= model.plan.end_time {
+            folder.end(&format!("{}\n{}", outcome.audit.render(), totals(&outcome)))?;
+        }
+        self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
     }
 
-    fn tell(&self, outcome: &Outcome, set_up: Duration, folder: &OutputFolder) -> Result<(), CliError> {
+    /// The folder of the results, and who writes into it, on rank 0.
+    fn files(&self, adapter: AdapterRecord) -> Result<(OutputFolder, Recorder<'_>), CliError> {
+        let RunSettings { model, folder, force, .. } = self.settings;
+        let (reference, shown) = (Reference::new(model), !self.quiet);
+        let Some(from) = &self.from else {
+            let folder = OutputFolder::create(folder, *force)?;
+            folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
+            folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
+            Environment::of_this_host(command(), adapter).write(folder.path())?;
+            let recorder = Recorder::new(model, reference, folder.path(), shown)?;
+            return Ok((folder, recorder));
+        };
+        let folder = OutputFolder::open(folder)?;
+        folder.go_on()?;
+        // First, since they count on what is cut off then.
+        forget_after(&folder.checkpoints(), from.step())?;
+        let totals =
+            Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps() };
+        let recorder = Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?;
+        Ok((folder, recorder))
+    }
+
+    fn tell(&self, outcome: &Outcome, set_up: Duration, folder: &OutputFolder, stopped: bool) -> Result<(), CliError> {
         let limits = audit_limits(&self.settings.model.plan);
         for warning in outcome.audit.warnings(&limits) {
             tracing::warn!("{warning}");
@@ -134,6 +195,14 @@ impl Job<'_> {
             say(&summary(outcome))?;
             let seconds = self.started.elapsed().as_secs_f64();
             say(&format!("wall time {seconds:.1} s, of which set-up {:.1} s\n", set_up.as_secs_f64()))?;
+        }
+        if stopped && !self.quiet {
+            say(&format!(
+                "stopped as asked at {:.4} ms of {:.4} ms; to go on: corpuscle resume {}\n",
+                1e3 * outcome.time,
+                1e3 * self.settings.model.plan.end_time,
+                folder.path().display()
+            ))?;
         }
         say(&format!("{}\n", folder.path().display()))?;
         let failures = outcome.audit.verdict(&limits);
@@ -182,6 +251,18 @@ fn record(device: &Device) -> AdapterRecord {
     }
 }
 
+/// What the whole run has done, without wall times.
+fn totals(outcome: &Outcome) -> String {
+    let [shortest, longest] = outcome.step_range.map(|step| 1e6 * step);
+    format!(
+        "{:.4} ms in {} steps of {shortest:.3} to {longest:.3} us, {} collisions, {} bounces off walls\n",
+        1e3 * outcome.time,
+        grouped(outcome.steps),
+        grouped(outcome.collisions),
+        grouped(outcome.bounces),
+    )
+}
+
 /// The audit, the phase table and the totals.
 fn summary(outcome: &Outcome) -> String {
     let mut text = format!("\n{}\n", outcome.audit.render());
@@ -190,17 +271,10 @@ fn summary(outcome: &Outcome) -> String {
     } else {
         text += &outcome.phases.render();
     }
-    let [shortest, longest] = outcome.step_range.map(|step| 1e6 * step);
-    // Writing to a string cannot fail.
-    let _ = write!(
-        text,
-        "\n{:.4} ms in {} steps of {shortest:.3} to {longest:.3} us, {} collisions, {} bounces off walls\n",
-        1e3 * outcome.time,
-        grouped(outcome.steps),
-        grouped(outcome.collisions),
-        grouped(outcome.bounces),
-    );
+    text += "\n";
+    text += &totals(outcome);
     if outcome.repeated > 0 {
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{} intervals were run again with longer neighbour lists", outcome.repeated);
     }
     let traffic = &outcome.traffic;

@@ -7,7 +7,8 @@ use crate::scene::{Scene, load};
 use crate::simulation::{BalanceMode, BalanceOptions, Model};
 
 use super::CliError;
-use super::arguments::{Balance, BalanceBy, RunArguments, SceneArguments, SharingArguments};
+use super::arguments::{Balance, BalanceBy, ExecutionArguments, RunArguments, SceneArguments, SharingArguments};
+use super::run::Wanted;
 
 /// The scene of the file with the overrides in it, as if the file had said so.
 pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
@@ -31,12 +32,27 @@ pub struct RunSettings {
     pub model: Model,
     pub folder: PathBuf,
     pub force: bool,
+    pub execution: Execution,
+}
+
+/// How a run is done.
+pub struct Execution {
     /// Index or PCI bus id; `None`: the first.
     pub gpu: Option<String>,
     /// Steps per submission; `None`: a whole interval.
     pub batch: Option<u32>,
+    /// Since the start of the run.
     pub stop_after_steps: Option<u64>,
     pub sharing: Sharing,
+    pub checkpoints: Wanted,
+}
+
+impl Execution {
+    pub fn new(raw: ExecutionArguments) -> Result<Execution, CliError> {
+        let ExecutionArguments { gpu, batch, steps, checkpoint_every, stop_after, sharing } = raw;
+        let checkpoints = Wanted { every: checkpoint_every, stop_after };
+        Ok(Execution { gpu, batch, stop_after_steps: steps, sharing: Sharing::new(&sharing)?, checkpoints })
+    }
 }
 
 /// How the work is shared out.
@@ -76,9 +92,8 @@ impl RunSettings {
         let path = &raw.scene.scene;
         let model = model_of(path, scene_of(&raw.scene)?)?;
         let folder = raw.out.unwrap_or_else(|| default_folder(path));
-        let RunArguments { force, gpu, batch, steps, sharing, .. } = raw;
-        let sharing = Sharing::new(&sharing)?;
-        Ok(RunSettings { model, folder, force, gpu, batch, stop_after_steps: steps, sharing })
+        let execution = Execution::new(raw.execution)?;
+        Ok(RunSettings { model, folder, force: raw.force, execution })
     }
 }
 

@@ -9,6 +9,8 @@
 //! | `InitialState`    | `[particle id, block, 0, 0]`                       | host     |
 //! | `Inflow`          | `[particle id, block, 0, 0]`                       | host     |
 //! | `Collision`       | `[step, 2 round + block, lower id, higher id]`     | device   |
+//! | `RefinedPosition` | `[particle id, block, 0, 0]`                       | host     |
+//! | `RefinedState`    | `[particle id, block, 0, 0]`                       | host     |
 //!
 //! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
 //! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
@@ -26,6 +28,9 @@ pub enum Purpose {
     Inflow = 3,
     /// Drawn on the device only: spin exchange and chirality of a pair.
     Collision = 4,
+    /// Of the particles that a coarser state is split into; ids are those of the refined run.
+    RefinedPosition = 5,
+    RefinedState = 6,
 }
 
 /// The Philox key of a purpose; uses the lower 56 bits of the seed.
@@ -120,6 +125,14 @@ mod tests {
     use super::*;
 
     const COUNT: u32 = 200_000;
+    const PURPOSES: [Purpose; 6] = [
+        Purpose::InitialPosition,
+        Purpose::InitialState,
+        Purpose::Inflow,
+        Purpose::Collision,
+        Purpose::RefinedPosition,
+        Purpose::RefinedState,
+    ];
 
     /// Mean and second moment over `COUNT` particles, one draw each, with the standard errors of both.
     fn moments(draw: impl Fn(&mut Draws) -> f64) -> [[f64; 2]; 2] {
@@ -190,7 +203,7 @@ mod tests {
     fn no_two_draws_share_a_key() {
         let mut seen = std::collections::BTreeSet::new();
         for seed in [0, 1, 1 << 32, (1 << 56) - 1] {
-            for purpose in [Purpose::InitialPosition, Purpose::InitialState, Purpose::Inflow, Purpose::Collision] {
+            for purpose in PURPOSES {
                 for id in [0, 1, u32::MAX] {
                     let mut draws = Draws::new(seed, purpose, id);
                     for _ in 0..8 {

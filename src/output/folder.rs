@@ -16,6 +16,8 @@ pub const PLAN_FILE: &str = "plan.toml";
 pub const SCENE_FILE: &str = "scene.toml";
 pub const ENVIRONMENT_FILE: &str = "environment.json";
 pub const PRESSURE_CHART_FILE: &str = "pressure.svg";
+/// Only there once the run has reached its end and all else is written.
+pub const AUDIT_FILE: &str = "audit.txt";
 pub const BALANCE_FILE: &str = "balance.csv";
 pub const SUBDOMAIN_CHART_FILE: &str = "subdomains.svg";
 pub const TIMING_FILE: &str = "timing.json";
@@ -30,13 +32,14 @@ pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 13] = [
+const RESULT_FILES: [&str; 14] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
     SCENE_FILE,
     ENVIRONMENT_FILE,
     PRESSURE_CHART_FILE,
+    AUDIT_FILE,
     BALANCE_FILE,
     SUBDOMAIN_CHART_FILE,
     TIMING_FILE,
@@ -95,6 +98,25 @@ impl OutputFolder {
 
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether the run in it has reached its end.
+    pub fn has_ended(&self) -> bool {
+        self.path.join(AUDIT_FILE).exists()
+    }
+
+    /// Writes the audit: the run has reached its end.
+    pub fn end(&self, audit: &str) -> Result<PathBuf, OutputError> {
+        self.write_text(AUDIT_FILE, audit)
+    }
+
+    /// The run in it goes on: it has not ended.
+    pub fn go_on(&self) -> Result<(), OutputError> {
+        let path = self.path.join(AUDIT_FILE);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(OutputError::io("remove", &path)(error)),
+            _ => Ok(()),
+        }
     }
 
     /// Where the run's checkpoints are; made with the first.
@@ -268,6 +290,21 @@ mod tests {
         finished_run(dir.path());
         OutputFolder::open(dir.path()).unwrap();
         assert!(dir.path().join(HISTORY_FILE).exists());
+    }
+
+    /// The audit is there from the end of a run until it goes on or another takes its place.
+    #[test]
+    fn only_an_ended_run_has_its_audit() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(dir.path(), false).unwrap();
+        assert!(!folder.has_ended());
+        folder.go_on().unwrap();
+        folder.end("all is well").unwrap();
+        assert!(OutputFolder::open(dir.path()).unwrap().has_ended());
+        folder.go_on().unwrap();
+        assert!(!folder.has_ended());
+        folder.end("all is well").unwrap();
+        assert!(!OutputFolder::create(dir.path(), false).unwrap().has_ended());
     }
 
     #[test]

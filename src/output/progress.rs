@@ -80,6 +80,14 @@ impl Progress {
         self.show(Sample { elapsed, time, steps, particle_steps });
     }
 
+    /// Says something once; it stays above the bar.
+    pub fn note(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| tracing::info!("{text}")),
+            None => tracing::info!("{text}"),
+        }
+    }
+
     /// Ends the display and states this process's steps and rates.
     pub fn finish(&mut self, time: f64, steps: u64, particle_steps: u64) {
         if let Some(bar) = &self.bar {

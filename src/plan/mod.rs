@@ -25,7 +25,7 @@ use crate::scene::{Method, Opening};
 use serde::Serialize;
 
 pub use decide::plan;
-pub use error::PlanError;
+pub use error::{MOST_PARTICLES, PlanError};
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,7 @@
 //! The account of a run: what entered, what is there, what was lost.
+//!
+//! It starts at time 0, or, of a refined state, at the moment of the refinement: then what had entered `before` counts as
+//! there from the start.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +25,7 @@ pub struct Account {
     molar_masses: Vec<f64>,
     moles_per_particle: f64,
     start: State,
+    before: Entered,
     injected_momentum: [f64; 3],
     /// By the newborns of the intervals read, J.
     energy_entered: f64,
@@ -48,10 +52,19 @@ struct State {
     energy: f64,
 }
 
+/// What orifices had brought before the account started, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Entered {
+    number: u64,
+    mass: f64,
+    energy: f64,
+}
+
 /// All that an account has counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AccountState {
     start: State,
+    before: Entered,
     injected_momentum: [f64; 3],
     energy_entered: f64,
     particles: u64,
@@ -67,6 +80,13 @@ pub struct AccountState {
     phases: Vec<(String, f64, u64)>,
 }
 
+impl AccountState {
+    /// The particles of each step, summed.
+    pub fn particle_steps(&self) -> u64 {
+        self.particle_steps
+    }
+}
+
 impl Account {
     pub fn new(plan: &Plan) -> Account {
         Account {
@@ -74,6 +94,7 @@ impl Account {
             molar_masses: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
             moles_per_particle: plan.moles_per_particle,
             start: State::default(),
+            before: Entered::default(),
             injected_momentum: [0.0; 3],
             energy_entered: 0.0,
             particles: plan.initial_particles,
@@ -108,6 +129,36 @@ impl Account {
 
     pub fn start(&mut self, tallies: &Tallies) {
         self.start = self.totals(tallies);
+    }
+
+    /// Starts the account with these particles, after what this inflow has let in.
+    pub fn start_with(&mut self, particles: &[GpuParticle], inflow: &Inflow) {
+        let reference_mass = self.scales.reference_mass;
+        let mut start = State { number: particles.len() as u64, ..State::default() };
+        for particle in particles {
+            let mass = self.molar_masses[usize::from(particle.gas())] * self.moles_per_particle;
+            let velocity = particle.velocity.map(f64::from);
+            start.mass += mass;
+            for (total, v) in start.momentum.iter_mut().zip(velocity) {
+                *total += mass * v;
+            }
+            let kinetic = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
+            start.energy += kinetic + reference_mass * f64::from(particle.spin);
+        }
+        self.particles = start.number;
+        self.start = start;
+        self.before = self.entered(inflow);
+    }
+
+    fn entered(&self, inflow: &Inflow) -> Entered {
+        let by_gas = inflow.entered_by_gas();
+        let mass = by_gas.iter().zip(&self.molar_masses).map(|(&n, mass)| n as f64 * mass * self.moles_per_particle);
+        Entered {
+            number: by_gas.iter().sum(),
+            mass: mass.sum(),
+            // What an orifice still owes is not in yet; it owes nothing once its flow has ended.
+            energy: inflow.enthalpy() - inflow.debt(),
+        }
     }
 
     /// What must hold after every interval, of all ranks together.
@@ -184,6 +235,7 @@ impl Account {
     pub fn state(&self) -> AccountState {
         AccountState {
             start: self.start,
+            before: self.before,
             injected_momentum: self.injected_momentum,
             energy_entered: self.energy_entered,
             particles: self.particles,
@@ -203,8 +255,10 @@ impl Account {
     /// # Errors
     /// If no run of this plan can have counted this; then nothing is changed.
     pub fn restore(&mut self, plan: &Plan, state: &AccountState) -> Result<(), StateError> {
-        if state.start.number != plan.initial_particles {
-            return Err(StateError::differs("particles at the start", state.start.number, plan.initial_particles));
+        let initial = state.start.number.checked_sub(state.before.number);
+        if initial != Some(plan.initial_particles) {
+            let found = initial.unwrap_or(0);
+            return Err(StateError::differs("particles at the start", found, plan.initial_particles));
         }
         if state.particles > plan.particles {
             return Err(StateError::Impossible { what: "there are more particles than in the whole run" });
@@ -215,7 +269,7 @@ impl Account {
         (self.particle_steps, self.collisions, self.bounces) = (particle_steps, collisions, bounces);
         (self.step_range, self.steps, self.lost, self.sampled) = (step_range, steps, lost, sampled);
         (self.truncated, self.overshoot) = (truncated, overshoot);
-        self.energy_entered = state.energy_entered;
+        (self.before, self.energy_entered) = (state.before, state.energy_entered);
         self.phases.clone_from(&state.phases);
         Ok(())
     }
@@ -228,19 +282,17 @@ impl Account {
     pub fn close(&self, model: &Model, inflow: &Inflow, tallies: &Tallies, outside: u64, averages: &Averages) -> Audit {
         let end = self.totals(tallies);
         let plan = &model.plan;
-        let entered = inflow.entered_by_gas();
-        let injected_mass =
-            entered.iter().zip(&self.molar_masses).map(|(&n, mass)| n as f64 * mass * self.moles_per_particle).sum();
+        let (entered, before) = (self.entered(inflow), self.before);
         let surfaces = !model.scene.surfaces.is_empty();
         let events = (self.lost + self.sampled) as f64;
         Audit {
-            particles_initial: plan.initial_particles,
-            particles_injected: entered.iter().sum(),
+            particles_initial: self.start.number,
+            particles_injected: entered.number - before.number,
             particles_vented: 0,
             particles_inside: end.number - outside,
             particles_outside: outside,
             mass_start: self.start.mass,
-            mass_injected: injected_mass,
+            mass_injected: entered.mass - before.mass,
             mass_vented: 0.0,
             mass_end: end.mass,
             momentum_start: self.start.momentum,
@@ -248,8 +300,7 @@ impl Account {
             momentum_to_walls: surfaces.then(|| averages.total_impulse()),
             momentum_end: end.momentum,
             energy_start: self.start.energy,
-            // What an orifice still owes is not in yet; it owes nothing once its flow has ended.
-            enthalpy_injected: inflow.enthalpy() - inflow.debt(),
+            enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented: 0.0,
             energy_end: end.energy,
             lost_collision_fraction: (plan.method != Method::None && events > 0.0).then(|| self.lost as f64 / events),

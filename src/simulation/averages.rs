@@ -100,6 +100,20 @@ pub struct AveragesState {
     pub(super) received: Vec<[i128; 3]>,
 }
 
+impl AveragesState {
+    /// An empty window that starts at a time, s: of a run that is measured from there on.
+    pub(super) fn starting_at(start: f64, zones: usize, gases: usize, patches: usize) -> AveragesState {
+        AveragesState {
+            start,
+            steps: 0,
+            weight: 0.0,
+            sums: vec![Sum::default(); zones * gases],
+            patches: vec![(0, 0); patches],
+            received: vec![[0; 3]; patches],
+        }
+    }
+}
+
 impl Averages {
     pub fn new(plan: &Plan, layout: Layout, patches: usize) -> Averages {
         let scales = Scales::new(plan);

@@ -33,11 +33,13 @@ pub struct Load {
     /// In the interval: particles that came from another owner, and bytes that were sent.
     pub moved: u64,
     pub bytes: u64,
+    /// Wall time of the interval, s.
+    pub wall: f64,
     /// Spent on a rebalance and on bringing the particles home, s.
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 8;
+const LOAD_WORDS: usize = 9;
 
 impl Load {
     /// `traffic`: that of the interval.
@@ -50,6 +52,7 @@ impl Load {
             owned: own.blocks.iter().map(|block| block.number).sum(),
             moved: own.counters.moved.into(),
             bytes: traffic.bytes,
+            wall: traffic.wall_seconds,
             rebalancing: traffic.rebalancing_seconds,
         }
     }
@@ -67,6 +70,7 @@ impl Load {
             self.moved,
             self.bytes,
             nanoseconds(self.rebalancing),
+            nanoseconds(self.wall),
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -84,6 +88,7 @@ impl Load {
             moved: w[5],
             bytes: w[6],
             rebalancing: 1e-9 * w[7] as f64,
+            wall: 1e-9 * w[8] as f64,
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }

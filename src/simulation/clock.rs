@@ -36,6 +36,13 @@ impl Clock {
         Clock { now: 0, end, levels, end_time: plan.end_time, steps: 0 }
     }
 
+    /// A clock that starts in the middle of a run, at the tick nearest to this share of the simulated time.
+    pub fn starting_at(plan: &Plan, progress: f64) -> Clock {
+        let clock = Clock::new(plan);
+        let ticks = (progress * clock.end as f64).round() as u64;
+        Clock { now: ticks.min(clock.end), ..clock }
+    }
+
     pub fn time(&self) -> f64 {
         self.seconds(self.now)
     }

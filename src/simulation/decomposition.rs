@@ -98,6 +98,12 @@ impl Decomposition {
         Ok(subdomain.move_to(device, place)?)
     }
 
+    /// Rounds between two exchanges from now on; true if that is a change.
+    pub fn set_rounds(&mut self, rounds: u32) -> bool {
+        let depth = 2 * rounds;
+        std::mem::replace(&mut self.depth, depth) != depth
+    }
+
     /// From now on particles may be with anyone, until the exchange of a step has brought them home.
     pub fn scatter(&mut self) {
         self.scattered = true;

@@ -25,6 +25,8 @@ pub struct Traffic {
     /// Summed over steps: particles here, ghosts included, and of them those that came from others.
     pub present: u64,
     pub arrived: u64,
+    /// s, of intervals: from their start to the submission of all their steps.
+    pub wall_seconds: f64,
     /// s, of rebalances and of the exchanges that brought the particles home afterwards.
     pub rebalancing_seconds: f64,
 }
@@ -41,6 +43,7 @@ impl Traffic {
             waiting_seconds: self.waiting_seconds - earlier.waiting_seconds,
             present: self.present - earlier.present,
             arrived: self.arrived - earlier.arrived,
+            wall_seconds: self.wall_seconds - earlier.wall_seconds,
             rebalancing_seconds: self.rebalancing_seconds - earlier.rebalancing_seconds,
         }
     }
@@ -80,6 +83,11 @@ impl<'a> Exchange<'a> {
         let recent = self.traffic.since(&self.reported);
         self.reported = self.traffic;
         recent
+    }
+
+    /// Time that went into an interval.
+    pub fn ran(&mut self, seconds: f64) {
+        self.traffic.wall_seconds += seconds;
     }
 
     /// Time that went into a rebalance.

@@ -1,11 +1,13 @@
 //! One interval of steps: what it needs to run, and to run again. Its step size is fixed, its newborns are
 //! known, and its tallies are read one interval late.
 
+use std::time::Instant;
+
 use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, Remembered, Scales, Subdomain, Tallies};
+use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -157,6 +159,7 @@ impl Machine<'_, '_> {
     /// Encodes and submits the interval, `batch` steps a submission. Neither the batches nor the timed step
     /// change a bit of the result.
     pub fn submit(&mut self, interval: Interval, spare: Option<wgpu::Buffer>) -> Result<InFlight, SimulationError> {
+        let start = Instant::now();
         let (plan, device) = (self.plan, self.device);
         if let Some(decomposition) = self.decomposition.as_deref_mut()
             && decomposition.is_scattered()
@@ -164,15 +167,13 @@ impl Machine<'_, '_> {
             decomposition.apply(device, self.subdomain, self.exchange)?;
         }
         let before = self.subdomain.remember(device, spare)?;
-        let slots = self.subdomain.begin_interval(
-            device,
-            interval.first_step,
-            interval.dt,
-            &interval.newborns_of,
-            &interval.newborns,
-            interval.first_id,
-            interval.stride,
-        )?;
+        let newborns = Newborns {
+            of_step: &interval.newborns_of,
+            list: &interval.newborns,
+            first_id: interval.first_id,
+            stride: interval.stride,
+        };
+        let slots = self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;
@@ -199,6 +200,7 @@ impl Machine<'_, '_> {
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;
         let submission = rec.submit();
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
+        self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();
         Ok(InFlight { before, tallies, phases, present, traffic, interval })
     }

@@ -25,13 +25,11 @@ use super::ladder::{Demand, Ladder};
 use super::model::Model;
 use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::{Setup, Shuffle};
+use super::tuning::Tuner;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
-/// Rounds of collisions between two exchanges, unless said otherwise: the halo has twice as many layers.
-const HALO_ROUNDS: u32 = 2;
-
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
@@ -41,7 +39,10 @@ pub struct Options<'a> {
     pub shuffle: Option<&'a Shuffle>,
     /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
     pub stop_after_steps: Option<u64>,
-    /// Rounds of collisions between two exchanges of ghosts; a divisor of the plan's rounds wastes least.
+    /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
+    pub checkpoint_at_stop: bool,
+    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
+    /// many layers of cells.
     pub halo_rounds: Option<u32>,
     pub balance: BalanceOptions,
 }
@@ -105,6 +106,8 @@ pub struct Moment<'a> {
     /// Of this rank.
     pub own: &'a [GpuParticle],
     pub comm: &'a dyn Communicator,
+    /// The run stops here because it was asked to.
+    pub stopping: bool,
 }
 
 /// What a run leaves.
@@ -132,6 +135,9 @@ pub struct Outcome {
     pub stepping_seconds: f64,
 }
 
+/// Particles by id, and the rank that owns each.
+type Owned = (Vec<GpuParticle>, Vec<u32>);
+
 /// The ranks of a run.
 enum Ranks<'a> {
     Alone(Solo),
@@ -156,6 +162,7 @@ pub struct Simulation<'a> {
     /// `None` on a rank alone, and where particles are dealt out by their ids.
     decomposition: Option<Decomposition>,
     balance: Balance,
+    tuner: Tuner,
     inflow: Inflow,
     clock: Clock,
     ladder: Ladder,
@@ -221,7 +228,7 @@ impl<'a> Simulation<'a> {
         let (size, rank) = (comm.size() as u32, comm.rank() as u32);
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
-            let rounds = options.halo_rounds.unwrap_or(HALO_ROUNDS).clamp(1, plan.rounds.max(1));
+            let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
             let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
             let cut = Decomposition::new(plan, comm, rounds, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
@@ -242,6 +249,7 @@ impl<'a> Simulation<'a> {
             },
             decomposition,
             balance: Balance::new(options.balance, comm.size()),
+            tuner: Tuner::new(plan.rounds, options.halo_rounds),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -373,6 +381,9 @@ impl<'a> Simulation<'a> {
     /// As [`Simulation::run`].
     pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
+        if self.options.checkpoint_at_stop && self.stopped() && !self.stopping && !self.clock.done() {
+            self.checkpoint(observer)?;
+        }
         let stepping_seconds = self.began.elapsed().as_secs_f64();
         if self.averages.ready() {
             self.emit_row(observer)?;
@@ -415,6 +426,7 @@ impl<'a> Simulation<'a> {
             state: &self.state(),
             own: &own,
             comm: self.ranks.comm(),
+            stopping: self.stopping,
         })
     }
 
@@ -450,6 +462,9 @@ impl<'a> Simulation<'a> {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
             let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
             self.exchange.rebalanced(seconds);
+            if decomposition.set_rounds(self.tuner.next()) {
+                decomposition.apply(self.device, &mut self.subdomain, &mut self.exchange)?;
+            }
         }
         self.submitted += 1;
         let (level, steps) = self.clock.interval(self.ladder.level(), plan.steps_per_interval);
@@ -555,6 +570,10 @@ impl<'a> Simulation<'a> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        if self.decomposition.is_some() {
+            let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
+            self.tuner.measured(slowest, interval.steps, interval.particles);
+        }
         if !loads.is_empty() {
             self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
             if let Some(record) = self.balance.latest() {
@@ -592,6 +611,7 @@ impl<'a> Simulation<'a> {
         strayed: bool,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
+        self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
         let mut later = Vec::new();
         for flight in std::mem::take(&mut self.flying) {
@@ -644,7 +664,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// All particles by id, and the rank that owns each, at rank 0. Collective.
-    fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<(Vec<GpuParticle>, Vec<u32>)>, SimulationError> {
+    fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<Owned>, SimulationError> {
         let Some(messages) = self.ranks.comm().gather(bytemuck::cast_slice(&own).to_vec())? else {
             return Ok(None);
         };

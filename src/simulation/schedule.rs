@@ -117,7 +117,10 @@ impl fmt::Display for WallTime {
 /// Share of the limit that is kept for the last checkpoint while none has been measured.
 const UNMEASURED: u32 = 50;
 
-/// Decides; all times are since the start of this process's part of the run.
+/// From a question to the state that is written pass two intervals more, and one until the next question.
+const GAPS: u32 = 3;
+
+/// Decides; all times are since the start of this process.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     every: Option<CheckpointEvery>,
@@ -131,26 +134,26 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// For a run that starts, or goes on, at `step`.
-    pub fn new(every: Option<CheckpointEvery>, stop_after: Option<WallTime>, step: u64) -> Schedule {
+    /// For a run whose time loop starts, or goes on, at `step` after `elapsed`.
+    pub fn new(every: Option<CheckpointEvery>, stop_after: Option<WallTime>, elapsed: Duration, step: u64) -> Schedule {
         Schedule {
             every,
             stop_after,
-            last: (Duration::ZERO, step),
+            last: (elapsed, step),
             costliest: None,
-            asked: Duration::ZERO,
+            asked: elapsed,
             longest_gap: Duration::ZERO,
         }
     }
 
-    /// To be asked between intervals. A stop is asked for while there is time to write: before the limit by the longest
-    /// gap between two questions and twice the costliest checkpoint so far (a fiftieth of the limit before the first).
+    /// To be asked between intervals. A stop is asked for while there is time to write: before the limit by three of the
+    /// longest gaps between two questions and twice the costliest checkpoint so far (a fiftieth of the limit before the first).
     pub fn due(&mut self, elapsed: Duration, step: u64) -> Request {
         self.longest_gap = self.longest_gap.max(elapsed.saturating_sub(self.asked));
         self.asked = elapsed;
         if let Some(WallTime(limit)) = self.stop_after {
             let writing = self.costliest.map_or(limit / UNMEASURED, |cost| 2 * cost);
-            if elapsed.saturating_add(self.longest_gap).saturating_add(writing) >= limit {
+            if elapsed.saturating_add(GAPS * self.longest_gap).saturating_add(writing) >= limit {
                 return Request::CheckpointAndStop;
             }
         }
@@ -235,7 +238,7 @@ mod tests {
     fn steps_are_counted_over_the_whole_run() {
         let every = Some(CheckpointEvery::Steps(100));
         let written = |from: u64| {
-            let mut schedule = Schedule::new(every, None, from);
+            let mut schedule = Schedule::new(every, None, Duration::ZERO, from);
             let due = |step: &u64| {
                 let due = schedule.due(SECOND, *step) == Request::Checkpoint;
                 if due {
@@ -252,7 +255,7 @@ mod tests {
 
     #[test]
     fn wall_time_is_counted_from_the_last_checkpoint() {
-        let mut schedule = Schedule::new("10s".parse().ok(), None, 0);
+        let mut schedule = Schedule::new("10s".parse().ok(), None, Duration::ZERO, 0);
         assert_eq!(schedule.due(9 * SECOND, 1), Request::None);
         assert_eq!(schedule.due(10 * SECOND, 2), Request::Checkpoint);
         schedule.written(15 * SECOND, 2, 5 * SECOND);
@@ -263,18 +266,21 @@ mod tests {
     /// The last checkpoint is written before the limit: with what an interval and a checkpoint have taken so far.
     #[test]
     fn a_run_stops_while_there_is_time_to_write() {
-        let mut schedule = Schedule::new(None, "1000s".parse().ok(), 0);
+        let limited = |elapsed| Schedule::new(None, "1000s".parse().ok(), elapsed, 0);
+        let mut schedule = limited(Duration::ZERO);
         assert_eq!(schedule.due(100 * SECOND, 1), Request::None);
-        assert_eq!(schedule.due(879 * SECOND, 2), Request::CheckpointAndStop, "a gap of 779 s may come again");
-        let mut schedule = Schedule::new(None, "1000s".parse().ok(), 0);
-        for second in 1..979 {
+        assert_eq!(schedule.due(400 * SECOND, 2), Request::CheckpointAndStop, "gaps of 300 s may come again");
+        // A long set-up is no gap between questions.
+        assert_eq!(limited(600 * SECOND).due(601 * SECOND, 2), Request::None);
+        let mut schedule = limited(Duration::ZERO);
+        for second in 1..977 {
             assert_eq!(schedule.due(second * SECOND, 1), Request::None, "{second}");
         }
-        assert_eq!(schedule.due(979 * SECOND, 2), Request::CheckpointAndStop);
+        assert_eq!(schedule.due(977 * SECOND, 2), Request::CheckpointAndStop);
         schedule.written(900 * SECOND, 1, 40 * SECOND);
         assert_eq!(schedule.due(901 * SECOND, 2), Request::None);
-        assert_eq!(schedule.due(919 * SECOND, 2), Request::CheckpointAndStop);
+        assert_eq!(schedule.due(917 * SECOND, 2), Request::CheckpointAndStop);
         // Without a limit it never stops.
-        assert_eq!(Schedule::new(None, None, 0).due(u32::MAX * SECOND, 1), Request::None);
+        assert_eq!(Schedule::new(None, None, Duration::ZERO, 0).due(u32::MAX * SECOND, 1), Request::None);
     }
 }

@@ -38,6 +38,23 @@ impl Setup {
         ranks: usize,
         shuffle: Option<&Shuffle>,
     ) -> Result<Setup, SimulationError> {
+        let mut particles = initial_particles(model)?;
+        if let Some(shuffle) = shuffle {
+            shuffle(&mut particles);
+        }
+        Setup::with_particles(model, device, ranks, particles)
+    }
+
+    /// For a run that goes on: all particles of that moment instead of the initial ones.
+    ///
+    /// # Errors
+    /// If the scene does not fit the device.
+    pub fn with_particles(
+        model: &Model,
+        device: &Device,
+        ranks: usize,
+        particles: Vec<GpuParticle>,
+    ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
         let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
         let (patch, patches) = patches(model);
@@ -46,10 +63,6 @@ impl Setup {
             !wall.is_convex_cavity()
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
-        let mut particles = initial_particles(model)?;
-        if let Some(shuffle) = shuffle {
-            shuffle(&mut particles);
-        }
         let zones = zones(model);
         let input = DomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), among_others: ranks > 1 };
         Ok(Setup {
@@ -64,7 +77,7 @@ impl Setup {
 
 /// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without
 /// surfaces.
-fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
+pub(super) fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
     let mut patches = Vec::new();
     if model.scene.surfaces.is_empty() {
         return (Vec::new(), patches);

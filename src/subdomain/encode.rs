@@ -25,6 +25,18 @@ pub struct StepSlot {
     pub(super) total: u32,
 }
 
+/// Who enters in an interval.
+#[derive(Debug, Clone, Copy)]
+pub struct Newborns<'a> {
+    /// The number in each step.
+    pub of_step: &'a [u32],
+    /// All of them, in order of entry.
+    pub list: &'a [GpuNewborn],
+    pub first_id: u32,
+    /// Distance of two ids.
+    pub stride: u32,
+}
+
 impl StepSlot {
     /// Particles on the device in this step, ghosts included.
     pub fn present(&self) -> u32 {
@@ -48,8 +60,7 @@ const TALLY_CHUNK: u64 = 64 * 32;
 
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
-    /// the steps' slots. `newborns_of` gives the number of newborns of each step, in order; the first has
-    /// `first_id`, and their ids are `stride` apart.
+    /// the steps' slots.
     ///
     /// # Errors
     /// If room must be made and the device has none.
@@ -58,17 +69,15 @@ impl Subdomain {
         device: &Device,
         first_step: u64,
         dt: f64,
-        newborns_of: &[u32],
-        newborns: &[GpuNewborn],
-        first_id: u32,
-        stride: u32,
+        newborns: &Newborns<'_>,
     ) -> Result<Vec<StepSlot>, GpuError> {
-        self.make_room(device, newborns.len() as u64, newborns.len() as u64, 0)?;
-        device.write(&self.particle.newborns, 0, newborns);
-        let mut slots = Vec::with_capacity(newborns_of.len());
+        let Newborns { of_step, list, first_id, stride } = *newborns;
+        self.make_room(device, list.len() as u64, list.len() as u64, 0)?;
+        device.write(&self.particle.newborns, 0, list);
+        let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
         let mut entered = 0;
-        for (k, &born) in newborns_of.iter().enumerate() {
+        for (k, &born) in of_step.iter().enumerate() {
             let slot = StepSlot {
                 slot: k as u32,
                 index: (first_step + k as u64) as u32,

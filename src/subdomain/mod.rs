@@ -26,7 +26,7 @@ pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS, most_particles}
 pub use constants::{Features, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
 pub use domain::{Domain, DomainInput};
-pub use encode::StepSlot;
+pub use encode::{Newborns, StepSlot};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,

@@ -1,6 +1,13 @@
 //! Law: a kill at any moment leaves the last good checkpoint.
 //!
 //! A child process writes checkpoints without end, as three ranks would, and is killed at moments spread over its work.
+//! The other files have the laws of whole runs that are interrupted.
+
+mod kills;
+mod program;
+mod refusals;
+mod restarts;
+mod signals;
 
 use std::fs;
 use std::path::Path;

@@ -158,3 +158,37 @@ fn advect_flies_the_free_and_lists_the_others() {
         assert_eq!(outside > 0, collisions);
     }
 }
+
+/// A ghost leaves a dead slot and meets no wall here: its owner flies it.
+#[test]
+fn ghosts_leave_dead_slots() {
+    let world = World::plain();
+    let mut stream = Stream::new(56);
+    let particles = world.particles(&mut stream, COUNT, 200.0);
+    let mut flights = free_flights(COUNT);
+    for flight in flights.iter_mut().step_by(3) {
+        flight.wall = 0.5 * DT;
+    }
+    let layers: Vec<u32> = (0..COUNT).map(|_| stream.below(3) | [0, SHARED, NEAR][stream.below(3) as usize]).collect();
+    let mut rig = Rig::new(&world);
+    rig.put("sorted", &particles);
+    rig.put("particles", &vec![GpuParticle::default(); COUNT]);
+    rig.put("flights", &flights);
+    rig.put("layers", &layers);
+    rig.put("bouncing", &vec![0u32; COUNT]);
+    rig.step(GpuStep { count: COUNT as u32, dt: DT, depth: 2, ..GpuStep::default() });
+    rig.run("advect", COUNT);
+    let found: Vec<GpuParticle> = rig.get("particles", COUNT);
+    let own = |s: &usize| layers[*s] & 0xff == 0;
+    for s in 0..COUNT {
+        if !own(&s) {
+            assert_eq!(found[s].tag, NOBODY);
+        } else if flights[s].wall > DT {
+            assert_eq!((found[s].tag, found[s].velocity), (particles[s].tag, particles[s].velocity));
+        }
+    }
+    let bouncing: Vec<u32> = (0..COUNT).step_by(3).filter(own).map(|s| s as u32).collect();
+    assert_eq!(rig.list("bouncing", LIST_BOUNCE), bouncing);
+    // The check can fail: there are ghosts, and own particles with marks.
+    assert!((0..COUNT).filter(own).any(|s| layers[s] != 0) && bouncing.len() < COUNT / 6);
+}

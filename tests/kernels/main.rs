@@ -9,8 +9,10 @@ mod blocks;
 mod bounce;
 mod choose;
 mod closed;
+mod exchange;
 mod fly;
 mod lists;
+mod local;
 mod match_pairs;
 mod neighbours;
 mod philox;
@@ -20,6 +22,7 @@ mod screen;
 mod settle;
 mod sort;
 mod tally;
+mod weigh;
 
 /// No kernel goes untested: the table of kernels is the list of those the files here run.
 #[test]
@@ -35,6 +38,9 @@ fn every_kernel_has_its_test() {
         "match_pairs",
         "neighbours",
         "order",
+        "pack",
+        "pack_updates",
+        "receive",
         "reset",
         "scan_cells",
         "scan_chunks",
@@ -44,6 +50,7 @@ fn every_kernel_has_its_test() {
         "settle",
         "tally",
         "wall_times",
+        "weigh",
     ];
     let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);

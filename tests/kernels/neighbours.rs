@@ -44,13 +44,12 @@ fn crowd(seed: u32) -> Crowd {
     rig.put("cells", &of);
     rig.put("neighbour_count", &vec![9u32; COUNT]);
     rig.put("screened", &vec![0u32; COUNT]);
-    rig.step(GpuStep { count: COUNT as u32, ..GpuStep::default() });
     Crowd { world, middles, rig }
 }
 
 impl Crowd {
     fn run(&mut self, room: usize) -> Vec<Vec<u32>> {
-        self.rig.constant("LIST", room as f64);
+        self.rig.step(GpuStep { count: COUNT as u32, list: room as u32, ..GpuStep::default() });
         self.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
         self.rig.run("neighbours", COUNT);
         let flat: Vec<u32> = self.rig.get("neighbours", room * COUNT);
@@ -115,5 +114,33 @@ fn a_list_too_short_is_reported_with_the_length_it_needs() {
     for (list, expected) in lists.iter().zip(&expected) {
         assert_eq!(list.len(), expected.len().min(room));
         assert!(list.iter().all(|j| expected.contains(j)));
+    }
+}
+
+/// The outermost ghosts, whose neighbours are not all here, have none; the lists of all others are as ever.
+#[test]
+fn the_outermost_ghosts_have_no_neighbours() {
+    let mut crowd = crowd(14);
+    let room = 64;
+    let expected = crowd.all_pairs();
+    let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
+    crowd.rig.put("layers", &layers);
+    for depth in [2, 3, 0] {
+        crowd.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
+        let grid = crowd.world.grid.cells;
+        crowd.rig.step(GpuStep {
+            count: COUNT as u32,
+            list: room as u32,
+            depth,
+            size: grid,
+            bins: grid.iter().product(),
+            ..GpuStep::default()
+        });
+        crowd.rig.run("neighbours", COUNT);
+        let counts: Vec<u32> = crowd.rig.get("neighbour_count", COUNT);
+        for (s, expected) in expected.iter().enumerate() {
+            let outermost = depth > 0 && layers[s] & 0xff >= depth;
+            assert_eq!(counts[s] as usize, if outermost { 0 } else { expected.len() }, "{s}, depth {depth}");
+        }
     }
 }

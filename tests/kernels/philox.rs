@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, TimedPass};
+use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, Recording};
 
 use crate::oracle::random::{Stream, philox};
 use crate::rig::device;
@@ -50,9 +50,9 @@ fn the_device_draws_the_published_philox() {
     let kernel = Kernel::of(device(), source(), &[("SEED_LOW", 0.0), ("SEED_HIGH", 0.0)]).expect("a kernel");
     let find = |name: &str| buffers.get(usize::from(name == "outputs"));
     let bound = kernel.bind(device(), find).expect("its buffers");
-    let mut encoder = device().encoder();
-    bound.dispatch(TimedPass::new(&mut encoder, None).phase("probe"), 0, [64, 1, 1]);
-    device().submit(encoder);
+    let mut recording = Recording::new(device());
+    bound.dispatch(recording.phase("probe"), 0, [64, 1, 1]);
+    recording.submit();
     let outputs: Vec<[u32; 4]> = device().read(&buffers[1], count).expect("the device's answer");
     for (input, output) in inputs.chunks_exact(6).zip(outputs) {
         let (counter, key) = ([input[0], input[1], input[2], input[3]], [input[4], input[5]]);

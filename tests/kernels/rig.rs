@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
-use corpuscle::gpu::{Device, Kernel, TimedPass};
+use corpuscle::gpu::{Device, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, Walls};
 
@@ -14,12 +14,17 @@ use crate::oracle::vector::Vector;
 use crate::oracle::walls::Triangle;
 
 /// Counters of `shaders/shared/counters.wgsl` and lists of `lists.wgsl`.
-pub const COUNTERS: usize = 45;
+pub const COUNTERS: usize = corpuscle::subdomain::COUNTER_WORDS;
 pub const LISTS: usize = 32;
 pub const LIST_NEAR_WALLS: usize = 9;
 pub const LIST_SCREEN: usize = 10;
 pub const LIST_BOUNCE: usize = 11;
+pub const LIST_BORDER: usize = 12;
+pub const LIST_CHANGED: usize = 13;
+pub const COUNT_OUTBOX: usize = 14;
+pub const COUNT_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
+pub const COUNT_DROPPED: usize = 31;
 pub const LOST: usize = 34;
 pub const SAMPLED: usize = 35;
 pub const MOST_NEIGHBOURS: usize = 36;
@@ -30,13 +35,23 @@ pub const TALLY_OVERFLOW: usize = 40;
 pub const CAPACITY_FAILED: usize = 41;
 pub const BOUNCES: usize = 42;
 pub const BLOCKED: usize = 43;
-pub const PARTICLES: usize = 44;
+pub const FOREIGN: usize = 44;
+pub const STRAYS: usize = 45;
+pub const MISSING: usize = 46;
+pub const CANDIDATES: usize = 47;
+pub const MOVED: usize = 48;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
 /// Cell classes of `shaders/shared/grid.wgsl`.
 pub const CLEAR: u32 = 0;
 pub const SOLID: u32 = 3;
+/// Marks of `layers` (`shaders/shared/local.wgsl`).
+pub const SHARED: u32 = 0x100;
+pub const LISTED: u32 = 0x200;
+pub const NEAR: u32 = 0x400;
+/// Threads of the largest dispatch over particles.
+const MOST_PARTICLES: usize = 8192;
 
 /// Unit roundoff of f32.
 pub const U: f64 = 1.0 / 16_777_216.0;
@@ -151,6 +166,8 @@ pub fn free_flights(count: usize) -> Vec<GpuFlight> {
 
 /// Buffers and constants for kernels on one world.
 pub struct Rig {
+    /// Cells of the world's grid.
+    grid: [u32; 3],
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
     constants: Vec<(&'static str, f64)>,
 }
@@ -167,7 +184,7 @@ impl Rig {
             ("QUANTA", 1.0 / grid.quantum()),
             ("TOLERANCE", world.walls.tolerance),
         ];
-        let mut rig = Rig { buffers: BTreeMap::new(), constants };
+        let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), constants };
         rig.put("wall_start", &world.walls.start);
         rig.put("wall_list", &world.walls.list);
         rig.put("triangles", &world.walls.triangles);
@@ -177,6 +194,10 @@ impl Rig {
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.put("newborns", &[0u32; 12]);
+        // A device alone: all are in layer 0, and nobody is told.
+        rig.put("layers", &[0u32; MOST_PARTICLES]);
+        rig.put("border", &[[0u32; 2]; 2]);
+        rig.put("changed", &[0u32; 4]);
         rig
     }
 
@@ -196,8 +217,21 @@ impl Rig {
         self.buffers.insert(name, buffer);
     }
 
+    /// The parameters of a step. Those that say where the device's cells lie are of one that owns the whole
+    /// grid, unless they are given; `total` is by default all that there are.
     pub fn step(&mut self, step: GpuStep) {
-        self.uniform("step", &[step]);
+        let alone = GpuStep {
+            size: self.grid,
+            bins: self.grid.iter().product(),
+            own_low: [1; 3],
+            own_high: self.grid.map(|cells| cells - 1),
+            inner_low: [1; 3],
+            inner_high: self.grid.map(|cells| cells - 1),
+            ..step
+        };
+        let placed = if step.bins == 0 { alone } else { step };
+        let total = if step.total == 0 { step.count + step.newborns + step.arrivals } else { step.total };
+        self.uniform("step", &[GpuStep { total, stride: step.stride.max(1), ..placed }]);
     }
 
     pub fn gases(&mut self, gases: &[GpuGas]) {
@@ -219,11 +253,9 @@ impl Rig {
     pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
         let compiled = Kernel::new(device(), kernel, &self.constants).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
-        let mut encoder = device().encoder();
-        let mut pass = TimedPass::new(&mut encoder, None);
-        bound.dispatch(pass.phase("test"), 0, groups);
-        pass.end();
-        device().submit(encoder);
+        let mut recording = Recording::new(device());
+        bound.dispatch(recording.phase("test"), 0, groups);
+        recording.submit();
     }
 
     /// Runs a kernel over threads.

@@ -5,10 +5,11 @@ use crate::rig::*;
 
 const CHUNK: usize = 64;
 
-fn rig() -> Rig {
+/// For so many bins.
+fn rig(cells: usize) -> Rig {
     let mut rig = Rig::new(&World::plain());
     rig.constant("CHUNK", CHUNK as f64);
-    rig.step(corpuscle::subdomain::GpuStep::default());
+    rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, ..Default::default() });
     rig
 }
 
@@ -34,7 +35,7 @@ const CELLS: [usize; 4] = [4, 64, 64 * 64 + 4, 30_000];
 fn scan_sums_adds_each_chunk() {
     let mut stream = Stream::new(4);
     for cells in CELLS {
-        let mut rig = rig();
+        let mut rig = rig(cells);
         let counts = counts(&mut stream, cells);
         let chunks = cells.div_ceil(CHUNK);
         rig.put("cell_count", &counts);
@@ -52,7 +53,7 @@ fn scan_sums_adds_each_chunk() {
 fn scan_chunks_is_an_exclusive_prefix_sum() {
     let mut stream = Stream::new(5);
     for chunks in [4, 128, 132, 5000] {
-        let mut rig = rig();
+        let mut rig = rig(chunks * CHUNK);
         let sums = counts(&mut stream, chunks);
         rig.put("chunk_sums", &sums);
         rig.run_groups("scan_chunks", [1, 1, 1]);
@@ -67,7 +68,7 @@ fn scan_chunks_is_an_exclusive_prefix_sum() {
 fn scan_cells_starts_each_cell_and_clears_the_counts() {
     let mut stream = Stream::new(6);
     for cells in CELLS {
-        let mut rig = rig();
+        let mut rig = rig(cells);
         let counts = counts(&mut stream, cells);
         let starts = prefix(&counts);
         let chunk_starts: Vec<u32> = starts[..cells].iter().step_by(CHUNK).copied().collect();

@@ -161,6 +161,9 @@ fn order_is_canonical() {
             assert_eq!(middles[s], part(0) | part(1) | part(2) | flag);
         }
         assert_eq!(rig.list("near_walls", LIST_NEAR_WALLS), near_walls);
+        // Alone all are in layer 0 and nobody else's ghosts.
+        let marked = |s: u32| if near_walls.contains(&s) { NEAR } else { 0 };
+        assert_eq!(rig.get::<u32>("layers", COUNT), (0..COUNT as u32).map(marked).collect::<Vec<_>>());
         assert!(near_walls.len() < COUNT - 50 && near_walls.len() > 50, "{}", near_walls.len());
         // The check can fail: the particles came in another order.
         assert_ne!(particles, expected);

@@ -125,3 +125,22 @@ fn a_value_out_of_range_is_counted() {
     particles[50].spin = 2.0;
     assert_eq!(rig(&world, &two, &particles, 0).counter(TALLY_OVERFLOW), 0);
 }
+
+/// Dead slots count for nothing, whatever they hold.
+#[test]
+fn dead_slots_are_not_tallied() {
+    let world = World::plain();
+    let mut stream = Stream::new(57);
+    let mut particles = world.particles(&mut stream, 1000, 1.0);
+    for dead in particles.iter_mut().step_by(4) {
+        *dead = GpuParticle { tag: NOBODY, velocity: [1e9; 3], spin: 1e30, ..*dead };
+    }
+    let found = rig(&world, &[GpuZone::default()], &particles, 0);
+    assert_eq!(found.counter(TALLY_OVERFLOW), 0);
+    assert_eq!(sums(&found, 1).iter().map(|sum| sum[0]).sum::<i64>(), 750);
+    // The check can fail: alive they would be out of range.
+    for dead in particles.iter_mut().step_by(4) {
+        dead.tag = 0;
+    }
+    assert_eq!(rig(&world, &[GpuZone::default()], &particles, 0).counter(TALLY_OVERFLOW), 250);
+}

@@ -53,7 +53,7 @@ impl Observer for Witness {
         Ok(())
     }
 
-    fn snapshot(&mut self, time: f64, particles: &[GpuParticle]) -> Result<(), SimulationError> {
+    fn snapshot(&mut self, time: f64, particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
         self.snapshots.push((time, particles.to_vec()));
         Ok(())
     }

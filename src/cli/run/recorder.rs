@@ -6,9 +6,10 @@ use crate::output::{
     BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
     SUBDOMAIN_CHART_FILE, SnapshotWriter, over_mean, subdomain_chart,
 };
-use crate::simulation::{BalanceRecord, Model, Observer, Outcome, Row, SimulationError, imbalance};
+use crate::simulation::{BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, imbalance};
 use crate::subdomain::{GpuParticle, Scales};
 
+use super::checkpoints::Checkpoints;
 use super::reference::Reference;
 use super::table::{columns, values};
 
@@ -19,6 +20,7 @@ pub struct Recorder<'a> {
     /// `None` in a scene that wants no snapshots.
     snapshots: Option<SnapshotWriter>,
     progress: Option<Progress>,
+    checkpoints: Option<Checkpoints<'a>>,
     /// `None` on a rank alone.
     among: Option<Among>,
 }
@@ -48,7 +50,7 @@ impl<'a> Recorder<'a> {
             }
         };
         let progress = shown.then(|| Progress::new(model.plan.end_time));
-        Ok(Recorder { model, reference, history, snapshots, progress, among: None })
+        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
     }
 
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
@@ -56,7 +58,6 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// If a file is not the one that the checkpoint knows.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop does not resume yet"))]
     pub fn resume(
         model: &'a Model,
         reference: Reference,
@@ -76,7 +77,17 @@ impl<'a> Recorder<'a> {
         };
         let Totals { time, steps, particle_steps } = totals;
         let progress = shown.then(|| Progress::resume(model.plan.end_time, time, steps, particle_steps));
-        Ok(Recorder { model, reference, history, snapshots, progress, among: None })
+        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
+    }
+
+    /// Also writes checkpoints.
+    pub fn checkpointing(self, checkpoints: Checkpoints<'a>) -> Recorder<'a> {
+        Recorder { checkpoints: Some(checkpoints), ..self }
+    }
+
+    /// The checkpoint at which the run was stopped, if it was asked to.
+    pub fn stopped_at(&self) -> Option<&Path> {
+        self.checkpoints.as_ref().and_then(Checkpoints::stopped_at)
     }
 
     /// Also tells how the work is shared out among several ranks. `step`: the run goes on from there.
@@ -93,7 +104,6 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// If the system cannot write them.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the time loop writes no checkpoints yet"))]
     pub fn state(&mut self) -> Result<OutputState, OutputError> {
         let snapshots = self.snapshots.as_mut().map(SnapshotWriter::state).transpose()?;
         Ok(OutputState { history: self.history.state()?, snapshots })
@@ -103,10 +113,14 @@ impl<'a> Recorder<'a> {
         self.history.history()
     }
 
-    /// The state at the end, if the run was stopped between two snapshots, and the rates of the whole run.
+    /// The state at the end, if the run ended between two snapshots, and the rates of the whole run. What stopped at a
+    /// checkpoint has its state there.
     pub fn finish(&mut self, outcome: &Outcome) -> Result<(), OutputError> {
         if let Some(progress) = &mut self.progress {
             progress.finish(outcome.time, outcome.steps, outcome.particle_steps);
+        }
+        if self.stopped_at().is_some() {
+            return Ok(());
         }
         if self.snapshots.as_ref().and_then(SnapshotWriter::last_time) != Some(outcome.time) {
             if let Some(among) = &mut self.among {
@@ -194,6 +208,10 @@ fn stop(error: OutputError) -> SimulationError {
 
 impl Observer for Recorder<'_> {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
+        if self.stopped_at().is_some() {
+            // The window that the checkpoint cuts in two: the run that goes on has the whole of it.
+            return Ok(());
+        }
         self.history.row(&values(row, &self.reference)).map_err(stop)
     }
 
@@ -212,6 +230,20 @@ impl Observer for Recorder<'_> {
             Some(among) => among.balance.row(&balance_row(record)).map_err(stop),
             None => Ok(()),
         }
+    }
+
+    fn request(&mut self, steps: u64) -> Request {
+        self.checkpoints.as_mut().map_or(Request::None, |checkpoints| checkpoints.request(steps))
+    }
+
+    fn checkpoint(&mut self, moment: &Moment<'_>) -> Result<(), SimulationError> {
+        let Some(mut checkpoints) = self.checkpoints.take() else { return Ok(()) };
+        let written = checkpoints.write(moment, Some(&mut || self.state()));
+        self.checkpoints = Some(checkpoints);
+        if let (Some(written), Some(progress)) = (written?, &self.progress) {
+            progress.note(&written.to_string());
+        }
+        Ok(())
     }
 
     fn progress(&mut self, time: f64, steps: u64, particle_steps: u64) {

@@ -39,7 +39,7 @@ pub use read::Checkpoint;
 pub use write::{CheckpointWriter, Moment, forget_after};
 
 /// Of the files' layout and of what is in `state.bin`; another is refused.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 /// Complete checkpoints that stay.
 pub const KEPT: usize = 2;
 /// One particle.
@@ -117,6 +117,9 @@ pub fn latest(path: &Path) -> Result<PathBuf, CheckpointError> {
     }
     let inner = path.join(super::CHECKPOINT_FOLDER);
     let folder = if inner.is_dir() { inner } else { path.to_path_buf() };
+    if !folder.is_dir() {
+        return Err(CheckpointError::None { path: folder });
+    }
     let newest = complete(&folder)?.pop();
     newest.map(|(_, path)| path).ok_or(CheckpointError::None { path: folder })
 }

@@ -1,0 +1,186 @@
+//! A state with more and smaller particles: each is split into `times` children of 1/`times` its mass.
+//!
+//! The refined run is that of the same scene with `times` the particles, and goes on from the same moment. Of the parents
+//! it keeps, in every group of neighbours (`groups`), mass, momentum, kinetic and spin energy; where a child is and how it
+//! moves about its group's mean is drawn anew (`places`, `local`). How many particles of each gas a run of the refined
+//! scene has at that moment follows from its plan and its inflow; that is not just `times` the parents', by rounding, so
+//! a few parents have a child more or less (`lineage`), with the mean energy and momentum of their group.
+//!
+//! Invariants: children are in the gas and in the chamber of their parent, and no wall lies between them; the draws of a child depend
+//! on the seed and its id only; the order and the number of files in which the parents come do not matter.
+
+mod groups;
+mod lineage;
+mod local;
+mod places;
+mod start;
+
+use crate::gas::{FlowIntegral, Inflow, InflowStateError, moles_at, thermo};
+use crate::geometry::GeometryError;
+use crate::plan::MOST_PARTICLES;
+use crate::scene::Scene;
+use crate::subdomain::GpuParticle;
+
+use super::clock::Clock;
+use super::ladder::LadderError;
+use super::model::{Model, ModelError};
+use super::run_state::{RunState, StateError};
+
+use groups::groups;
+use lineage::Lineage;
+use local::Split;
+use places::Places;
+
+/// A state from which a run can go on.
+pub struct Refined {
+    /// Of the same scene with more particles.
+    pub model: Model,
+    /// By id.
+    pub particles: Vec<GpuParticle>,
+    pub state: RunState,
+    pub report: RefineReport,
+}
+
+/// What a refinement did.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RefineReport {
+    /// s.
+    pub time: f64,
+    pub parents: u64,
+    pub particles: u64,
+    /// Children more and less than `times` the parents, summed over the gases.
+    pub added: u64,
+    pub dropped: u64,
+    /// Groups of neighbours that keep their momentum and energy.
+    pub groups: u64,
+    /// Children that found no place around their parent and stay at its own.
+    pub at_parent: u64,
+    /// The worst group's, after rounding to what is stored: of momentum over sqrt(2 mass energy), and of energy.
+    pub momentum_error: f64,
+    pub energy_error: f64,
+}
+
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum RefineError {
+    #[error("{times} times as many particles is no refinement: expected at least 2")]
+    Times { times: u64 },
+    #[error("{times} times the {particles} particles of the run are more than the {limit} that an id can name")]
+    TooMany { times: u64, particles: u64, limit: u64 },
+    #[error("the refined scene cannot be planned: {0}")]
+    Model(#[source] ModelError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Geometry(#[from] GeometryError),
+    #[error(transparent)]
+    State(#[from] StateError),
+    #[error(
+        "the particles are of another moment than the state: {found} of gas `{gas}` are there, {expected} had entered"
+    )]
+    Particles { gas: String, found: u64, expected: u64 },
+    #[error("particle {id} is of gas {gas}, the scene has {gases}")]
+    UnknownGas { id: u32, gas: u8, gases: usize },
+    #[error(
+        "no particle of gas `{gas}` had entered by {time:.6} s, and {wanted} of the refined run have: there is nothing to draw them from"
+    )]
+    #[diagnostic(help("refine a later checkpoint, or one of a run with more particles"))]
+    NoParents { gas: String, time: f64, wanted: u64 },
+    #[error("the refined state: {0}")]
+    Ladder(#[from] LadderError),
+}
+
+impl From<InflowStateError> for RefineError {
+    fn from(error: InflowStateError) -> RefineError {
+        RefineError::State(error.into())
+    }
+}
+
+/// Splits all particles of a state. `particles` are those of the moment of `state`, in any order.
+///
+/// # Errors
+/// If the state is not of this model, or the refined scene has too many particles or cannot be planned.
+pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times: u64) -> Result<Refined, RefineError> {
+    let progress = check(parent, state, particles)?;
+    let model = Model::new(refined_scene(parent, times)?).map_err(RefineError::Model)?;
+    let clock = Clock::starting_at(&model.plan, progress);
+    let mut inflow = inflow_of(&model);
+    let newborns = inflow.take_until(clock.time());
+
+    let mut parents = particles.to_vec();
+    parents.sort_unstable_by_key(GpuParticle::id);
+    let lineage = Lineage::new(&parents, &model.plan, &newborns);
+    if let Some((gas, wanted)) = lineage.without_parents() {
+        return Err(RefineError::NoParents { gas: model.plan.gases[gas].name.clone(), time: clock.time(), wanted });
+    }
+    let places = Places::new(parent, &parents)?;
+    let split = Split::new(&model.plan, &places, &lineage);
+    let (added, dropped) = lineage.rounding(times);
+    let mut report = RefineReport {
+        time: clock.time(),
+        parents: parents.len() as u64,
+        particles: lineage.total() as u64,
+        added,
+        dropped,
+        ..RefineReport::default()
+    };
+    let mut children = vec![GpuParticle::default(); lineage.total()];
+    for group in groups(&parents, &places) {
+        split.group(&parents, &group, &mut children, &mut report);
+    }
+    let state = start::state(&model, clock, inflow, state, &children)?;
+    Ok(Refined { model, particles: children, state, report })
+}
+
+fn inflow_of(model: &Model) -> Inflow {
+    let Model { scene, plan, .. } = model;
+    let first_id = plan.initial_particles as u32;
+    Inflow::new(&scene.orifices, &scene.gases, plan.moles_per_particle, plan.seed, first_id, plan.end_time)
+}
+
+/// The share of the simulated time that is done, if state and particles are of one moment of this model.
+fn check(parent: &Model, state: &RunState, particles: &[GpuParticle]) -> Result<f64, RefineError> {
+    let plan = &parent.plan;
+    let mut clock = Clock::new(plan);
+    clock.restore(&state.clock)?;
+    let mut inflow = inflow_of(parent);
+    inflow.restore(&state.inflow)?;
+    let mut found = vec![0; plan.gases.len()];
+    for particle in particles {
+        let (id, gas) = (particle.id(), particle.gas());
+        let unknown = RefineError::UnknownGas { id, gas, gases: plan.gases.len() };
+        *found.get_mut(usize::from(gas)).ok_or(unknown)? += 1;
+    }
+    for ((gas, (&found, entered)), own) in found.iter().zip(inflow.entered_by_gas()).enumerate().zip(&plan.gases) {
+        let expected = entered + plan.chambers.iter().map(|chamber| chamber.particles[gas]).sum::<u64>();
+        if found != expected {
+            return Err(RefineError::Particles { gas: own.name.clone(), found, expected });
+        }
+    }
+    Ok(clock.progress())
+}
+
+/// The scene with `times` the particles.
+fn refined_scene(parent: &Model, times: u64) -> Result<Scene, RefineError> {
+    if times < 2 {
+        return Err(RefineError::Times { times });
+    }
+    let asked = parent.scene.model.particles.unwrap_or_else(|| shares(parent));
+    let limit = MOST_PARTICLES;
+    let particles = asked.checked_mul(times).filter(|&particles| particles <= limit);
+    let particles = particles.ok_or(RefineError::TooMany { times, particles: asked, limit })?;
+    let mut scene = parent.scene.clone();
+    scene.model.particles = Some(particles);
+    Ok(scene)
+}
+
+/// Into how many particles the plan has cut the gas of the whole run, where the scene does not say it. (Rounded by
+/// chamber and gas there are a few more or less.)
+fn shares(model: &Model) -> u64 {
+    let Model { scene, plan, .. } = model;
+    let chambers = scene.chambers.iter().zip(&plan.chambers);
+    let initial = chambers.map(|(asked, own)| moles_at(asked.pressure, own.volume, asked.temperature));
+    let injected = scene.orifices.iter().map(|orifice| {
+        let molar_mass = thermo::molar_mass(&orifice.mixture, &scene.gases);
+        FlowIntegral::new(&orifice.mass_flow, scene.end_time).total() / molar_mass
+    });
+    (initial.chain(injected).sum::<f64>() / plan.moles_per_particle).round() as u64
+}

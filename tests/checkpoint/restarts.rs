@@ -1,0 +1,94 @@
+//! Law: a run that is stopped at any steps and goes on with any numbers of subdomains leaves the files of one that was
+//! never stopped, to the last byte.
+
+use corpuscle::output::latest;
+use corpuscle::scene::Scene;
+
+use super::program::{Case, Numbers, Program, Results, dense, newest, published, tank};
+
+/// Stops at three steps drawn at random, and goes on each time with another number of subdomains. Once more is computed
+/// and written than the checkpoint knows, and then thrown away.
+fn restarts(scene: &Scene, seed: u64, subdomains: [usize; 4]) -> Case {
+    let case = Case::new(scene);
+    let mut numbers = Numbers(seed);
+    assert!(case.steps >= 160, "{} steps are too few to stop in", case.steps);
+    let third = case.steps / 4;
+    let stops: Vec<u64> = (0..3).map(|k| k * third + numbers.between(8, third)).collect();
+    // Checkpoints come where the run stops.
+    let every = ["--checkpoint-every", "1000000"];
+    let sharing = subdomains.map(Program::sharing);
+    let mut done = 0;
+    for (k, stop) in stops.into_iter().enumerate() {
+        let stop = stop.max(done + 1).to_string();
+        let more = [&every[..], &["--steps", &stop]].concat();
+        let running = if k == 0 { case.run(&sharing[k], "out", &more) } else { case.resume(&sharing[k], "out", &more) };
+        running.finish();
+        done = newest(&case.out("out")).unwrap();
+        if k == 1 {
+            let kept = latest(&case.out("out")).unwrap();
+            let further = (done + third).to_string();
+            case.resume(&sharing[0], "out", &["--steps", &further]).finish();
+            // What was written beyond has no checkpoint: the kept one is still the newest.
+            assert_eq!(latest(&case.out("out")).unwrap(), kept);
+        }
+    }
+    let said = case.resume(&sharing[3], "out", &[]).finish();
+    assert!(said.contains("Audit"), "{said}");
+    case.assert_same("out");
+    case
+}
+
+#[test]
+fn the_tank_goes_on_from_any_step_on_any_number_of_subdomains() {
+    let case = restarts(&tank(0.004), 1, [1, 3, 2, 1]);
+    let line = case.said.lines().find(|line| line.contains(" steps of ")).unwrap();
+    let steps: Vec<f64> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+    // Time, number of steps, shortest, longest.
+    assert!(steps[3] > 1.5 * steps[2], "the step does not change: {line}");
+}
+
+#[test]
+fn the_box_with_its_surfaces_goes_on_from_any_step() {
+    restarts(&published("box.toml", 1500, 1.6e-3), 2, [2, 1, 3, 2]);
+}
+
+/// Without collisions particles are dealt out by their ids.
+#[test]
+fn free_flight_goes_on_from_any_step() {
+    restarts(&published("effusion.toml", 2000, 0.008), 3, [3, 1, 2, 3]);
+}
+
+/// A run that goes on starts with short neighbour lists again.
+#[test]
+fn intervals_that_are_run_again_do_not_matter() {
+    let case = restarts(&dense(), 4, [2, 3, 1, 2]);
+    assert!(case.said.contains("intervals were run again"), "{}", case.said);
+}
+
+/// An ended run says so, is left alone, and can still be done anew from one of its checkpoints.
+#[test]
+fn a_run_that_has_ended_says_so() {
+    let case = Case::new(&published("box.toml", 500, 4e-4));
+    case.run(&Program::alone(), "out", &["--checkpoint-every", "32"]).finish();
+    case.assert_same("out");
+    let kept = latest(&case.out("out")).unwrap();
+    let said = case.resume(&Program::sharing(2), "out", &[]).finish();
+    assert!(said.contains("has reached its end"), "{said}");
+    assert_eq!(said.lines().last(), case.out("out").to_str());
+    case.assert_same("out");
+    let one = kept.strip_prefix(case.out("")).unwrap().to_str().unwrap().to_owned();
+    let said = case.resume(&Program::sharing(2), &one, &[]).finish();
+    assert!(said.contains("Audit"), "{said}");
+    case.assert_same("out");
+}
+
+/// The comparison can fail: another seed is another gas.
+#[test]
+fn another_seed_is_told_apart() {
+    let mut scene = published("box.toml", 500, 4e-4);
+    let case = Case::new(&scene);
+    scene.seed += 1;
+    let other = Case::new(&scene);
+    assert!(case.whole.difference(&other.whole).is_some());
+    assert!(case.whole.difference(&Results::of(&case.out("whole"))).is_none());
+}

@@ -1,0 +1,92 @@
+//! On one device.
+
+use corpuscle::simulation::{Model, Options, Shuffle};
+use corpuscle::subdomain::GpuParticle;
+
+use crate::bits::{Bits, assert_same, difference};
+use crate::orders::{reversed, shuffled};
+use crate::scenes::{burst, dense, effusion, gas_box, tank};
+use crate::whole_run::{Run, run};
+
+/// The scene again, in every way that must not matter.
+fn every_way(model: &Model) -> Bits {
+    let first = run(model, Options::default());
+    assert!(first.rows.len() > 3, "a history to compare");
+    let bits = Bits::of(&first);
+    assert_same("a second run", &bits, &Bits::of(&run(model, Options::default())));
+    let orders: [(u32, &Shuffle); 3] = [(1, &reversed), (5, &shuffled::<1>), (32, &shuffled::<2>)];
+    for (batch, order) in orders {
+        let options = Options { batch: Some(batch), shuffle: Some(order), ..Options::default() };
+        assert_same(&format!("another order, batches of {batch}"), &bits, &Bits::of(&run(model, options)));
+    }
+    let options = Options { batch: Some(1), ..Options::default() };
+    assert_same("batches of one", &bits, &Bits::of(&run(model, options)));
+    bits
+}
+
+/// Inflow, two gases, two chambers and steps that change.
+#[test]
+fn tank_has_the_same_bits_in_every_way() {
+    every_way(&tank(0));
+}
+
+/// A look at the state on the way changes nothing, though the host then waits for the device and so knows
+/// the state an interval earlier.
+#[test]
+fn snapshots_change_no_bit() {
+    let alone = run(&tank(0), Options::default());
+    let [finest, coarsest] = alone.outcome.step_range;
+    assert!(coarsest > 1.5 * finest, "the step does not change");
+    let watched = run(&tank(25), Options::default());
+    assert!(watched.snapshots.len() > 10);
+    let watched = Bits::of(&Run { snapshots: Vec::new(), ..watched });
+    assert_same("snapshots", &Bits::of(&alone), &watched);
+}
+
+/// Six times as much gas flows in as was there, so the buffers of particles and newborns grow.
+#[test]
+fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
+    let model = burst();
+    let initial = model.plan.initial_particles;
+    let room = initial + (initial / 8).max(1024);
+    assert!(model.plan.particles > room + 1000, "the buffers for {room} must grow for {}", model.plan.particles);
+    every_way(&model);
+}
+
+#[test]
+fn box_has_the_same_bits_in_every_way() {
+    every_way(&gas_box());
+}
+
+/// Free flight does not sort its particles: not even its memory is in order.
+#[test]
+fn effusion_has_the_same_bits_in_every_way() {
+    every_way(&effusion());
+}
+
+#[test]
+fn growth_of_neighbour_lists_changes_no_bit_and_loses_nothing() {
+    let model = dense(1);
+    let first = run(&model, Options::default());
+    assert!(first.outcome.repeated > 0, "the lists did not grow");
+    assert_eq!(first.outcome.particles.len(), 1500);
+    let ids: Vec<u32> = first.outcome.particles.iter().map(GpuParticle::id).collect();
+    assert_eq!(ids, (0..1500).collect::<Vec<u32>>());
+    every_way(&model);
+}
+
+/// The comparison can fail: it tells another seed, and one bit of one particle or of one row.
+#[test]
+fn another_seed_and_a_single_bit_are_told_apart() {
+    let bits = || Bits::of(&run(&dense(1), Options { stop_after_steps: Some(64), ..Options::default() }));
+    let first = bits();
+    let other = run(&dense(2), Options { stop_after_steps: Some(64), ..Options::default() });
+    assert!(difference(&first, &Bits::of(&other)).is_some());
+    let mut touched = bits();
+    assert_same("before", &first, &touched);
+    touched.state[7 * 32 + 5] ^= 1;
+    assert_eq!(difference(&first, &touched), Some("particle 7".into()));
+    let mut touched = bits();
+    touched.history[0][6] ^= 1;
+    assert_eq!(difference(&first, &touched), Some("row 0".into()));
+}

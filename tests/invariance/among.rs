@@ -1,0 +1,101 @@
+//! Runs of a scene by several ranks of one process on one device.
+
+use std::sync::Arc;
+
+use corpuscle::gpu::Device;
+use corpuscle::ranks::{Communicator, Pace, in_process};
+use corpuscle::simulation::{
+    BalanceMode, BalanceOptions, Model, Options, Outcome, Setup, Shuffle, Simulation, SimulationError,
+};
+
+use crate::whole_run::{Run, Witness, device};
+
+/// What must not matter.
+#[derive(Clone, Copy)]
+pub struct Way {
+    pub ranks: usize,
+    pub mode: BalanceMode,
+    /// Found by trying if it is not said.
+    pub halo_rounds: Option<u32>,
+    pub pace: Pace,
+    pub batch: Option<u32>,
+    pub order: Option<&'static Shuffle>,
+}
+
+impl Way {
+    pub fn new(ranks: usize, mode: BalanceMode, halo_rounds: impl Into<Option<u32>>) -> Way {
+        let halo_rounds = halo_rounds.into();
+        // Both paces, whole and small batches.
+        let pace = if (ranks as u32 + halo_rounds.unwrap_or_default()).is_multiple_of(2) {
+            Pace::Together
+        } else {
+            Pace::OneAtATime
+        };
+        Way { ranks, mode, halo_rounds, pace, batch: None, order: None }
+    }
+
+    pub fn name(&self) -> String {
+        let Way { ranks, mode, halo_rounds, pace, batch, order } = self;
+        let order = if order.is_some() { ", another order" } else { "" };
+        format!("{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, {pace:?}, batches of {batch:?}{order}")
+    }
+
+    fn options(&self) -> Options<'static> {
+        // Looks at the balance after every interval, and acts on the least imbalance that pays.
+        let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
+        Options { batch: self.batch, halo_rounds: self.halo_rounds, balance, ..Options::default() }
+    }
+}
+
+/// A communicator put around another.
+pub type Wrap = dyn for<'a> Fn(&'a dyn Communicator) -> Box<dyn Communicator + 'a> + Sync;
+
+/// A scene on a device, for any number of ranks.
+pub struct World<'a> {
+    model: &'a Model,
+    device: Device,
+    one: Setup,
+    several: Setup,
+}
+
+impl<'a> World<'a> {
+    pub fn new(model: &'a Model) -> World<'a> {
+        let device = device();
+        let setup = |ranks| Setup::new(model, &device, ranks, None).expect("a set-up");
+        World { model, one: setup(1), several: setup(2), device }
+    }
+
+    /// What rank 0 sees; all ranks must see the same rows and counts.
+    #[track_caller]
+    pub fn run(&self, way: &Way) -> Run {
+        self.try_run(way, None).unwrap_or_else(|error| panic!("{}: {error}", way.name()))
+    }
+
+    pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
+        let mut setup = if way.ranks == 1 { self.one.clone() } else { self.several.clone() };
+        if let Some(order) = way.order {
+            let mut particles = setup.particles.to_vec();
+            order(&mut particles);
+            setup.particles = Arc::new(particles);
+        }
+        let of_rank = |comm: &dyn Communicator| -> Result<(Witness, Outcome), SimulationError> {
+            let wrapped = wrap.map(|wrap| wrap(comm));
+            let comm = wrapped.as_deref().unwrap_or(comm);
+            let mut witness = Witness::default();
+            let run = Simulation::among(self.model, &self.device, &setup, comm, way.options())
+                .and_then(|simulation| simulation.run(&mut witness));
+            if let Err(error) = &run {
+                comm.fail(&error.to_string(), 1);
+            }
+            Ok((witness, run?))
+        };
+        let results = in_process(way.ranks, way.pace, of_rank).map_err(|error| error.to_string())?;
+        let mut results = results.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+        for (witness, outcome) in &results[1..] {
+            assert_eq!(witness.rows, results[0].0.rows, "all ranks know the history");
+            assert_eq!(outcome.collisions, results[0].1.collisions);
+        }
+        let (witness, outcome) = results.swap_remove(0);
+        Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })
+    }
+}

@@ -1,0 +1,179 @@
+//! Among ranks.
+
+use corpuscle::ranks::Pace;
+use corpuscle::simulation::BalanceMode::{self, Dynamic, Forced, Initial, Off};
+use corpuscle::simulation::{Model, Options};
+
+use crate::among::{Way, World};
+use crate::bits::{Bits, assert_same};
+use crate::orders::{shuffled, with_fast_ones};
+use crate::scenes::{burst, dense, effusion, gas_box, plate, tank, tube};
+use crate::whole_run::{Run, run};
+
+/// The scene by one rank and by others in these ways; returns all the runs, the first alone.
+fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
+    let first = run(model, Options::default());
+    assert!(first.rows.len() > 3, "a history to compare");
+    let bits = Bits::of(&first);
+    let world = World::new(model);
+    let mut runs = vec![first];
+    for way in ways {
+        let among = world.run(way);
+        assert_same(&way.name(), &bits, &Bits::of(&among));
+        let owners = &among.outcome.owners;
+        assert!((0..way.ranks as u32).all(|rank| owners.contains(&rank)), "{}: someone owns nothing", way.name());
+        runs.push(among);
+    }
+    runs
+}
+
+/// Few ways, with every number of ranks, mode, depth and pace among them.
+fn some_ways() -> Vec<Way> {
+    vec![
+        Way::new(1, Dynamic, 2),
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(4, Initial, 4) },
+        Way::new(7, Off, 8),
+        Way { batch: Some(3), ..Way::new(8, Forced { seed: 2 }, 2) },
+    ]
+}
+
+/// All of them; what else must not matter takes turns.
+fn all_ways() -> Vec<Way> {
+    let modes: [BalanceMode; 6] = [Off, Initial, Dynamic, Forced { seed: 1 }, Forced { seed: 2 }, Forced { seed: 3 }];
+    let mut ways = Vec::new();
+    for ranks in [1, 2, 3, 4, 7, 8] {
+        for mode in modes {
+            for halo_rounds in [Some(1), Some(2), Some(4), Some(8), None] {
+                let turn = ways.len();
+                ways.push(Way {
+                    pace: if turn.is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime },
+                    batch: [None, Some(1), Some(5)][turn % 3],
+                    order: if turn % 5 < 2 { Some(&shuffled::<4>) } else { None },
+                    ..Way::new(ranks, mode, halo_rounds)
+                });
+            }
+        }
+    }
+    ways
+}
+
+fn rebalanced(run: &Run) -> usize {
+    run.outcome.balance.iter().filter(|record| record.rebalanced.is_some()).count()
+}
+
+/// Inflow, two gases, two chambers, an inner box with a hole, and steps that change.
+#[test]
+fn tank_has_the_same_bits_on_any_number_of_ranks() {
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(3), ..Way::new(4, Forced { seed: 2 }, 2) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(7, Initial, None) },
+    ];
+    let runs = same(&tank(0), &ways);
+    let [finest, coarsest] = runs[0].outcome.step_range;
+    assert!(coarsest > 1.5 * finest, "the step does not change");
+    assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
+    assert!(runs[0].outcome.collisions > 1000);
+}
+
+/// With the impulse on its walls.
+#[test]
+fn box_has_the_same_bits_on_any_number_of_ranks() {
+    let ways =
+        [Way::new(2, Off, 1), Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(8, Dynamic, 8)];
+    let runs = same(&gas_box(), &ways);
+    assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
+    // Ghosts were told of their collisions.
+    assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
+}
+
+/// Free flight is shared out by ids.
+#[test]
+fn effusion_has_the_same_bits_on_any_number_of_ranks() {
+    same(&effusion(), &some_ways());
+}
+
+/// Pairs on the two sides of a plate, and in its hole, beside cuts through it.
+#[test]
+fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
+    same(
+        &plate(),
+        &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)],
+    );
+}
+
+/// Intervals are run again with longer lists, after the cuts have moved.
+#[test]
+fn lists_that_grow_among_ranks_change_no_bit() {
+    let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1)];
+    let runs = same(&dense(1), &ways);
+    assert!(runs.iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
+}
+
+/// Buffers of particles, newborns, messages and updates grow on the way.
+#[test]
+fn a_burst_near_a_cut_changes_no_bit() {
+    let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 5 }, 2)];
+    same(&burst(), &ways);
+}
+
+/// A look at the state by one rank moves no particle.
+#[test]
+fn snapshots_among_ranks_are_those_of_one() {
+    let mut model = gas_box();
+    model.scene.output.snapshots = 5;
+    let runs = same(&model, &[Way::new(4, Forced { seed: 6 }, 2)]);
+    assert!(runs.iter().all(|run| run.snapshots.len() > 3));
+}
+
+/// A particle that flies beyond the peers of its rank is not lost: the interval is run again with everyone as a peer.
+#[test]
+fn particles_that_stray_beyond_the_peers_change_no_bit() {
+    let model = tube();
+    let alone = run(&model, Options { shuffle: Some(&with_fast_ones), ..Options::default() });
+    assert!(alone.outcome.steps < u64::from(model.plan.tally_every), "speeds are tallied");
+    assert_eq!(alone.outcome.repeated, 0);
+    let world = World::new(&model);
+    for way in [Way::new(12, Off, 1), Way::new(12, Initial, 2), Way::new(2, Off, 1)] {
+        let way = Way { order: Some(&with_fast_ones), ..way };
+        let among = world.run(&way);
+        assert_same(&way.name(), &Bits::of(&alone), &Bits::of(&among));
+        // Of two ranks each is the other's peer.
+        assert_eq!(among.outcome.repeated > 0, way.ranks > 2, "{}", way.name());
+    }
+    // Without the fast ones nobody strays.
+    assert_eq!(world.run(&Way::new(12, Off, 1)).outcome.repeated, 0);
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn tank_has_the_same_bits_in_all_ways() {
+    same(&tank(0), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn box_has_the_same_bits_in_all_ways() {
+    same(&gas_box(), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn effusion_has_the_same_bits_in_all_ways() {
+    same(&effusion(), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn a_plate_with_a_hole_has_the_same_bits_in_all_ways() {
+    same(&plate(), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn dense_gas_and_a_burst_have_the_same_bits_in_all_ways() {
+    same(&dense(1), &all_ways());
+    same(&burst(), &all_ways());
+}

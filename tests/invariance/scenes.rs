@@ -1,0 +1,74 @@
+//! The scenes whose bits are compared.
+
+use corpuscle::simulation::Model;
+
+use crate::whole_run::{model, published};
+
+/// The first 4 ms of the tank with steps so long that the inner box's rise makes them finer.
+pub fn tank(snapshots: u32) -> Model {
+    let mut scene = published("tank.toml", 1500, 0.004).scene;
+    scene.model.time_step = Some(2e-5);
+    scene.output.snapshots = snapshots;
+    Model::new(scene).expect("a model")
+}
+
+/// A jet into a box: six times as much gas flows in as was there.
+pub fn burst() -> Model {
+    model(
+        "end_time = 2e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 2e4\ntemperature = 300.0\ngas = \"air\"\n\
+         [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.004\n\
+         gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.7], [2e-3, 0.7]]\n\
+         [model]\nparticles = 3000\n[output]\nrows = 5\nsnapshots = 0\n",
+    )
+}
+
+/// A box, cold and thin on one side of a plate with a hole and dense on the other.
+pub fn plate() -> Model {
+    model(
+        "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.12, 0.08, 0.08]\ngas = \"inside\"\n\
+         [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.05, 0.04, 0.04]\nnormal = [0.8, 0.6, 0.0]\n\
+         u = [-0.6, 0.8, 0.0]\nsize = [0.05, 0.06]\nthickness = 0.001\n\
+         [[wall.hole]]\nname = \"hole\"\ncenter = [0.005, 0.0]\nsize = [0.02, 0.03]\n\
+         [[chamber]]\nname = \"dense\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.04, 0.08, 0.08] } }\n\
+         pressure = 3e5\ntemperature = 500.0\ngas = \"air\"\n\
+         [[chamber]]\nname = \"thin\"\npressure = 5e4\ntemperature = 250.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n[[surface]]\nname = \"plate\"\nwall = \"plate\"\n\
+         [model]\nparticles = 2500\noccupancy = 0.1\n[output]\nrows = 10\nsnapshots = 0\n",
+    )
+}
+
+/// Gas at rest, with the impulse on its walls.
+pub fn gas_box() -> Model {
+    published("box.toml", 2000, 4e-4)
+}
+
+/// Free flight: not even its memory is in order.
+pub fn effusion() -> Model {
+    published("effusion.toml", 3000, 4e-3)
+}
+
+/// Dense gas with long neighbour lists: intervals are run again, and nothing is lost.
+pub fn dense(seed: u64) -> Model {
+    model(&format!(
+        "end_time = 4e-4\nseed = {seed}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+         [model]\nparticles = 1500\noccupancy = 0.4\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 0\n"
+    ))
+}
+
+/// Seven steps of thin gas in a long tube: fewer than between two tallies, so speeds may be beyond their range.
+pub fn tube() -> Model {
+    let mut model = model(
+        "end_time = 1e-5\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"tube\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.4, 0.05, 0.05]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [model]\nparticles = 2500\noccupancy = 0.005\n[output]\nrows = 1\nsnapshots = 0\n",
+    );
+    model.scene.end_time = 7.0 * model.plan.time_step;
+    Model::new(model.scene).expect("a model")
+}

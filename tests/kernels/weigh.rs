@@ -1,0 +1,66 @@
+//! `weigh`: the histograms of a tree of cuts, exactly.
+
+use corpuscle::subdomain::{GpuStep, GpuWeights};
+
+use crate::local::Local;
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 2000;
+/// So heavy that the low words carry.
+const WEIGHTS: GpuWeights = GpuWeights { particle: 400_000_000, candidate: 30_000_001, wall: 70_000_003, cuts: 0 };
+
+/// Each own particle adds its weight to the plane of its cell in the open box that holds it; ghosts and particles of
+/// boxes that are not to be cut add nothing.
+#[test]
+fn histograms_are_the_sums_over_planes_of_the_open_boxes() {
+    let world = World::plain();
+    let local = Local::new(&world);
+    let mut stream = Stream::new(54);
+    let all = local.cells();
+    let cells: Vec<[u32; 3]> = (0..COUNT).map(|_| all[stream.below(all.len() as u32) as usize]).collect();
+    let bins: Vec<u32> = cells.iter().filter_map(|&cell| local.bin(cell)).collect();
+    let listed: Vec<u32> = (0..COUNT).map(|_| stream.below(20)).collect();
+    let layers: Vec<u32> = cells
+        .iter()
+        .map(|&cell| local.own.away(cell) | [0, NEAR, SHARED | NEAR, LISTED][stream.below(4) as usize])
+        .collect();
+    // x at 4: below it z is to be cut; above it y at 3: a part below, an open box to cut along x above.
+    let cuts: [[u32; 4]; 5] = [[0, 4, 1, 2], [3, 2, 1, 0], [1, 3, 3, 4], [4, 7, 0, 0], [3, 0, 4, 20]];
+    let planes = 24;
+    let mut expected = vec![0u64; planes];
+    for s in (0..COUNT).filter(|&s| layers[s] & 0xff == 0) {
+        let [x, y, z] = cells[s];
+        let plane = match (x < 4, y < 3) {
+            (true, _) => z - 1,
+            (false, true) => continue,
+            (false, false) => 20 + x - 4,
+        };
+        let wall = if layers[s] & NEAR != 0 { WEIGHTS.wall } else { 0 };
+        expected[plane as usize] += u64::from(WEIGHTS.particle) + u64::from(WEIGHTS.candidate * listed[s] + wall);
+    }
+    let rig = |weights: GpuWeights| {
+        let mut rig = Rig::new(&world);
+        rig.put("cells", &bins);
+        rig.put("layers", &layers);
+        rig.put("neighbour_count", &listed);
+        rig.put("cuts", &cuts);
+        rig.put("sums", &vec![0u32; 2 * planes]);
+        rig.uniform("weights", &[weights]);
+        rig.step(GpuStep { count: COUNT as u32, ..local.step() });
+        rig.run("weigh", COUNT + 64);
+        rig
+    };
+    let sums = |rig: &Rig| -> Vec<u64> {
+        rig.get::<[u32; 2]>("sums", planes).iter().map(|w| u64::from(w[0]) | u64::from(w[1]) << 32).collect()
+    };
+    let found = rig(GpuWeights { cuts: cuts.len() as u32, ..WEIGHTS });
+    assert_eq!(sums(&found), expected);
+    assert_eq!(found.counter(CANDIDATES), 0);
+    // The check can fail: sums carry, and planes differ.
+    assert!(expected.iter().filter(|&&sum| sum > 1 << 33).count() > 3, "{expected:?}");
+    // Without cuts the entries of all lists are counted, and nothing else.
+    let counted = rig(GpuWeights { cuts: 0, ..WEIGHTS });
+    assert_eq!(counted.counter(CANDIDATES), listed.iter().sum::<u32>());
+    assert_eq!(sums(&counted), vec![0; planes]);
+}
