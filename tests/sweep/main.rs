@@ -65,7 +65,7 @@ fn a_sweep_of_real_runs_leaves_its_table_and_its_curve() {
     assert_eq!(text.lines().last(), out.to_str());
     assert!(text.contains("## Measured") && text.contains("subdomains of one process"), "{text}");
     assert!(!text.contains("odelled"), "{text}");
-    assert_eq!(names(&out), [".corpuscle-run", "scene.toml", "sweep.csv", "sweep.md", "sweep.svg"]);
+    assert_eq!(names(&out), [".corpuscle-run", "scene.toml", "sweep.csv", "sweep.svg", "sweep.txt"]);
     let table = Table::of(&out);
     // One device has nothing to share out.
     let cases = [("measured", "1", "dynamic"), ("measured", "2", "dynamic"), ("measured", "2", "off")];
