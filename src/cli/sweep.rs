@@ -30,9 +30,12 @@ const RUNS_FOLDER: &str = "runs";
 
 pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
     let plan = SweepPlan::new(raw)?;
+    let emulating = plan.raw.emulation.emulate;
+    // Earlier results are removed once it is clear that there can be others.
+    let device = emulating.then(|| Device::open(plan.raw.gpu.as_deref())).transpose()?;
     let folder = OutputFolder::create(&plan.folder, plan.raw.force)?;
     folder.write_text(SCENE_FILE, &to_toml(&plan.scene))?;
-    let emulated = if plan.raw.emulation.emulate { Some(plan.emulate()?) } else { None };
+    let emulated = device.map(|device| plan.emulate(&device)).transpose()?;
     let measured = plan.run(folder.path())?;
     let points = emulated.as_ref().map_or(&[][..], |emulated| &emulated.points);
     let text = plan.text(&measured, emulated.as_ref());
@@ -75,6 +78,7 @@ impl SweepPlan {
     fn new(raw: SweepArguments) -> Result<SweepPlan, CliError> {
         check(&raw)?;
         let mut scene = scene_of(&raw.scene)?;
+        model_of(&raw.scene.scene, scene.clone())?;
         // They would be timed.
         scene.output.snapshots = 0;
         let path = &raw.scene.scene;
@@ -202,9 +206,8 @@ impl SweepPlan {
         words.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect()
     }
 
-    fn emulate(&self) -> Result<Emulation, CliError> {
+    fn emulate(&self, device: &Device) -> Result<Emulation, CliError> {
         let path = &self.raw.scene.scene;
-        let device = Device::open(self.raw.gpu.as_deref())?;
         let (network, gpu) = assumed(&self.raw.emulation);
         let by = match self.raw.tuning.balance_by {
             BalanceBy::Cost => By::Cost,
@@ -229,12 +232,12 @@ impl SweepPlan {
             };
             let name = moment.map_or_else(|| "the start".to_owned(), Moment::name);
             let set_up = |model: &Model, ranks: usize| -> Result<Setup, CliError> {
-                let Some(moment) = moment else { return Ok(Setup::new(model, &device, ranks, None)?) };
-                let setup = Setup::with_particles(model, &device, ranks, moment.particles.clone())?;
+                let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
+                let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
                 // Cuts of the start of the run are made by the gas of then.
                 Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
             };
-            let several = self.devices.iter().any(|&devices| devices > 1);
+            let several = self.devices.iter().any(|devices| devices > 1);
             let shared = several.then(|| set_up(&among, 2)).transpose()?;
             for (&(devices, strategy), states) in pairs.iter().zip(&mut of_pairs) {
                 let model = if devices == 1 { &alone } else { &among };
@@ -243,7 +246,7 @@ impl SweepPlan {
                 let run = moment.map(|moment| &moment.run);
                 let state = State { name: name.clone(), model, run, steps };
                 tracing::info!("{name}: {devices} subdomains, {}", strategy.title());
-                states.push((steps, emulate(&state, &device, setup, devices, strategy, &effort)?));
+                states.push((steps, emulate(&state, device, setup, devices, strategy, &effort)?));
             }
         }
         let costs = Costs::fit(of_pairs.iter().flatten().flat_map(|(_, emulated)| &emulated.shares));

@@ -145,15 +145,18 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
     line(head) + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
 }
 
+/// What a column's head begins with, and its cells.
+type Quantity<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
 /// A column for each strategy and quantity.
-fn pivot<T: Placed>(all: &[T], quantities: &[(&str, &dyn Fn(&T) -> String)]) -> String {
+fn pivot<T: Placed>(all: &[T], quantities: &[Quantity<'_, T>]) -> String {
     let strategies = strategies(all);
     let columns =
         || quantities.iter().flat_map(|quantity| strategies.iter().map(move |strategy| (quantity, *strategy)));
     let mut head = vec!["devices".to_owned()];
     head.extend(columns().map(|((name, _), strategy)| format!("{name}{}", strategy.title())));
     let row = |devices: usize| {
-        let cell = |((_, value), strategy): (&(&str, &dyn Fn(&T) -> String), Strategy)| {
+        let cell = |((_, value), strategy): (&Quantity<'_, T>, Strategy)| {
             at(all, devices, strategy).map_or_else(|| "-".to_owned(), *value)
         };
         std::iter::once(devices.to_string()).chain(columns().map(cell)).collect()
@@ -370,7 +373,11 @@ mod tests {
         };
         assert_eq!((value(1, "kind"), value(1, "seconds"), value(1, "ms_per_step")), ("measured", "8", "80"));
         assert_eq!((value(1, "work_max"), value(2, "work_max"), value(2, "turns")), ("", "600", ""));
-        assert_eq!((value(3, "kind"), value(3, "work_speed_up"), value(3, "efficiency")), ("modelled", "1.5", "0.75"));
+        assert_eq!(
+            (value(3, "kind"), value(3, "work_speed_up"), value(3, "owned_speed_up")),
+            ("modelled", "1.5", "1.5")
+        );
+        assert!((value(3, "efficiency").parse::<f64>().unwrap() - 0.75).abs() < 1e-12);
         assert_eq!((value(3, "own_ms"), value(3, "messages_ms"), value(3, "seconds")), ("300", "100", "400"));
     }
 

@@ -285,3 +285,35 @@ fn equal_runs_leave_equal_bytes_however_they_are_batched() {
     let other = run("other", &["--seed", "2"]);
     assert!(first[0] != other[0] && first[1] != other[1] && first[2] != other[2]);
 }
+
+/// What several ranks have to tell stands beside the same results, and a rank alone has nothing to tell.
+#[test]
+fn several_ranks_leave_their_records_besides() {
+    let folder = tempfile::tempdir().unwrap();
+    let (alone, among) = (folder.path().join("alone"), folder.path().join("among"));
+    finished_run(&alone, &[]);
+    finished_run(&among, &["--subdomains", "2", "--balance", "off"]);
+    let read = |out: &Path, name: &str| fs::read(out.join(name)).unwrap();
+    assert_eq!(read(&alone, "history.csv"), read(&among, "history.csv"));
+    let more: Vec<String> = names_below(&among).into_iter().filter(|name| !FILES.contains(&name.as_str())).collect();
+    assert_eq!(more, ["balance.csv", "subdomains.svg"]);
+    let lossy = |out: &Path| String::from_utf8_lossy(&read(out, "snapshots/particles_000001.vtu")).into_owned();
+    let array = "Name=\"subdomain\"";
+    assert!(lossy(&among).contains(array) && !lossy(&alone).contains(array));
+
+    let balance = String::from_utf8(read(&among, "balance.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = balance.lines().map(|line| line.split(',').collect()).collect();
+    let value = |row: usize, name: &str| {
+        let at = rows[0].iter().position(|head| *head == name).unwrap();
+        rows[row][at].parse::<f64>().unwrap()
+    };
+    assert_eq!((rows.len(), value(1, "step"), value(2, "step"), value(2, "ranks")), (3, 32.0, 64.0, 2.0));
+    // Particles at rest in two halves of a box.
+    assert_eq!(value(2, "owned_mean"), 250.0);
+    assert_eq!(value(2, "imbalance_particles"), value(2, "owned_max") / 250.0);
+    assert!(value(2, "ghosts_min") > 0.0 && value(2, "bytes") > 0.0 && value(2, "moved") > 0.0);
+    assert_eq!(value(2, "rebalanced"), 0.0);
+    let timing: serde_json::Value = serde_json::from_slice(&read(&among, "timing.json")).unwrap();
+    assert_eq!((timing["steps"].as_u64(), timing["ranks"].as_array().unwrap().len()), (Some(64), 2));
+    assert!(timing["stepping_seconds"].as_f64().unwrap() > 0.0);
+}
