@@ -109,7 +109,7 @@ impl SweepPlan {
             let asked = |scene: &Scene| {
                 let mut scene = scene.clone();
                 (scene.model.particles, scene.seed) = (None, 0);
-                scene.output = moment.model.scene.output.clone();
+                scene.output = moment.model.scene.output;
                 to_toml(&scene)
             };
             if asked(&moment.model.scene) != asked(&scene) {
@@ -237,7 +237,7 @@ impl SweepPlan {
                 // Cuts of the start of the run are made by the gas of then.
                 Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
             };
-            let several = self.devices.iter().any(|devices| devices > 1);
+            let several = self.devices.iter().any(|&devices| devices > 1);
             let shared = several.then(|| set_up(&among, 2)).transpose()?;
             for (&(devices, strategy), states) in pairs.iter().zip(&mut of_pairs) {
                 let model = if devices == 1 { &alone } else { &among };
