@@ -193,6 +193,9 @@ pub struct SweepArguments {
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,
+    /// Checkpoints (or folders) of a run of this scene to go on from, each for the time around it, instead of the start
+    #[arg(long, value_name = "DIR,...", value_delimiter = ',', value_hint = ValueHint::DirPath, conflicts_with_all = ["weak", "particles", "seed"])]
+    pub from: Vec<PathBuf>,
     #[command(flatten)]
     pub runs: RealRunArguments,
     #[command(flatten)]

@@ -64,6 +64,11 @@ pub enum CliError {
     Threshold { found: f64 },
     #[error("{option} {found}: expected {expected}")]
     SweepFigure { option: &'static str, found: f64, expected: &'static str },
+    #[error("--balance initial with --from: a run that goes on from a checkpoint knows no start to cut by")]
+    #[diagnostic(help("leave out `initial`, or only emulate"))]
+    InitialFrom,
+    #[error("{}: the checkpoint is of another scene than {}", from.display(), scene.display())]
+    OtherScene { from: PathBuf, scene: PathBuf },
     #[error("--launcher is empty: expected a program and its arguments, such as \"mpirun --bind-to none\"")]
     NoLauncher,
     #[error(
@@ -123,6 +128,8 @@ impl CliError {
             | CliError::Threshold { .. }
             | CliError::SweepFigure { .. }
             | CliError::NoLauncher
+            | CliError::InitialFrom
+            | CliError::OtherScene { .. }
             | CliError::ValidateOnOne { .. }
             | CliError::SubdomainsOfRanks { .. }
             | CliError::PlanToml(_)
@@ -146,9 +153,14 @@ fn study_code(error: &StudyError) -> u8 {
             DEVICE_TROUBLE
         }
         StudyError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
-        StudyError::Start { .. } | StudyError::TooShort { .. } | StudyError::Output(_) | StudyError::Simulation(_) => {
-            BAD_INPUT
-        }
+        StudyError::Start { .. }
+        | StudyError::TooShort { .. }
+        | StudyError::Model { .. }
+        | StudyError::PlanToml(_)
+        | StudyError::Scene(_)
+        | StudyError::Checkpoint(_)
+        | StudyError::Output(_)
+        | StudyError::Simulation(_) => BAD_INPUT,
     }
 }
 

@@ -3,18 +3,20 @@
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::gpu::Device;
 use crate::output::{
-    OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, grouped,
+    OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, Timing, grouped,
 };
 use crate::partition::By;
 use crate::scene::{Scene, to_toml};
-use crate::simulation::{Model, Setup};
+use crate::simulation::{Model, Setup, initial_particles};
 use crate::study::emulation::{Effort, Emulated, State, emulate};
-use crate::study::launched::{Case, Measured, Program, compare, take_turns};
+use crate::study::launched::{Case, Measured, Program, compare, take_turns, together};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
 use crate::study::report;
+use crate::study::state::{Moment, weights};
 use crate::study::{Strategy, StudyError};
 
 use super::CliError;
@@ -60,6 +62,8 @@ struct SweepPlan {
     real: Vec<usize>,
     strategies: Vec<Strategy>,
     launcher: Vec<String>,
+    /// What the runs go on from, in order of time; none: the start of the scene.
+    moments: Vec<Moment>,
 }
 
 /// What an emulation found.
@@ -95,7 +99,24 @@ impl SweepPlan {
                 strategies.push(strategy);
             }
         }
-        Ok(SweepPlan { raw, scene, folder, devices, real, strategies, launcher })
+        let mut moments = raw.from.iter().map(|from| Moment::read(from)).collect::<Result<Vec<_>, _>>()?;
+        moments.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let runs_initial = !real.is_empty() && strategies.contains(&Strategy::Initial);
+        if !moments.is_empty() && runs_initial {
+            return Err(CliError::InitialFrom);
+        }
+        for moment in &moments {
+            let asked = |scene: &Scene| {
+                let mut scene = scene.clone();
+                (scene.model.particles, scene.seed) = (None, 0);
+                scene.output = moment.model.scene.output;
+                to_toml(&scene)
+            };
+            if asked(&moment.model.scene) != asked(&scene) {
+                return Err(CliError::OtherScene { from: moment.from.clone(), scene: path.clone() });
+            }
+        }
+        Ok(SweepPlan { raw, scene, folder, devices, real, strategies, launcher, moments })
     }
 
     /// Every count with every strategy; one device has nothing to share out.
@@ -113,21 +134,46 @@ impl SweepPlan {
         }
         let runs = folder.join(RUNS_FOLDER);
         fs::create_dir_all(&runs).map_err(|error| io("create", &runs, error))?;
+        let pairs = self.pairs(&self.real);
         let mut cases = Vec::new();
-        for (devices, strategy) in self.pairs(&self.real) {
-            cases.push(Case { devices, strategy, scene: self.scene_file(&runs, devices)? });
+        for &(devices, strategy) in &pairs {
+            if self.moments.is_empty() {
+                cases.push(Case { devices, strategy, scene: self.scene_file(&runs, devices)?, from: None });
+            }
+            for moment in &self.moments {
+                let from = Some((moment.from.clone(), moment.step));
+                cases.push(Case { devices, strategy, scene: moment.from.clone(), from });
+            }
         }
         let path = std::env::current_exe().map_err(|error| io("find", Path::new("the program"), error))?;
-        let program = Program { path, launcher: self.launcher.clone(), arguments: self.run_arguments() };
+        let (launcher, arguments) = (self.launcher.clone(), self.run_arguments());
+        let program = Program { path, launcher, arguments, steps: self.raw.runs.steps };
         let turns = self.raw.runs.repeat as usize;
         let timings = take_turns(&cases, turns, |case, turn| {
-            let name = format!("{}-{}", case.name(), turn + 1);
+            let at = self.moments.iter().position(|moment| moment.from == case.scene);
+            let at = at.map_or_else(String::new, |at| format!("-state-{}", at + 1));
+            let name = format!("{}-{}{at}", case.name(), turn + 1);
             tracing::info!("run {name}");
             program.run(case, &runs.join(name))
         })?;
         // Nothing but equal histories is in them; on an error they stay.
         fs::remove_dir_all(&runs).map_err(|error| io("remove", &runs, error))?;
-        Ok(compare(&cases, &timings))
+        if self.moments.is_empty() {
+            return Ok(compare(&cases, &timings));
+        }
+        // The states of a pair stand side by side; together they are the run.
+        let weights = weights(&self.moments);
+        let of_pair = |states: &[Vec<Timing>]| -> Vec<Timing> {
+            let turn = |turn: usize| -> Timing {
+                let states: Vec<(f64, Timing)> =
+                    weights.iter().zip(states).map(|(&weight, turns)| (weight, turns[turn].clone())).collect();
+                together(&states)
+            };
+            (0..turns).map(turn).collect()
+        };
+        let whole: Vec<Vec<Timing>> = timings.chunks(self.moments.len()).map(of_pair).collect();
+        let first: Vec<Case> = cases.iter().step_by(self.moments.len()).cloned().collect();
+        Ok(compare(&first, &whole))
     }
 
     /// The scene that a count runs: one for all, but where each device has its own particles.
@@ -156,7 +202,6 @@ impl SweepPlan {
             ("--balance-by", by.to_owned()),
         ];
         words.extend(tuning.halo_rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
-        words.extend(self.raw.runs.steps.map(|steps| ("--steps", steps.to_string())));
         words.extend(self.raw.gpu.as_ref().map(|gpu| ("--gpu", gpu.clone())));
         words.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect()
     }
@@ -170,23 +215,39 @@ impl SweepPlan {
         };
         let effort =
             Effort { intervals: self.raw.emulation.intervals as usize, by, halo_rounds: self.raw.tuning.halo_rounds };
-        // A device alone has its intervals as they are: it exchanges nothing from which a step could be told.
-        let alone = model_of(path, self.scene.clone())?;
-        let mut among = model_of(path, self.scene.clone())?;
-        among.plan.steps_per_interval = EMULATED_STEPS;
-        let several = self.devices.iter().any(|&devices| devices > 1);
-        let shared = several.then(|| Setup::new(&among, device, 2, None)).transpose()?;
-        let mut of_pairs: Vec<Vec<(f64, Emulated)>> = Vec::new();
-        for (devices, strategy) in self.pairs(&self.devices) {
-            let model = if devices == 1 { &alone } else { &among };
-            let own = if devices == 1 { Some(Setup::new(model, device, 1, None)?) } else { None };
-            let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
-            let mut states = Vec::new();
-            for state in states_of(model) {
-                tracing::info!("{}: {devices} subdomains, {}", state.name, strategy.title());
-                states.push((state.steps, emulate(&state, device, setup, devices, strategy, &effort)?));
+        let pairs = self.pairs(&self.devices);
+        let mut of_pairs: Vec<Vec<(f64, Emulated)>> = vec![Vec::new(); pairs.len()];
+        let mut particles = 0;
+        for at in 0..self.moments.len().max(1) {
+            let moment = self.moments.get(at);
+            let scene = moment.map_or(&self.scene, |moment| &moment.model.scene);
+            // A device alone has its intervals as they are: it exchanges nothing from which a step could be told.
+            let alone = model_of(path, scene.clone())?;
+            let mut among = model_of(path, scene.clone())?;
+            among.plan.steps_per_interval = EMULATED_STEPS;
+            particles = among.plan.particles;
+            let steps = match moment {
+                Some(_) => weights(&self.moments)[at],
+                None => among.plan.estimated_steps,
+            };
+            let name = moment.map_or_else(|| "the start".to_owned(), Moment::name);
+            let set_up = |model: &Model, ranks: usize| -> Result<Setup, CliError> {
+                let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
+                let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
+                // Cuts of the start of the run are made by the gas of then.
+                Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
+            };
+            let several = self.devices.iter().any(|&devices| devices > 1);
+            let shared = several.then(|| set_up(&among, 2)).transpose()?;
+            for (&(devices, strategy), states) in pairs.iter().zip(&mut of_pairs) {
+                let model = if devices == 1 { &alone } else { &among };
+                let own = if devices == 1 { Some(set_up(model, 1)?) } else { None };
+                let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
+                let run = moment.map(|moment| &moment.run);
+                let state = State { name: name.clone(), model, run, steps };
+                tracing::info!("{name}: {devices} subdomains, {}", strategy.title());
+                states.push((steps, emulate(&state, device, setup, devices, strategy, &effort)?));
             }
-            of_pairs.push(states);
         }
         let costs = Costs::fit(of_pairs.iter().flatten().flat_map(|(_, emulated)| &emulated.shares));
         let points = of_pairs.iter().filter_map(|states| {
@@ -194,7 +255,7 @@ impl SweepPlan {
             point(&states, &costs, &network, &gpu)
         });
         let adapter = device.adapter().info.name.clone();
-        Ok(Emulation { adapter, particles: among.plan.particles, costs, points: points.collect() })
+        Ok(Emulation { adapter, particles, costs, points: points.collect() })
     }
 
     fn text(&self, measured: &[Measured], emulated: Option<&Emulation>) -> String {
@@ -206,6 +267,16 @@ impl SweepPlan {
             text += &self.modelled_text(emulation, measured);
         }
         text
+    }
+
+    /// What is measured.
+    fn states(&self) -> String {
+        let named: Vec<String> = weights(&self.moments)
+            .iter()
+            .zip(&self.moments)
+            .map(|(steps, moment)| format!("{} for {steps:.0} steps", moment.name()))
+            .collect();
+        if named.is_empty() { "the start of the scene".into() } else { named.join(", ") }
     }
 
     fn measured_text(&self, measured: &[Measured]) -> String {
@@ -240,11 +311,12 @@ impl SweepPlan {
         let _ = write!(
             text,
             "\n## Modelled: work alone\n\nSubdomains of {} particles, measured one at a time on {adapter}: {} intervals \
-             of {EMULATED_STEPS} steps of each state (the start of the scene), dynamic cuts made for the state. Speed-up \
+             of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state. Speed-up \
              of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
              a wall test {:.2} of a particle, as fitted to the device times.\n\n{}",
             grouped(*particles),
             raw.intervals,
+            self.states(),
             relative(costs.candidate),
             relative(costs.wall),
             report::work_table(points),
@@ -275,11 +347,6 @@ impl SweepPlan {
         }
         text
     }
-}
-
-/// The states of a run that are measured, and the steps that each stands for: its start stands for all.
-fn states_of(model: &Model) -> Vec<State<'_>> {
-    vec![State { name: "the start".into(), model, steps: model.plan.estimated_steps }]
 }
 
 fn assumed(raw: &EmulationArguments) -> (Network, Gpu) {

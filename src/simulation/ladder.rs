@@ -55,7 +55,7 @@ pub struct Demand {
 /// Where on its ladder the step is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LadderState {
-    level: u32,
+    pub level: u32,
     levels: u32,
 }
 

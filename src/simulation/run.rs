@@ -229,7 +229,8 @@ impl<'a> Simulation<'a> {
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
             let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
-            let weighed = options.balance.at_start().then(|| setup.particles.as_slice());
+            let cut_by = setup.cut_by.as_ref().unwrap_or(&setup.particles);
+            let weighed = options.balance.at_start().then(|| cut_by.as_slice());
             let cut = Decomposition::new(plan, comm, rounds, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
         } else {

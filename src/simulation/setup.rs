@@ -20,6 +20,8 @@ pub struct Setup {
     pub patches: usize,
     /// Gas volume of each coarse block, m3.
     pub volumes: Arc<Vec<f64>>,
+    /// What the space is cut by at the start, if not by the particles.
+    pub cut_by: Option<Arc<Vec<GpuParticle>>>,
     /// All of them, by id (or as they were shuffled).
     pub particles: Arc<Vec<GpuParticle>>,
 }
@@ -70,6 +72,7 @@ impl Setup {
             layout: layout(model, &patches),
             patches: patches.len(),
             volumes: Arc::new(block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2)),
+            cut_by: None,
             particles: Arc::new(particles),
         })
     }

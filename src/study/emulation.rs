@@ -7,7 +7,7 @@
 use crate::gpu::Device;
 use crate::partition::By;
 use crate::ranks::{Communicator, Pace, in_process};
-use crate::simulation::{BalanceMode, BalanceOptions, Model, Options, Setup, Simulation, SimulationError};
+use crate::simulation::{BalanceMode, BalanceOptions, Model, Options, RunState, Setup, Simulation, SimulationError};
 
 use super::stopwatch::{Event, Lap, Stopwatch, laps};
 use super::{Strategy, StudyError};
@@ -17,6 +17,8 @@ pub struct State<'a> {
     pub name: String,
     /// Its plan's `steps_per_interval` is the length of the intervals that are measured.
     pub model: &'a Model,
+    /// What the run has done by then; `None` at its start.
+    pub run: Option<&'a RunState>,
     /// Steps of the run that it stands for.
     pub steps: f64,
 }
@@ -86,7 +88,7 @@ pub fn emulate(
     let intervals = settling + effort.intervals;
     let mut ranks = Vec::new();
     for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {
-        let done = one(state.model, device, setup, comm, options, intervals);
+        let done = one(state, device, setup, comm, options, intervals);
         if let Err(error) = &done {
             comm.fail(&error.to_string(), 1);
         }
@@ -106,7 +108,7 @@ struct Seen {
 }
 
 fn one(
-    model: &Model,
+    state: &State<'_>,
     device: &Device,
     setup: &Setup,
     comm: &dyn Communicator,
@@ -115,7 +117,10 @@ fn one(
 ) -> Result<Seen, SimulationError> {
     let watch = Stopwatch::new(comm);
     let outcome = {
-        let mut simulation = Simulation::among(model, device, setup, &watch, options)?;
+        let mut simulation = match state.run {
+            Some(run) => Simulation::resume(state.model, device, setup, &watch, options, run)?,
+            None => Simulation::among(state.model, device, setup, &watch, options)?,
+        };
         simulation.begin(&mut ())?;
         for _ in 0..intervals {
             watch.mark();

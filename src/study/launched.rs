@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::output::{HISTORY_FILE, OutputError, Timing};
+use crate::output::{HISTORY_FILE, OutputError, RankTiming, Timing};
 
 use super::emulation::median;
 use super::{Strategy, StudyError};
@@ -21,6 +21,8 @@ pub struct Program {
     pub launcher: Vec<String>,
     /// Further arguments of `run`.
     pub arguments: Vec<String>,
+    /// Steps of each run; `None`: to the end of the scene.
+    pub steps: Option<u64>,
 }
 
 /// A run to be made.
@@ -29,6 +31,8 @@ pub struct Case {
     pub devices: usize,
     pub strategy: Strategy,
     pub scene: PathBuf,
+    /// A checkpoint to go on from, instead of the start of the scene, and the steps it has done.
+    pub from: Option<(PathBuf, u64)>,
 }
 
 /// A run that was made.
@@ -44,6 +48,9 @@ impl Program {
     /// # Errors
     /// If it cannot be started, fails, or leaves no results.
     pub fn run(&self, case: &Case, folder: &Path) -> Result<Trial, StudyError> {
+        if let Some((from, _)) = &case.from {
+            copy(from, folder)?;
+        }
         let mut command = self.command(case, folder);
         let name = command.get_program().to_string_lossy().into_owned();
         let output = command.output().map_err(|source| StudyError::Start { program: name, source })?;
@@ -72,13 +79,62 @@ impl Program {
             }
             None => Command::new(&self.path),
         };
-        command.arg("run").arg(&case.scene).arg("--out").arg(folder).args(["--balance", case.strategy.name()]);
-        command.args(&self.arguments).arg("--quiet");
+        let mut done = 0;
+        match &case.from {
+            None => command.arg("run").arg(&case.scene).arg("--out").arg(folder),
+            Some((_, step)) => {
+                done = *step;
+                command.arg("resume").arg(folder)
+            }
+        };
+        command.args(["--balance", case.strategy.name()]).args(&self.arguments).arg("--quiet");
+        if let Some(steps) = self.steps {
+            command.args(["--steps", &(done + steps).to_string()]);
+        }
         if self.launcher.is_empty() {
             command.args(["--subdomains", &devices]);
         }
         command
     }
+}
+
+/// Copies a run's folder, that the run can go on in the copy.
+fn copy(from: &Path, to: &Path) -> Result<(), OutputError> {
+    let io = |action, path: &Path| {
+        let path = path.to_path_buf();
+        move |source| OutputError::Io { action, path, source }
+    };
+    std::fs::create_dir_all(to).map_err(io("create", to))?;
+    for entry in std::fs::read_dir(from).map_err(io("read", from))? {
+        let entry = entry.map_err(io("read", from))?;
+        let (path, target) = (entry.path(), to.join(entry.file_name()));
+        if path.is_dir() {
+            copy(&path, &target)?;
+        } else {
+            std::fs::copy(&path, &target).map_err(io("copy", &path))?;
+        }
+    }
+    Ok(())
+}
+
+/// One timing for several states of a run: each state's, for as many steps as it stands for.
+pub fn together(states: &[(f64, Timing)]) -> Timing {
+    let mut all = Timing::default();
+    let (mut steps, mut particle_steps) = (0.0, 0.0);
+    for (weight, timing) in states {
+        let times = weight / timing.steps.max(1) as f64;
+        all.stepping_seconds += times * timing.stepping_seconds;
+        steps += weight;
+        particle_steps += times * timing.particle_steps as f64;
+        all.ranks.resize(timing.ranks.len(), RankTiming::default());
+        for (sum, rank) in all.ranks.iter_mut().zip(&timing.ranks) {
+            sum.waiting_seconds += times * rank.waiting_seconds;
+            sum.device_seconds += times * rank.device_seconds;
+            sum.rebalancing_seconds += times * rank.rebalancing_seconds;
+        }
+    }
+    (all.steps, all.particle_steps) = (steps.round() as u64, particle_steps.round() as u64);
+    all
 }
 
 impl Case {
@@ -178,7 +234,7 @@ mod tests {
     use super::*;
 
     fn case(devices: usize, strategy: Strategy, scene: &str) -> Case {
-        Case { devices, strategy, scene: scene.into() }
+        Case { devices, strategy, scene: scene.into(), from: None }
     }
 
     fn trial(seconds: f64, particle_steps: u64, history: &str) -> Trial {
@@ -240,12 +296,17 @@ mod tests {
     fn a_launcher_goes_before_the_program_and_subdomains_stand_in_for_it() {
         let words = |launcher: &[&str]| {
             let launcher = launcher.iter().map(|&word| word.to_owned()).collect();
-            let program = Program { path: "/p".into(), launcher, arguments: vec!["--steps".into(), "9".into()] };
+            let program = Program {
+                path: "/p".into(),
+                launcher,
+                arguments: vec!["--halo-rounds".into(), "2".into()],
+                steps: Some(9),
+            };
             let command = program.command(&case(4, Strategy::Dynamic, "s.toml"), Path::new("f"));
             let words = std::iter::once(command.get_program()).chain(command.get_args());
             words.map(|word| word.to_str().unwrap().to_owned()).collect::<Vec<_>>().join(" ")
         };
-        let run = "run s.toml --out f --balance dynamic --steps 9 --quiet";
+        let run = "run s.toml --out f --balance dynamic --halo-rounds 2 --quiet --steps 9";
         assert_eq!(words(&[]), format!("/p {run} --subdomains 4"));
         assert_eq!(words(&["mpirun", "--bind-to", "none"]), format!("mpirun --bind-to none -n 4 /p {run}"));
     }

@@ -8,6 +8,7 @@ pub mod emulation;
 pub mod launched;
 pub mod modelled;
 pub mod report;
+pub mod state;
 pub mod stopwatch;
 
 use crate::output::OutputError;
@@ -60,6 +61,16 @@ pub enum StudyError {
     Bits { one: String, other: String, line: usize },
     #[error("{state}: no interval of the measurement ran as it should; it may be too near to the end of the scene")]
     TooShort { state: String },
+    #[error("{}: {error}", from.display())]
+    Model { from: std::path::PathBuf, error: Box<crate::simulation::ModelError> },
+    #[error("cannot write the plan as TOML: {0}")]
+    PlanToml(toml::ser::Error),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] crate::scene::SceneError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] crate::output::CheckpointError),
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(transparent)]

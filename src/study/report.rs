@@ -378,8 +378,9 @@ mod tests {
             ("modelled", "1.5", "1.5")
         );
         assert!((value(3, "efficiency").parse::<f64>().unwrap() - 0.75).abs() < 1e-12);
-        for (column, expected) in [("own_ms", 300.0), ("messages_ms", 100.0), ("seconds", 400.0)] {
-            assert!((value(3, column).parse::<f64>().unwrap() - expected).abs() < 1e-9, "{column}");
+        let number = |name| value(3, name).parse::<f64>().unwrap();
+        for (name, expected) in [("own_ms", 300.0), ("messages_ms", 100.0), ("seconds", 400.0)] {
+            assert!((number(name) / expected - 1.0).abs() < 1e-12, "{name} {}", number(name));
         }
     }
 

@@ -221,14 +221,27 @@ impl Results {
         Results(files)
     }
 
-    /// The first file that differs, or is there in one only.
+    /// The files that differ, or are there in one only, and of each text the first line that differs.
     pub fn difference(&self, other: &Results) -> Option<String> {
         let names = |results: &Results| results.0.keys().cloned().collect::<Vec<_>>();
         if names(self) != names(other) {
             return Some(format!("{:?} are not {:?}", names(other), names(self)));
         }
-        let differing = self.0.iter().find(|(name, bytes)| other.0[*name] != **bytes);
-        differing.map(|(name, _)| format!("{} differs", name.display()))
+        let differing = self.0.iter().filter(|(name, bytes)| other.0[*name] != **bytes);
+        let told: Vec<String> = differing.map(|(name, bytes)| told(name, bytes, &other.0[name])).collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+}
+
+fn told(name: &Path, expected: &[u8], found: &[u8]) -> String {
+    let name = name.display();
+    let [Ok(expected), Ok(found)] = [expected, found].map(std::str::from_utf8) else {
+        return format!("{name} differs");
+    };
+    let mut lines = expected.lines().zip(found.lines());
+    match lines.find(|(expected, found)| expected != found) {
+        Some((expected, found)) => format!("{name} has {found:?} where {expected:?} should be"),
+        None => format!("{name} has another length"),
     }
 }
 

@@ -73,7 +73,8 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 8] = ["run", "sweep", "plan", "check", "schema", "adapters", "completions", "man"];
+const VERBS: [&str; 10] =
+    ["run", "resume", "refine", "sweep", "plan", "check", "schema", "adapters", "completions", "man"];
 
 #[test]
 fn every_verb_has_its_help() {

@@ -1,0 +1,67 @@
+//! States of a run that a study starts from: its start, or checkpoints of it.
+
+use std::path::{Path, PathBuf};
+
+use crate::output::{Checkpoint, latest};
+use crate::scene::parse;
+use crate::simulation::{Clock, Model, ModelError, RunState};
+use crate::subdomain::GpuParticle;
+
+use super::StudyError;
+
+/// A moment of a run, read from a checkpoint.
+pub struct Moment {
+    /// The folder or checkpoint that was named.
+    pub from: PathBuf,
+    pub model: Model,
+    pub run: RunState,
+    /// All of them, by id.
+    pub particles: Vec<GpuParticle>,
+    /// Steps done.
+    pub step: u64,
+    /// s.
+    pub time: f64,
+}
+
+impl Moment {
+    /// # Errors
+    /// If there is no sound checkpoint, or it is of another scene than `path` says. Numbers of particles, seeds and
+    /// output may differ.
+    pub fn read(from: &Path) -> Result<Moment, StudyError> {
+        let checkpoint = Checkpoint::open(&latest(from)?)?;
+        let name = checkpoint.path().join("scene.toml").display().to_string();
+        let scene = parse(&checkpoint.scene()?, &name, Path::new(""))?;
+        let unsound = |error: ModelError| StudyError::Model { from: from.to_path_buf(), error: Box::new(error) };
+        let model = Model::new(scene).map_err(unsound)?;
+        checkpoint.check_plan(&model.plan.to_toml().map_err(StudyError::PlanToml)?)?;
+        let (_, run) = checkpoint.state()?;
+        let mut particles: Vec<GpuParticle> = Vec::new();
+        for index in 0..checkpoint.particle_files() {
+            particles.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(&checkpoint.particles(index)?));
+        }
+        particles.sort_unstable_by_key(GpuParticle::id);
+        let (step, time) = (checkpoint.manifest().step, checkpoint.manifest().time);
+        Ok(Moment { from: from.to_path_buf(), model, run, particles, step, time })
+    }
+
+    pub fn name(&self) -> String {
+        format!("{:.1} ms", 1e3 * self.time)
+    }
+
+    /// The length of the next step, s.
+    pub fn step_length(&self) -> f64 {
+        Clock::new(&self.model.plan).dt(self.run.ladder.level)
+    }
+}
+
+/// The steps that each of several moments of one run stands for: each for the time around it, halfway to the next on
+/// either side, in steps of its length.
+pub fn weights(moments: &[Moment]) -> Vec<f64> {
+    let middle = |k: usize| 0.5 * (moments[k - 1].time + moments[k].time);
+    let span = |k: usize, moment: &Moment| {
+        let from = if k == 0 { 0.0 } else { middle(k) };
+        let to = if k + 1 == moments.len() { moment.model.plan.end_time } else { middle(k + 1) };
+        (to - from) / moment.step_length()
+    };
+    moments.iter().enumerate().map(|(k, moment)| span(k, moment)).collect()
+}
