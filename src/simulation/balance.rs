@@ -20,7 +20,7 @@ const STEPS_OF_A_REBALANCE: f64 = 5.0;
 /// What a rank had to do in the last step of an interval, and what it did besides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Load {
-    /// Device time of the step, s; zero where the device does not time.
+    /// Device time of the step, s; where the device does not time, from submissions to their ends.
     pub seconds: f64,
     /// Ghosts included.
     pub particles: u64,

@@ -291,7 +291,7 @@ impl Subdomain {
         larger: impl FnOnce(&mut ExchangeRoom),
     ) -> Result<(), GpuError> {
         larger(&mut self.exchange_room);
-        let peers = self.exchange_peers(device);
+        let peers = self.gpu_peers();
         self.exchange = ExchangeBuffers::new(device, &self.exchange_room)?;
         device.write(&self.exchange.peers, 0, &peers);
         self.rebind(device)

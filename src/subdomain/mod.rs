@@ -135,7 +135,7 @@ impl Subdomain {
     /// If the cells are over the device's limits.
     pub fn move_to(&mut self, device: &Device, place: Place) -> Result<(), GpuError> {
         self.place = place;
-        let peers = self.exchange_peers(device);
+        let peers = self.gpu_peers();
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
             let bins = bins_of(&self.place, &self.domain);
             self.cell = CellBuffers::new(device, bins + bins / 8)?;
@@ -149,7 +149,7 @@ impl Subdomain {
         Ok(())
     }
 
-    fn exchange_peers(&self, _device: &Device) -> Vec<GpuPeer> {
+    fn gpu_peers(&self) -> Vec<GpuPeer> {
         let signed = |corner: [u32; 3]| corner.map(|cell| cell as i32);
         let peer = |cells: &Cells| GpuPeer { low: signed(cells.low), high: signed(cells.high), ..GpuPeer::default() };
         self.place.peers.iter().map(peer).collect()
