@@ -133,8 +133,12 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         }
         tell(pair.x);
         tell(pair.y);
+        // Whom either met before may meet it again. (All whose choice this can change must choose again, here as
+        // after a collision: the choices are a function of the state alone, whoever else is asked to choose.)
         touch(pair.x);
         touch(pair.y);
+        touch_neighbours(pair.x);
+        touch_neighbours(pair.y);
         return;
     }
     let key = vec2<u32>(SEED_LOW, SEED_HIGH);

@@ -105,7 +105,9 @@ impl CliError {
             CliError::Study(error) => study_code(error),
             CliError::Gpu(_)
             | CliError::Rank(_)
-            | CliError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) => DEVICE_TROUBLE,
+            | CliError::Simulation(
+                SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
+            ) => DEVICE_TROUBLE,
             CliError::Audit { .. }
             | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
             CliError::Simulation(
@@ -149,9 +151,10 @@ fn study_code(error: &StudyError) -> u8 {
             Some(4) => AUDIT_FAILED,
             _ => DEVICE_TROUBLE,
         },
-        StudyError::Simulation(SimulationError::Gpu(_) | SimulationError::Rank(_)) | StudyError::Rank(_) => {
-            DEVICE_TROUBLE
-        }
+        StudyError::Simulation(
+            SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
+        )
+        | StudyError::Rank(_) => DEVICE_TROUBLE,
         StudyError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
         StudyError::Start { .. }
         | StudyError::TooShort { .. }

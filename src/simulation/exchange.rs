@@ -31,6 +31,49 @@ pub struct Traffic {
     pub rebalancing_seconds: f64,
 }
 
+/// What a message is about: its last bytes say so, that one that is missing or cut short is seen at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Subject {
+    step: u32,
+    /// The round before which ghosts are brought up to date, or PARTICLES.
+    round: u32,
+}
+
+/// The exchange of particles, before all rounds.
+const PARTICLES: u32 = u32::MAX;
+const SEAL: usize = 12;
+
+impl Subject {
+    fn seal(self, message: &mut Vec<u8>) {
+        let bytes = message.len() as u32;
+        message.extend([self.step, self.round, bytes].iter().flat_map(|word| word.to_ne_bytes()));
+    }
+
+    /// The message without its seal.
+    fn open(self, rank: usize, mut message: Vec<u8>) -> Result<Vec<u8>, SimulationError> {
+        let bytes = message.len().saturating_sub(SEAL);
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&message[bytes..][..(message.len() - bytes) / 4 * 4]);
+        let found = match words[..] {
+            [step, round, said] if (Subject { step, round }) == self && said as usize == bytes => {
+                message.truncate(bytes);
+                return Ok(message);
+            }
+            [step, round, said] => format!("{} of {said} bytes, {bytes} of them here", Subject { step, round }),
+            _ => format!("of {} bytes", message.len()),
+        };
+        Err(SimulationError::Message { rank, found, expected: self.to_string() })
+    }
+}
+
+impl std::fmt::Display for Subject {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.round {
+            PARTICLES => write!(to, "the particles of step {}", self.step),
+            round => write!(to, "the updates of step {}, round {round}", self.step),
+        }
+    }
+}
+
 impl Traffic {
     /// What went since an earlier look.
     fn since(&self, earlier: &Traffic) -> Traffic {
@@ -111,7 +154,7 @@ impl<'a> Exchange<'a> {
         let start = Instant::now();
         let outgoing = subdomain.pack(rec, slot)?;
         let messages = self.timed(|| subdomain.packed(rec, slot, outgoing))?;
-        let received = self.swap(messages, self.peers.len())?;
+        let received = self.swap(messages, self.peers.len(), Subject { step: slot.index(), round: PARTICLES })?;
         subdomain.arrive(rec, slot, &received)?;
         self.traffic.steps += 1;
         self.traffic.present += u64::from(slot.present());
@@ -138,7 +181,7 @@ impl<'a> Exchange<'a> {
         }
         let outgoing = subdomain.pack_updates(rec, slot, round - 1)?;
         let messages = self.timed(|| subdomain.packed_updates(rec, slot, round - 1, outgoing))?;
-        let received = self.swap(messages, self.near)?;
+        let received = self.swap(messages, self.near, Subject { step: slot.index(), round })?;
         subdomain.receive(rec, slot, round - 1, &received)?;
         Ok(())
     }
@@ -152,18 +195,27 @@ impl<'a> Exchange<'a> {
     }
 
     /// One message to each of the first `count` peers, and one from each.
-    fn swap(&mut self, messages: Vec<Vec<u8>>, count: usize) -> Result<Vec<Vec<u8>>, SimulationError> {
+    fn swap(
+        &mut self,
+        messages: Vec<Vec<u8>>,
+        count: usize,
+        subject: Subject,
+    ) -> Result<Vec<Vec<u8>>, SimulationError> {
         let Some(comm) = self.comm else {
             return Ok(Vec::new());
         };
         let start = Instant::now();
         let peers = &self.peers[..count];
-        for (&peer, message) in peers.iter().zip(messages) {
+        for (&peer, mut message) in peers.iter().zip(messages) {
+            subject.seal(&mut message);
             self.traffic.messages += 1;
             self.traffic.bytes += message.len() as u64;
             comm.send(peer, message)?;
         }
-        let received = peers.iter().map(|&peer| comm.receive(peer)).collect::<Result<_, _>>()?;
+        let mut received = Vec::with_capacity(count);
+        for &peer in peers {
+            received.push(subject.open(peer, comm.receive(peer)?)?);
+        }
         self.traffic.waiting_seconds += start.elapsed().as_secs_f64();
         Ok(received)
     }

@@ -62,6 +62,8 @@ pub enum SimulationError {
     Partition(#[from] PartitionError),
     #[error(transparent)]
     Rank(#[from] RankError),
+    #[error("a message of rank {rank} is {found}; {expected} was due")]
+    Message { rank: usize, found: String, expected: String },
     #[error(transparent)]
     Resume(#[from] RunStateError),
     #[error("at {time:.6} s: {source}")]

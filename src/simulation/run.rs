@@ -510,7 +510,7 @@ impl<'a> Simulation<'a> {
             let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
             let (mut sums, mut maxima) = own.to_words();
             maxima.push(self.wish.weight());
-            let seconds = self.step_seconds(&flight, &stamps);
+            let seconds = self.step_seconds(&flight.phases, &stamps, &flight.traffic);
             sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
             let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
             flight.tallies = Pending::Reducing(Box::new(own), stamps, reduction);
@@ -520,10 +520,10 @@ impl<'a> Simulation<'a> {
 
     /// Device time of the timed step, s; on a device that does not time, from submissions to their ends, of the
     /// mean step of the interval.
-    fn step_seconds(&self, flight: &InFlight, stamps: &[u8]) -> f64 {
+    fn step_seconds(&self, phases: &[&'static str], stamps: &[u8], traffic: &Traffic) -> f64 {
         match &self.timer {
-            Some(timer) => timer.seconds(&flight.phases, stamps).iter().map(|(_, seconds)| seconds).sum(),
-            None => flight.traffic.device_seconds / flight.traffic.steps.max(1) as f64,
+            Some(timer) => timer.seconds(phases, stamps).iter().map(|(_, seconds)| seconds).sum(),
+            None => traffic.device_seconds / traffic.steps.max(1) as f64,
         }
     }
 

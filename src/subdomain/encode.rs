@@ -38,6 +38,11 @@ pub struct Newborns<'a> {
 }
 
 impl StepSlot {
+    /// Steps since the start of the run.
+    pub fn index(&self) -> u32 {
+        self.index
+    }
+
     /// Particles on the device in this step, ghosts included.
     pub fn present(&self) -> u32 {
         self.total

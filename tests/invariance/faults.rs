@@ -35,6 +35,8 @@ struct Faulty<'a> {
     sent: Cell<u32>,
 }
 
+/// The end of a message says what it is about.
+const SEAL: usize = 12;
 const UPDATE: usize = size_of::<GpuUpdate>();
 /// Of a particle, and so of an update, which begins with one.
 const TAG: usize = std::mem::offset_of!(GpuParticle, tag);
@@ -49,7 +51,7 @@ impl Faulty<'_> {
         // In the way below a step sends particles, then updates before each round but the first; the first step
         // sends updates once more, to count lost collisions.
         let updates = self.sent.get() % 8 != 2;
-        if self.inner.rank() != 1 || self.done.get() || !SPOILT.contains(&self.sent.get()) || message.is_empty() {
+        if self.inner.rank() != 1 || self.done.get() || !SPOILT.contains(&self.sent.get()) || message.len() <= SEAL {
             return Some(message);
         }
         let fits = match self.fault {
@@ -64,7 +66,7 @@ impl Faulty<'_> {
         self.done.set(!matches!(self.fault, Fault::LoseUpdates | Fault::AlterUpdates));
         match self.fault {
             Fault::LoseMessage => return None,
-            Fault::LoseParticles | Fault::LoseUpdates => message.clear(),
+            Fault::LoseParticles | Fault::LoseUpdates => drop(message.drain(..message.len() - SEAL)),
             Fault::AlterUpdates => message.chunks_exact_mut(UPDATE).for_each(|update| update[VELOCITY] ^= 1),
             Fault::AlterId => message[TAG] ^= 1,
             Fault::None => {}
