@@ -3,7 +3,9 @@
 
 use std::fs;
 
-use super::program::{Case, Program, newest, published, signal, tank};
+#[cfg(feature = "mpi")]
+use super::program::signal;
+use super::program::{Case, Program, newest, published, tank};
 
 /// A row has been written: the time loop is under way.
 fn rows(case: &Case) -> usize {
