@@ -213,7 +213,8 @@ fn a_wall_between_a_pair_stops_the_collision() {
     let (mut blocked, mut met) = (0, 0);
     let mut again = BTreeSet::new();
     for &(s, t, time) in &pairs {
-        again.extend([s, t].iter().chain(&cloud.lists[s]).chain(&cloud.lists[t]).copied());
+        again.extend([s as u32, t as u32]);
+        again.extend(cloud.lists[s].iter().chain(&cloud.lists[t]).copied());
         let place = |k: usize| along(cloud.body(k).x0, cloud.body(k).v, f64::from(time));
         let collided = after[s].velocity != cloud.particles[s].velocity;
         if let Some(parted) = parted(&cloud.world.triangles, place(s), place(t), slack) {
