@@ -92,14 +92,14 @@ fn nothing_is_lost_when_a_rank_is_killed() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes; ./scripts/test.sh --long runs it"]
 fn nothing_is_lost_in_twelve_kills_of_a_process() {
     killed(12, 7, &[Program::alone(), Program::sharing(2), Program::sharing(3)]);
 }
 
 #[cfg(feature = "mpi")]
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes; ./scripts/test.sh --long runs it"]
 fn nothing_is_lost_in_twelve_kills_of_ranks() {
     killed(12, 8, &[Program::mpi(2), Program::mpi(3), Program::alone()]);
 }
