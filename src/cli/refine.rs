@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use crate::output::{
-    Checkpoint, CheckpointWriter, HistoryWriter, Moment, Origin, OutputFolder, OutputState, PLAN_FILE, RECORD_BYTES,
-    SCENE_FILE, SnapshotWriter, grouped, latest,
+    Checkpoint, CheckpointWriter, HistoryWriter, Moment, Origin, OutputFolder, OutputState, PLAN_FILE, SCENE_FILE,
+    SnapshotWriter, grouped, latest,
 };
 use crate::scene::{parse, to_toml};
-use crate::simulation::{Model, RefineReport, Refined, RunState, refine as split};
+use crate::simulation::{Model, RefineReport, Refined, RunState, particles_of, refine as split};
 use crate::subdomain::GpuParticle;
 
 use super::CliError;
@@ -66,12 +66,7 @@ fn read(checkpoint: &Checkpoint) -> Result<(Model, RunState, Vec<GpuParticle>), 
     let model = model_of(&name, scene)?;
     checkpoint.check_plan(&model.plan.to_toml()?)?;
     let (_, state) = checkpoint.state::<RunState>()?;
-    let mut particles = Vec::new();
-    for file in 0..checkpoint.particle_files() {
-        let records = checkpoint.particles(file)?;
-        particles.extend(records.chunks_exact(RECORD_BYTES).map(bytemuck::pod_read_unaligned::<GpuParticle>));
-    }
-    Ok((model, state, particles))
+    Ok((model, state, particles_of(checkpoint)?))
 }
 
 /// A run's folder that has got as far as the refined state. Its history and its snapshots begin there.

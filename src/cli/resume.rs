@@ -11,7 +11,7 @@ use std::time::Instant;
 use crate::output::{Adapter, CHECKPOINT_FOLDER, Checkpoint, CheckpointError, OutputFolder, OutputState, latest};
 use crate::ranks::Communicator;
 use crate::scene::parse;
-use crate::simulation::RunState;
+use crate::simulation::{RunState, particles_of};
 use crate::subdomain::GpuParticle;
 
 use super::CliError;
@@ -68,12 +68,7 @@ impl Beginning {
     /// # Errors
     /// If a file is not as it was written.
     pub fn particles(&self) -> Result<Vec<GpuParticle>, CheckpointError> {
-        let mut all: Vec<GpuParticle> = Vec::new();
-        for index in 0..self.checkpoint.particle_files() {
-            all.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(&self.checkpoint.particles(index)?));
-        }
-        all.sort_unstable_by_key(GpuParticle::id);
-        Ok(all)
+        particles_of(&self.checkpoint)
     }
 
     /// Says where the run goes on, and what may make its bits differ from there.

@@ -88,6 +88,9 @@ pub fn launch(
             Setup::with_particles(model, &device, ranks, from.particles()?)?
         }
     };
+    if ranks > 1 && !setup.domain.features().halo && comm.rank() == 0 {
+        tracing::info!("no collisions: particles are dealt out by id, nothing is exchanged or balanced");
+    }
     let interrupt = Interrupt::catch().map_err(CliError::Signals)?;
     let job = Job { settings, from, device: &device, setup: &setup, interrupt: &interrupt, quiet, started };
     if subdomains == 1 {
@@ -181,7 +184,7 @@ impl Job<'_> {
         // First, since they count on what is cut off then.
         forget_after(&folder.checkpoints(), from.step())?;
         let totals =
-            Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps() };
+            Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps };
         let recorder = Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?;
         Ok((folder, recorder))
     }

@@ -64,6 +64,15 @@ pub struct Sharing {
     pub halo_rounds: Option<u32>,
 }
 
+impl From<BalanceBy> for By {
+    fn from(asked: BalanceBy) -> By {
+        match asked {
+            BalanceBy::Cost => By::Cost,
+            BalanceBy::Particles => By::Particles,
+        }
+    }
+}
+
 impl Sharing {
     fn new(raw: &SharingArguments) -> Result<Sharing, CliError> {
         let threshold = raw.tuning.balance_threshold;
@@ -75,10 +84,7 @@ impl Sharing {
             Balance::Initial => BalanceMode::Initial,
             Balance::Dynamic => BalanceMode::Dynamic,
         };
-        let by = match raw.tuning.balance_by {
-            BalanceBy::Cost => By::Cost,
-            BalanceBy::Particles => By::Particles,
-        };
+        let by = By::from(raw.tuning.balance_by);
         Ok(Sharing {
             subdomains: raw.subdomains.unwrap_or(1) as usize,
             balance: BalanceOptions { mode, by, every: raw.tuning.balance_every, threshold },

@@ -209,10 +209,7 @@ impl SweepPlan {
     fn emulate(&self, device: &Device) -> Result<Emulation, CliError> {
         let path = &self.raw.scene.scene;
         let (network, gpu) = assumed(&self.raw.emulation);
-        let by = match self.raw.tuning.balance_by {
-            BalanceBy::Cost => By::Cost,
-            BalanceBy::Particles => By::Particles,
-        };
+        let by = By::from(self.raw.tuning.balance_by);
         let effort =
             Effort { intervals: self.raw.emulation.intervals as usize, by, halo_rounds: self.raw.tuning.halo_rounds };
         let pairs = self.pairs(&self.devices);

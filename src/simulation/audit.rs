@@ -24,23 +24,7 @@ pub struct Account {
     scales: Scales,
     molar_masses: Vec<f64>,
     moles_per_particle: f64,
-    start: State,
-    before: Entered,
-    injected_momentum: [f64; 3],
-    /// By the newborns of the intervals read, J.
-    energy_entered: f64,
-    pub particles: u64,
-    pub particle_steps: u64,
-    pub collisions: u64,
-    pub bounces: u64,
-    pub step_range: [f64; 2],
-    steps: u64,
-    lost: u64,
-    sampled: u64,
-    truncated: u64,
-    overshoot: u32,
-    /// Phase, seconds, dispatch groups.
-    phases: Vec<(String, f64, u64)>,
+    counted: AccountState,
 }
 
 /// Totals of all gas, SI.
@@ -66,33 +50,26 @@ pub struct AccountState {
     start: State,
     before: Entered,
     injected_momentum: [f64; 3],
+    /// By the newborns of the intervals read, J.
     energy_entered: f64,
-    particles: u64,
-    particle_steps: u64,
-    collisions: u64,
-    bounces: u64,
-    step_range: [f64; 2],
+    pub particles: u64,
+    /// The particles of each step, summed.
+    pub particle_steps: u64,
+    pub collisions: u64,
+    pub bounces: u64,
+    pub step_range: [f64; 2],
     steps: u64,
     lost: u64,
     sampled: u64,
     truncated: u64,
     overshoot: u32,
+    /// Phase, seconds, dispatch groups.
     phases: Vec<(String, f64, u64)>,
-}
-
-impl AccountState {
-    /// The particles of each step, summed.
-    pub fn particle_steps(&self) -> u64 {
-        self.particle_steps
-    }
 }
 
 impl Account {
     pub fn new(plan: &Plan) -> Account {
-        Account {
-            scales: Scales::new(plan),
-            molar_masses: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
-            moles_per_particle: plan.moles_per_particle,
+        let counted = AccountState {
             start: State::default(),
             before: Entered::default(),
             injected_momentum: [0.0; 3],
@@ -108,6 +85,12 @@ impl Account {
             truncated: 0,
             overshoot: 0,
             phases: Vec::new(),
+        };
+        Account {
+            scales: Scales::new(plan),
+            molar_masses: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
+            moles_per_particle: plan.moles_per_particle,
+            counted,
         }
     }
 
@@ -128,7 +111,7 @@ impl Account {
     }
 
     pub fn start(&mut self, tallies: &Tallies) {
-        self.start = self.totals(tallies);
+        self.counted.start = self.totals(tallies);
     }
 
     /// Starts the account with these particles, after what this inflow has let in.
@@ -145,9 +128,9 @@ impl Account {
             let kinetic = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
             start.energy += kinetic + reference_mass * f64::from(particle.spin);
         }
-        self.particles = start.number;
-        self.start = start;
-        self.before = self.entered(inflow);
+        self.counted.particles = start.number;
+        self.counted.start = start;
+        self.counted.before = self.entered(inflow);
     }
 
     fn entered(&self, inflow: &Inflow) -> Entered {
@@ -171,21 +154,21 @@ impl Account {
         if counters.missing > 0 {
             return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
         }
-        let (since, brought) = interval.energy_tallied(plan);
-        let samples = f64::from(interval.samples(plan));
-        let expected = samples * (self.start.energy + self.energy_entered) + since;
-        self.energy_entered += brought;
-        let energy = self.totals(tallies).energy;
-        if (energy - expected).abs() > ENERGY_ERROR * expected {
-            return Err(format!(
-                "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
-            ));
-        }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
         }
         if counters.outside > 0 {
             return Err(format!("particles were found outside the vessel ({} times in these steps)", counters.outside));
+        }
+        let (since, brought) = interval.energy_tallied(plan);
+        let samples = f64::from(interval.samples(plan));
+        let expected = samples * (self.counted.start.energy + self.counted.energy_entered) + since;
+        self.counted.energy_entered += brought;
+        let energy = self.totals(tallies).energy;
+        if (energy - expected).abs() > ENERGY_ERROR * expected {
+            return Err(format!(
+                "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
+            ));
         }
         Ok(())
     }
@@ -203,53 +186,38 @@ impl Account {
         let mut present = interval.particles - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
         for born in &interval.entering {
             present += u64::from(*born);
-            self.particle_steps += present;
+            self.counted.particle_steps += present;
         }
-        self.particles = interval.particles;
-        self.steps += steps;
+        self.counted.particles = interval.particles;
+        self.counted.steps += steps;
         // A pair that a wall parted was settled without a collision.
-        self.collisions += counters.collisions - u64::from(counters.blocked);
-        self.bounces += u64::from(counters.bounces);
-        self.lost += u64::from(counters.lost);
-        self.sampled += u64::from(counters.sampled);
-        self.truncated += u64::from(counters.truncated);
-        self.overshoot = self.overshoot.max(counters.overshoot);
-        self.step_range = [self.step_range[0].min(interval.dt), self.step_range[1].max(interval.dt)];
-        for (total, own) in self.injected_momentum.iter_mut().zip(interval.momentum) {
+        self.counted.collisions += counters.collisions - u64::from(counters.blocked);
+        self.counted.bounces += u64::from(counters.bounces);
+        self.counted.lost += u64::from(counters.lost);
+        self.counted.sampled += u64::from(counters.sampled);
+        self.counted.truncated += u64::from(counters.truncated);
+        self.counted.overshoot = self.counted.overshoot.max(counters.overshoot);
+        self.counted.step_range =
+            [self.counted.step_range[0].min(interval.dt), self.counted.step_range[1].max(interval.dt)];
+        for (total, own) in self.counted.injected_momentum.iter_mut().zip(interval.momentum) {
             *total += own;
         }
         // One step was timed; a tally, if it had one, is in fewer steps than the others.
         let tallied = (interval.first_step + steps).is_multiple_of(u64::from(plan.tally_every));
         for &(name, seconds) in timed {
             let share = if name == "tally" && tallied { u64::from(samples) } else { steps };
-            match self.phases.iter_mut().find(|(known, ..)| known == name) {
+            match self.counted.phases.iter_mut().find(|(known, ..)| known == name) {
                 Some((_, total, count)) => {
                     *total += seconds * share as f64;
                     *count += share;
                 }
-                None => self.phases.push((name.to_owned(), seconds * share as f64, share)),
+                None => self.counted.phases.push((name.to_owned(), seconds * share as f64, share)),
             }
         }
     }
 
-    pub fn state(&self) -> AccountState {
-        AccountState {
-            start: self.start,
-            before: self.before,
-            injected_momentum: self.injected_momentum,
-            energy_entered: self.energy_entered,
-            particles: self.particles,
-            particle_steps: self.particle_steps,
-            collisions: self.collisions,
-            bounces: self.bounces,
-            step_range: self.step_range,
-            steps: self.steps,
-            lost: self.lost,
-            sampled: self.sampled,
-            truncated: self.truncated,
-            overshoot: self.overshoot,
-            phases: self.phases.clone(),
-        }
+    pub fn state(&self) -> &AccountState {
+        &self.counted
     }
 
     /// # Errors
@@ -263,49 +231,47 @@ impl Account {
         if state.particles > plan.particles {
             return Err(StateError::Impossible { what: "there are more particles than in the whole run" });
         }
-        let AccountState { start, injected_momentum, particles, particle_steps, collisions, bounces, .. } = *state;
-        let AccountState { step_range, steps, lost, sampled, truncated, overshoot, .. } = *state;
-        (self.start, self.injected_momentum, self.particles) = (start, injected_momentum, particles);
-        (self.particle_steps, self.collisions, self.bounces) = (particle_steps, collisions, bounces);
-        (self.step_range, self.steps, self.lost, self.sampled) = (step_range, steps, lost, sampled);
-        (self.truncated, self.overshoot) = (truncated, overshoot);
-        (self.before, self.energy_entered) = (state.before, state.energy_entered);
-        self.phases.clone_from(&state.phases);
+        self.counted.clone_from(state);
         Ok(())
     }
 
     pub fn phases(&self) -> PhaseTable {
-        PhaseTable { rows: self.phases.clone(), steps: self.steps, particle_steps: self.particle_steps }
+        PhaseTable {
+            rows: self.counted.phases.clone(),
+            steps: self.counted.steps,
+            particle_steps: self.counted.particle_steps,
+        }
     }
 
     /// The account at the end; `outside` particles were found in no gas.
     pub fn close(&self, model: &Model, inflow: &Inflow, tallies: &Tallies, outside: u64, averages: &Averages) -> Audit {
         let end = self.totals(tallies);
         let plan = &model.plan;
-        let (entered, before) = (self.entered(inflow), self.before);
+        let (entered, before) = (self.entered(inflow), self.counted.before);
         let surfaces = !model.scene.surfaces.is_empty();
-        let events = (self.lost + self.sampled) as f64;
+        let events = (self.counted.lost + self.counted.sampled) as f64;
         Audit {
-            particles_initial: self.start.number,
+            particles_initial: self.counted.start.number,
             particles_injected: entered.number - before.number,
             particles_vented: 0,
             particles_inside: end.number - outside,
             particles_outside: outside,
-            mass_start: self.start.mass,
+            mass_start: self.counted.start.mass,
             mass_injected: entered.mass - before.mass,
             mass_vented: 0.0,
             mass_end: end.mass,
-            momentum_start: self.start.momentum,
-            momentum_injected: self.injected_momentum,
+            momentum_start: self.counted.start.momentum,
+            momentum_injected: self.counted.injected_momentum,
             momentum_to_walls: surfaces.then(|| averages.total_impulse()),
             momentum_end: end.momentum,
-            energy_start: self.start.energy,
+            energy_start: self.counted.start.energy,
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented: 0.0,
             energy_end: end.energy,
-            lost_collision_fraction: (plan.method != Method::None && events > 0.0).then(|| self.lost as f64 / events),
-            wall_overshoot: f64::from(self.overshoot) * plan.grid.quantum(),
-            truncated_flights: self.truncated,
+            lost_collision_fraction: (plan.method != Method::None && events > 0.0)
+                .then(|| self.counted.lost as f64 / events),
+            wall_overshoot: f64::from(self.counted.overshoot) * plan.grid.quantum(),
+            truncated_flights: self.counted.truncated,
             overflows: Vec::new(),
         }
     }

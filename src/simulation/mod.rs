@@ -34,7 +34,7 @@ pub use model::{Model, ModelError, chamber_of};
 pub use reference::reference;
 pub use refine::{RefineError, RefineReport, Refined, refine};
 pub use run::{Moment, Observer, Options, Outcome, Simulation};
-pub use run_state::{RunState, StateError as RunStateError};
+pub use run_state::{RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;

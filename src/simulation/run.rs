@@ -310,7 +310,7 @@ impl<'a> Simulation<'a> {
             clock: self.clock.state(),
             ladder: self.ladder.state(),
             averages: self.averages.state(),
-            account: self.account.state(),
+            account: self.account.state().clone(),
             inflow: self.inflow.state(),
             demands: self.demands.iter().copied().collect(),
             submitted: self.submitted as u64,
@@ -403,12 +403,12 @@ impl<'a> Simulation<'a> {
             audit,
             phases: self.account.phases(),
             steps: self.clock.steps,
-            particle_steps: self.account.particle_steps,
-            collisions: self.account.collisions,
-            bounces: self.account.bounces,
+            particle_steps: self.account.state().particle_steps,
+            collisions: self.account.state().collisions,
+            bounces: self.account.state().bounces,
             time: self.clock.time(),
             repeated: self.repeated,
-            step_range: self.account.step_range,
+            step_range: self.account.state().step_range,
             stepping_seconds,
         })
     }
@@ -591,13 +591,13 @@ impl<'a> Simulation<'a> {
         observer.progress(
             self.read_until,
             interval.first_step + u64::from(interval.steps),
-            self.account.particle_steps,
+            self.account.state().particle_steps,
         );
         Ok(())
     }
 
     fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
-        let row = self.averages.row(self.read_until, self.account.particles);
+        let row = self.averages.row(self.read_until, self.account.state().particles);
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
         while self.next_row <= self.read_until * (1.0 + 1e-9) {
             self.next_row += spacing;

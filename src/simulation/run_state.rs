@@ -10,6 +10,21 @@ use super::averages::AveragesState;
 use super::clock::ClockState;
 use super::ladder::{Demand, LadderState};
 use crate::gas::{InflowState, InflowStateError};
+use crate::output::{Checkpoint, CheckpointError};
+use crate::subdomain::GpuParticle;
+
+/// All particles of a checkpoint, by id.
+///
+/// # Errors
+/// If a file is not as it was written.
+pub fn particles_of(checkpoint: &Checkpoint) -> Result<Vec<GpuParticle>, CheckpointError> {
+    let mut all: Vec<GpuParticle> = Vec::new();
+    for file in 0..checkpoint.particle_files() {
+        all.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(&checkpoint.particles(file)?));
+    }
+    all.sort_unstable_by_key(GpuParticle::id);
+    Ok(all)
+}
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunState {
@@ -163,7 +178,7 @@ mod tests {
             clock: Clock::new(&plan).state(),
             ladder: Ladder::new(&plan, Vec::new()).state(),
             averages: averages(&plan).state(),
-            account: account.state(),
+            account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
             submitted: 5,
@@ -177,7 +192,7 @@ mod tests {
         assert_eq!(postcard::to_stdvec(&read).unwrap(), postcard::to_stdvec(&state).unwrap());
         let mut restored = Account::new(&plan);
         restored.restore(&plan, &read.account).unwrap();
-        assert_eq!(restored.state(), state.account);
+        assert_eq!(*restored.state(), state.account);
         // That of a run with another number of particles is refused.
         let other = Plan { initial_particles: plan.initial_particles + 1, ..plan.clone() };
         assert!(Account::new(&other).restore(&other, &read.account).is_err());

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::output::{Checkpoint, latest};
 use crate::scene::parse;
-use crate::simulation::{Clock, Model, ModelError, RunState};
+use crate::simulation::{Clock, Model, ModelError, RunState, particles_of};
 use crate::subdomain::GpuParticle;
 
 use super::StudyError;
@@ -25,8 +25,7 @@ pub struct Moment {
 
 impl Moment {
     /// # Errors
-    /// If there is no sound checkpoint, or it is of another scene than `path` says. Numbers of particles, seeds and
-    /// output may differ.
+    /// If there is no sound checkpoint, or its scene cannot be planned as it was.
     pub fn read(from: &Path) -> Result<Moment, StudyError> {
         let checkpoint = Checkpoint::open(&latest(from)?)?;
         let name = checkpoint.path().join("scene.toml").display().to_string();
@@ -35,11 +34,7 @@ impl Moment {
         let model = Model::new(scene).map_err(unsound)?;
         checkpoint.check_plan(&model.plan.to_toml().map_err(StudyError::PlanToml)?)?;
         let (_, run) = checkpoint.state()?;
-        let mut particles: Vec<GpuParticle> = Vec::new();
-        for index in 0..checkpoint.particle_files() {
-            particles.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(&checkpoint.particles(index)?));
-        }
-        particles.sort_unstable_by_key(GpuParticle::id);
+        let particles = particles_of(&checkpoint)?;
         let (step, time) = (checkpoint.manifest().step, checkpoint.manifest().time);
         Ok(Moment { from: from.to_path_buf(), model, run, particles, step, time })
     }

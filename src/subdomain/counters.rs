@@ -63,4 +63,28 @@ impl Counters {
             near_walls: words[NEAR_WALLS],
         }
     }
+
+    /// What ranks add up, but for the collisions, which have two words.
+    pub(super) fn summed(&mut self) -> [&mut u32; 13] {
+        [
+            &mut self.lost,
+            &mut self.sampled,
+            &mut self.outside,
+            &mut self.truncated,
+            &mut self.tally_overflow,
+            &mut self.capacity_failed,
+            &mut self.bounces,
+            &mut self.blocked,
+            &mut self.strays,
+            &mut self.missing,
+            &mut self.moved,
+            &mut self.candidates,
+            &mut self.near_walls,
+        ]
+    }
+
+    /// Of what ranks take the largest.
+    pub(super) fn largest(&mut self) -> [&mut u32; 2] {
+        [&mut self.most_neighbours, &mut self.overshoot]
+    }
 }

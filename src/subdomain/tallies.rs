@@ -86,101 +86,50 @@ impl Tallies {
 impl Tallies {
     /// What ranks add up, and of what they take the largest.
     pub fn to_words(&self) -> (Vec<u64>, Vec<u64>) {
-        let Counters {
-            collisions,
-            lost,
-            sampled,
-            most_neighbours,
-            outside,
-            overshoot,
-            truncated,
-            tally_overflow,
-            capacity_failed,
-            bounces,
-            blocked,
-            strays,
-            missing,
-            moved,
-            candidates,
-            near_walls,
-        } = self.counters;
-        let mut sums = vec![collisions];
-        let counts = [
-            lost,
-            sampled,
-            outside,
-            truncated,
-            tally_overflow,
-            capacity_failed,
-            bounces,
-            blocked,
-            strays,
-            missing,
-            moved,
-            candidates,
-            near_walls,
-        ];
-        sums.extend(counts.map(u64::from));
-        for zone in &self.zones {
-            let [x, y, z] = zone.velocity;
-            sums.extend([zone.number, x, y, z, zone.kinetic, zone.spin].map(i64::cast_unsigned));
-        }
-        for surface in &self.surfaces {
-            let [x, y, z] = surface.impulse;
-            sums.extend([x, y, z, surface.normal, surface.hits].map(i64::cast_unsigned));
-        }
-        sums.extend(self.blocks.iter().flat_map(|block| [block.number, block.energy]));
-        sums.extend(self.fast.iter().map(|&count| u64::from(count)));
-        (sums, vec![u64::from(most_neighbours), u64::from(overshoot)])
+        let mut own = self.clone();
+        let mut sums = vec![own.counters.collisions];
+        sums.extend(own.counters.summed().map(|count| u64::from(*count)));
+        sums.extend(own.signed().map(|sum| sum.cast_unsigned()));
+        sums.extend(own.blocks.iter().flat_map(|block| [block.number, block.energy]));
+        sums.extend(own.fast.iter().map(|&count| u64::from(count)));
+        (sums, own.counters.largest().map(|count| u64::from(*count)).to_vec())
     }
 
     /// The tallies of all ranks, in the shape of this rank's, from the words' sums and maxima; `None` if the
     /// words are not of this shape.
     pub fn from_words(&self, sums: &[u64], maxima: &[u64]) -> Option<Tallies> {
         let mut sums = sums.iter().copied();
-        let mut next = || sums.next();
         let count = |word: u64| u32::try_from(word).unwrap_or(u32::MAX);
-        let counters = Counters {
-            collisions: next()?,
-            lost: count(next()?),
-            sampled: count(next()?),
-            outside: count(next()?),
-            truncated: count(next()?),
-            tally_overflow: count(next()?),
-            capacity_failed: count(next()?),
-            bounces: count(next()?),
-            blocked: count(next()?),
-            strays: count(next()?),
-            missing: count(next()?),
-            moved: count(next()?),
-            candidates: count(next()?),
-            near_walls: count(next()?),
-            most_neighbours: count(*maxima.first()?),
-            overshoot: count(*maxima.get(1)?),
-        };
-        let mut all = Tallies { counters, ..self.clone() };
-        for zone in &mut all.zones {
-            zone.number = next()?.cast_signed();
-            for velocity in &mut zone.velocity {
-                *velocity = next()?.cast_signed();
-            }
-            zone.kinetic = next()?.cast_signed();
-            zone.spin = next()?.cast_signed();
+        let mut all = self.clone();
+        all.counters.collisions = sums.next()?;
+        for word in all.counters.summed() {
+            *word = count(sums.next()?);
         }
-        for surface in &mut all.surfaces {
-            for impulse in &mut surface.impulse {
-                *impulse = next()?.cast_signed();
-            }
-            surface.normal = next()?.cast_signed();
-            surface.hits = next()?.cast_signed();
+        for (word, &most) in all.counters.largest().into_iter().zip(maxima.get(..2)?) {
+            *word = count(most);
+        }
+        for word in all.signed() {
+            *word = sums.next()?.cast_signed();
         }
         for block in &mut all.blocks {
-            block.number = next()?;
-            block.energy = next()?;
+            (block.number, block.energy) = (sums.next()?, sums.next()?);
         }
         for fast in &mut all.fast {
-            *fast = count(next()?);
+            *fast = count(sums.next()?);
         }
-        next().is_none().then_some(all)
+        sums.next().is_none().then_some(all)
+    }
+
+    /// The sums of zones and surfaces.
+    fn signed(&mut self) -> impl Iterator<Item = &mut i64> {
+        let zones = self.zones.iter_mut().flat_map(|zone| {
+            let ZoneSum { number, velocity: [x, y, z], kinetic, spin } = zone;
+            [number, x, y, z, kinetic, spin]
+        });
+        let surfaces = self.surfaces.iter_mut().flat_map(|surface| {
+            let SurfaceSum { impulse: [x, y, z], normal, hits } = surface;
+            [x, y, z, normal, hits]
+        });
+        zones.chain(surfaces)
     }
 }

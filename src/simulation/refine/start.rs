@@ -35,7 +35,7 @@ pub fn state(
         clock: clock.state(),
         ladder: ladder.state(),
         averages: AveragesState::starting_at(clock.time(), zones, plan.gases.len(), patches(model).1.len()),
-        account: account.state(),
+        account: account.state().clone(),
         inflow: inflow.state(),
         demands: Vec::new(),
         submitted: 0,
