@@ -1,0 +1,118 @@
+//! What a run is asked for, what it tells while it goes, and what it leaves.
+
+use crate::output::{Audit, PhaseTable};
+use crate::ranks::Communicator;
+use crate::subdomain::GpuParticle;
+
+use super::SimulationError;
+use super::averages::Row;
+use super::balance::{BalanceOptions, BalanceRecord};
+use super::exchange::Traffic;
+use super::interrupt::Request;
+use super::run_state::RunState;
+use super::setup::Shuffle;
+
+/// What does not change a result.
+#[derive(Clone, Copy, Default)]
+pub struct Options<'a> {
+    /// Steps per submission; `None` for a whole interval.
+    pub batch: Option<u32>,
+    /// Reorders the initial particles.
+    pub shuffle: Option<&'a Shuffle>,
+    /// Stop after this many steps (at the end of an interval); the rest of the scene is not simulated.
+    pub stop_after_steps: Option<u64>,
+    /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
+    pub checkpoint_at_stop: bool,
+    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
+    /// many layers of cells.
+    pub halo_rounds: Option<u32>,
+    pub balance: BalanceOptions,
+}
+
+/// Is told of the run as it goes.
+pub trait Observer {
+    /// A row of the history.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn row(&mut self, _row: &Row) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    /// The particles by id at a time (s), and the rank that owns each.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn snapshot(&mut self, _time: f64, _particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
+    fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
+
+    /// What the ranks had to do in an interval.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn balance(&mut self, _record: &BalanceRecord) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
+    fn request(&mut self, _steps: u64) -> Request {
+        Request::None
+    }
+
+    /// A moment at which the run can be continued, on every rank. Collective.
+    ///
+    /// # Errors
+    /// What stops the run.
+    fn checkpoint(&mut self, _moment: &Moment<'_>) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    /// Totals so far: simulated time (s), steps, particle-steps.
+    fn progress(&mut self, _time: f64, _steps: u64, _particle_steps: u64) {}
+}
+
+impl Observer for () {}
+
+/// All that a run needs to be continued, on one rank.
+pub struct Moment<'a> {
+    pub step: u64,
+    /// s.
+    pub time: f64,
+    /// Particles, those that entered and the initial ones.
+    pub particles: u64,
+    pub state: &'a RunState,
+    /// Of this rank.
+    pub own: &'a [GpuParticle],
+    pub comm: &'a dyn Communicator,
+    /// The run stops here because it was asked to.
+    pub stopping: bool,
+}
+
+/// What a run leaves.
+pub struct Outcome {
+    /// By id; on rank 0.
+    pub particles: Vec<GpuParticle>,
+    /// The rank that owned each of them.
+    pub owners: Vec<u32>,
+    pub audit: Audit,
+    pub phases: PhaseTable,
+    pub steps: u64,
+    pub particle_steps: u64,
+    pub collisions: u64,
+    pub bounces: u64,
+    /// s; the end time unless the run was stopped earlier.
+    pub time: f64,
+    /// Intervals that were run again with larger buffers.
+    pub repeated: u32,
+    /// Smallest and largest step taken, s.
+    pub step_range: [f64; 2],
+    /// What this rank sent and waited for.
+    pub traffic: Traffic,
+    pub balance: Vec<BalanceRecord>,
+    /// Wall time of the steps, s: without the set-up, and without the account at the end.
+    pub stepping_seconds: f64,
+}

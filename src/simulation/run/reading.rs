@@ -1,0 +1,160 @@
+//! What a rank reads of the intervals that it submitted, one or two of them late: their tallies, summed over the
+//! ranks, go into the account, the averages, the step size and the balance.
+
+use crate::simulation::SimulationError;
+use crate::simulation::balance::Load;
+use crate::simulation::exchange::Traffic;
+use crate::simulation::interrupt::Request;
+use crate::simulation::interval::{InFlight, Interval, Pending};
+use crate::simulation::observer::Observer;
+use crate::subdomain::{Remembered, Tallies};
+
+use super::Simulation;
+
+impl Simulation<'_> {
+    /// Takes an interval's tallies from the device and starts to sum them over the ranks.
+    pub(super) fn reduce(&mut self, mut flight: InFlight) -> Result<InFlight, SimulationError> {
+        if let Pending::OnDevice(readback) = flight.tallies {
+            let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+            let (mut sums, mut maxima) = own.to_words();
+            maxima.push(self.wish.weight());
+            let seconds = self.step_seconds(&flight.phases, &stamps, &flight.traffic);
+            sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
+            let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
+            flight.tallies = Pending::Reducing(Box::new(own), stamps, reduction);
+        }
+        Ok(flight)
+    }
+
+    /// Device time of the timed step, s; on a device that does not time, from submissions to their ends, of the
+    /// mean step of the interval.
+    fn step_seconds(&self, phases: &[&'static str], stamps: &[u8], traffic: &Traffic) -> f64 {
+        match &self.timer {
+            Some(timer) => timer.seconds(phases, stamps).iter().map(|(_, seconds)| seconds).sum(),
+            None => traffic.device_seconds / traffic.steps.max(1) as f64,
+        }
+    }
+
+    /// The tallies of all ranks, the stamps of this one, and every rank's load.
+    fn collect(&mut self, tallies: Pending) -> Result<(Tallies, Vec<u8>, Vec<Load>), SimulationError> {
+        match tallies {
+            Pending::OnDevice(readback) => {
+                let (own, stamps) = self.subdomain.finish_readback(self.device, readback)?;
+                self.request = self.request.max(self.wish);
+                Ok((own, stamps, Vec::new()))
+            }
+            Pending::Reducing(own, stamps, reduction) => {
+                let (mut sums, maxima) = self.ranks.comm().finish_reduction(reduction)?;
+                let loads = Load::from_words(&mut sums, self.ranks.comm().size());
+                self.request = self.request.max(Request::of_weight(maxima.get(2).copied().unwrap_or(0)));
+                Ok((all_tallies(&own, &sums, &maxima)?, stamps, loads))
+            }
+        }
+    }
+
+    pub(super) fn read_all(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        while !self.flying.is_empty() {
+            self.read_oldest(observer)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn read_oldest(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        let Some(mut flight) = self.flying.pop_front() else {
+            return Ok(());
+        };
+        if self.ranks.comm().size() > 1 {
+            flight = self.reduce(flight)?;
+        }
+        let InFlight { interval, before, tallies, phases, .. } = flight;
+        let (tallies, stamps, loads) = self.collect(tallies)?;
+        let counters = &tallies.counters;
+        if counters.most_neighbours > 0 || counters.strays > 0 {
+            return self.run_again(interval, before, counters.most_neighbours, counters.strays > 0);
+        }
+        self.spare.push(before.particles);
+        let duration = interval.dt * f64::from(interval.steps);
+        self.read_until += duration;
+        let plan = &self.model.plan;
+        let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
+        self.account.check(plan, &tallies, &interval).map_err(lost)?;
+        let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
+        let samples = interval.samples(plan);
+        self.account.add(plan, &tallies, &interval, samples, &timed);
+        self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        if self.decomposition.is_some() {
+            let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
+            self.tuner.measured(slowest, interval.steps, interval.particles);
+        }
+        if !loads.is_empty() {
+            self.balance.take(interval.first_step, interval.steps, self.read_until, loads);
+            if let Some(record) = self.balance.latest() {
+                observer.balance(record)?;
+            }
+        }
+        self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
+        if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
+            self.emit_row(observer)?;
+        }
+        observer.progress(
+            self.read_until,
+            interval.first_step + u64::from(interval.steps),
+            self.account.state().particle_steps,
+        );
+        Ok(())
+    }
+
+    pub(super) fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        let row = self.averages.row(self.read_until, self.account.state().particles);
+        let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
+        while self.next_row <= self.read_until * (1.0 + 1e-9) {
+            self.next_row += spacing;
+        }
+        observer.row(&row)
+    }
+
+    /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
+    /// everyone as a peer if particles strayed. All ranks do, since they see the sums.
+    fn run_again(
+        &mut self,
+        first: Interval,
+        before: Remembered,
+        wanted: u32,
+        strayed: bool,
+    ) -> Result<(), SimulationError> {
+        self.repeated += 1;
+        self.tuner.disturbed();
+        tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
+        let mut later = Vec::new();
+        for flight in std::mem::take(&mut self.flying) {
+            match flight.tallies {
+                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
+                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
+            }
+            later.push((flight.interval, flight.before));
+        }
+        self.subdomain.restore(self.device, &before);
+        self.subdomain.make_room(self.device, 0, 0, wanted)?;
+        if let Some(decomposition) = &mut self.decomposition {
+            // The cuts may have changed since; the first exchange brings the particles home.
+            decomposition.scatter();
+            if strayed {
+                decomposition.widen();
+            }
+        }
+        self.spare.push(before.particles);
+        self.submit(first)?;
+        for (interval, before) in later {
+            self.spare.push(before.particles);
+            self.submit(interval)?;
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn all_tallies(own: &Tallies, sums: &[u64], maxima: &[u64]) -> Result<Tallies, SimulationError> {
+    own.from_words(sums, maxima).ok_or_else(|| SimulationError::Lost {
+        time: 0.0,
+        what: "the ranks' tallies do not have the same shape".into(),
+    })
+}
