@@ -95,8 +95,7 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
     let layers = layers(&mut stream);
     let cells = cloud.world.cells();
     // In the order of the cells, as the search has them.
-    let mut middles: Vec<[u32; 3]> =
-        cloud.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
+    let mut middles: Vec<[u32; 3]> = cloud.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
     middles.sort_by_key(|&p| cells.index(cells.cell(p)));
     let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
