@@ -67,7 +67,7 @@ pub fn ratios(run: &Run) -> [(f64, f64); 2] {
 }
 
 pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let steps = if effort == Effort::Quick { 4000 } else { 10_000 };
+    let steps = if effort == Effort::Quick { 5600 } else { 12_000 };
     let [spin, gases] = ratios(&mixture(device, 3, 0.1, steps)?);
     Ok(vec![Check::of("T_int/T_tr", 1.0, spin, 0.01), Check::of("T1/T2, masses 1:7", 1.0, gases, 0.01)])
 }
