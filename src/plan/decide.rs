@@ -60,7 +60,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    let warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
     Ok(Plan {
         method,
         particles,
@@ -97,11 +97,7 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
         Some(method) => (method, "asked for"),
         None => (Method::ClosestApproach, "right for jets and vents, with the ideal gas's pressure at any occupancy"),
     };
-    let value = match method {
-        Method::ClosestApproach => "closest-approach",
-        Method::None => "none",
-    };
-    reasons.push(Reason { quantity: "method".into(), value: value.into(), why: why.into() });
+    reasons.push(Reason { quantity: "method".into(), value: method.name().into(), why: why.into() });
     method
 }
 

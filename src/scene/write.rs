@@ -139,8 +139,7 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     let model = &scene.model;
     out.header("[model]");
     match model.method {
-        Some(Method::ClosestApproach) => out.text("method", "closest-approach"),
-        Some(Method::None) => out.text("method", "none"),
+        Some(method) => out.text("method", method.name()),
         None => {}
     }
     if let Some(particles) = model.particles {

@@ -32,6 +32,7 @@ pub fn step(
     subdomain.scan(rec, slot);
     subdomain.sort(rec, slot);
     subdomain.neighbours(rec, slot);
+    subdomain.collide(rec, slot);
     for round in 0..rounds {
         exchange.updates(subdomain, rec, slot, round)?;
         subdomain.choose(rec, slot, round);

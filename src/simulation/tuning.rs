@@ -24,12 +24,19 @@ pub struct Tuner {
 impl Tuner {
     /// `fixed`: no trials.
     pub fn new(rounds: u32, fixed: Option<u32>) -> Tuner {
-        let rounds = rounds.max(1);
+        if rounds == 0 {
+            // Nothing is exchanged between rounds.
+            return Tuner::of(vec![0]);
+        }
         let powers = (0..).map(|power| 1 << power).take_while(|&candidate| candidate < rounds);
         let candidates: Vec<u32> = match fixed {
             Some(fixed) => vec![fixed.clamp(1, rounds)],
             None => powers.chain([rounds]).collect(),
         };
+        Tuner::of(candidates)
+    }
+
+    fn of(candidates: Vec<u32>) -> Tuner {
         Tuner {
             fastest: vec![f64::INFINITY; candidates.len()],
             candidates,
