@@ -183,14 +183,17 @@ mod tests {
     #[test]
     fn gas_around_an_edge_is_one_part() {
         let (_, grid, gas) = plated(0.002, 0.06);
-        let at_edge = |place: [f64; 3]| (place[0] - 0.17).abs() < 0.05 && ((place[2] - 0.15).abs() - 0.06).abs() < 0.025;
-        let edges: Vec<_> = gas.parted.iter().filter(|(_, parts)| parts.len() == 1 && at_edge(parts[0].place)).collect();
+        let at_edge =
+            |place: [f64; 3]| (place[0] - 0.17).abs() < 0.05 && ((place[2] - 0.15).abs() - 0.06).abs() < 0.025;
+        let edges: Vec<_> =
+            gas.parted.iter().filter(|(_, parts)| parts.len() == 1 && at_edge(parts[0].place)).collect();
         assert!(!edges.is_empty());
         for (cell, parts) in edges {
             let share = parts[0].volume / gas.volume[*cell];
             assert!(share > 0.3 && share <= 1.0, "{share}");
         }
-        let hidden = gas.parted.iter().filter(|(cell, parts)| parts.len() == 1 && parts[0].volume < 0.95 * gas.volume[*cell]);
+        let hidden =
+            gas.parted.iter().filter(|(cell, parts)| parts.len() == 1 && parts[0].volume < 0.95 * gas.volume[*cell]);
         assert!(hidden.count() > 0, "at {}", grid.cell);
     }
 }

@@ -7,7 +7,9 @@
 use crate::gpu::Device;
 use crate::partition::By;
 use crate::ranks::{Communicator, Pace, in_process};
-use crate::simulation::{BalanceMode, BalanceOptions, Model, Options, RunState, Setup, Simulation, SimulationError};
+use crate::simulation::{
+    BalanceMode, BalanceOptions, HaloOptions, Model, Options, RunState, Setup, Simulation, SimulationError,
+};
 
 use super::stopwatch::{Event, Lap, Stopwatch, laps};
 use super::{Strategy, StudyError};
@@ -29,7 +31,7 @@ pub struct Effort {
     /// Intervals that are measured, after those that bring the state about.
     pub intervals: usize,
     pub by: By,
-    pub halo_rounds: Option<u32>,
+    pub halo: HaloOptions,
 }
 
 /// A step of one subdomain, measured alone.
@@ -84,7 +86,7 @@ pub fn emulate(
         Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
     };
     let balance = BalanceOptions { mode, by: effort.by, ..BalanceOptions::default() };
-    let options = Options { balance, halo_rounds: effort.halo_rounds, ..Options::default() };
+    let options = Options { balance, halo: effort.halo, ..Options::default() };
     let intervals = settling + effort.intervals;
     let mut ranks = Vec::new();
     for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {

@@ -18,7 +18,9 @@ pub struct CellTable {
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("walls part the gas of {cells} cells, more than the {limit} parts that a cell can name; take larger cells (fewer `particles`) or the method `closest-approach`")]
+#[error(
+    "walls part the gas of {cells} cells, more than the {limit} parts that a cell can name; take larger cells (fewer `particles`) or the method `closest-approach`"
+)]
 pub struct TooManyParts {
     cells: usize,
     limit: usize,
