@@ -2,7 +2,8 @@
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
-// cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero.
+// cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
+// back along the line of their centres.
 //
 // Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
 // and appends the particles that this may make choose otherwise to `rechoose`, and those that other
@@ -10,6 +11,8 @@
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 
 override DIAMETER: f32;
+// Rigid spheres, the method `hard-sphere`.
+override RIGID: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
@@ -25,6 +28,16 @@ override DIAMETER: f32;
 fn perpendicular(u: vec3<f32>) -> vec3<f32> {
     let axis = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(u.x) < 0.6);
     return normalize(cross(axis, u));
+}
+
+// The new relative velocity of rigid spheres with `r` between their centres and relative velocity `g`: the part of its
+// direction along r is turned back.
+fn thrown_back(r: vec3<f32>, g: vec3<f32>, speed: f32) -> vec3<f32> {
+    let along = g / length(g);
+    let r2 = dot(r, r);
+    // Two at one place have no line of centres.
+    let back = select(-along, normalize(along - (2.0 * dot(along, r) / max(r2, 1e-37)) * r), r2 > 0.0);
+    return speed * back;
 }
 
 // The new relative velocity of a pair with miss vector `miss` (r at the closest approach) and relative velocity
@@ -112,7 +125,12 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         draw = philox(vec4<u32>(step.index, step.round * 2u, ids), key);
     }
     let exchange = exchanged(i, j, mu, length(g), draw, draw2.xy);
-    let relative = turned(miss, g, exchange.speed, draw2.z);
+    var relative: vec3<f32>;
+    if (RIGID) {
+        relative = thrown_back(miss, g, exchange.speed);
+    } else {
+        relative = turned(miss, g, exchange.speed, draw2.z);
+    }
     let old_i = i.velocity;
     let old_j = j.velocity;
     let after = deflected(i, j, mu, relative - g, exchange);

@@ -4,7 +4,7 @@ use super::amounts::{Amounts, highest_temperature};
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::population::{Population, openings, wanted};
 use super::render::significant;
-use super::resolution::{DEFAULT_OCCUPANCY, Extreme, MeanState, Resolution};
+use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::kinetics;
@@ -26,7 +26,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
     let amounts = Amounts::of(scene, measured)?;
-    let wanted_occupancy = scene.model.occupancy.unwrap_or(DEFAULT_OCCUPANCY);
+    let wanted_occupancy = scene.model.occupancy.unwrap_or_else(|| default_occupancy(method));
     let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
     let population = Population::count(scene, &amounts, wanted)?;
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());

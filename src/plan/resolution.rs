@@ -11,7 +11,9 @@ pub const PER_CELL: f64 = 6.0;
 /// Largest x of the method `cell`.
 const CELL_LIMIT: f64 = 2.0;
 /// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
-pub const DEFAULT_OCCUPANCY: f64 = 0.12;
+const DEFAULT_OCCUPANCY: f64 = 0.12;
+/// Of rigid spheres, whose pressure is 4 % off there.
+const RIGID_OCCUPANCY: f64 = 0.01;
 const DEFAULT_ROUNDS: u32 = 8;
 /// A cell edge must not fall short of its rule by rounding.
 const EDGE_MARGIN: f64 = 1.0001;
@@ -19,6 +21,16 @@ const EDGE_MARGIN: f64 = 1.0001;
 const FASTEST_PAIR: f64 = 6.0;
 /// 99.9 % of the molecules are slower than this many sqrt(kT/m).
 const FAST_PARTICLE: f64 = 4.04;
+/// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
+const SURELY_FAST: f64 = 4.4;
+
+/// That of a scene that says nothing.
+pub fn default_occupancy(method: Method) -> f64 {
+    match method {
+        Method::HardSphere => RIGID_OCCUPANCY,
+        Method::ClosestApproach | Method::Cell | Method::None => DEFAULT_OCCUPANCY,
+    }
+}
 
 /// A uniform state of the modelled gas.
 #[derive(Debug, Clone, Copy)]
@@ -74,11 +86,14 @@ impl Resolution {
         match method {
             Method::None => Ok(Self::free_flight(request, states[1], extreme, end_time, reasons)),
             Method::Cell => Ok(Self::within_cells(request, states, extreme, end_time, reasons)),
-            Method::ClosestApproach => Self::collisional(request, states, extreme, end_time, reasons),
+            Method::ClosestApproach | Method::HardSphere => {
+                Self::in_rounds(method, request, states, extreme, end_time, reasons)
+            }
         }
     }
 
-    fn collisional(
+    fn in_rounds(
+        method: Method,
         request: &ModelRequest,
         states: [MeanState; 2],
         extreme: Extreme,
@@ -89,7 +104,7 @@ impl Resolution {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
         let density = states[1].number_density;
-        let (diameter, why) = diameter(request, density);
+        let (diameter, why) = diameter(method, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
 
         let rounds = request.rounds.unwrap_or(DEFAULT_ROUNDS);
@@ -122,7 +137,12 @@ impl Resolution {
         let (time_step, steps) = divide(end_time, wanted);
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
         let reach = 0.5 * fastest * time_step;
-        let cell = EDGE_MARGIN * (diameter * diameter + reach * reach).sqrt();
+        // At its closest approach a pair is perpendicular to its relative velocity; rigid spheres meet earlier.
+        let edge = match method {
+            Method::HardSphere => diameter + reach,
+            _ => (diameter * diameter + reach * reach).sqrt(),
+        };
+        let cell = EDGE_MARGIN * edge;
         because(
             "cell",
             format!("{} mm", significant(1e3 * cell)),
@@ -152,7 +172,7 @@ impl Resolution {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
         let density = states[1].number_density;
-        let (diameter, why) = diameter(request, density);
+        let (diameter, why) = diameter(Method::Cell, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
         let path = kinetics::mean_free_path(density, diameter);
         let few = libm::cbrt(PER_CELL / density);
@@ -168,11 +188,11 @@ impl Resolution {
             .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
             .fold(f64::INFINITY, f64::min);
         let speed = FAST_PARTICLE * extreme.0.sqrt();
-        let (by_cell, by_rate) = (cell / speed, CELL_LIMIT * tau);
+        let (by_cell, by_rate) = (cell / (SURELY_FAST * extreme.0.sqrt()), CELL_LIMIT * tau);
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None if by_cell <= by_rate => {
-                (by_cell, "99.9 % of the hottest particles fly no further than a cell".to_string())
+                (by_cell, "99.97 % of the hottest particles fly no further than a cell".to_string())
             }
             None => (by_rate, format!("{CELL_LIMIT} mean collision times")),
         };
@@ -228,12 +248,17 @@ impl Resolution {
 }
 
 /// The collision diameter, m, and why.
-fn diameter(request: &ModelRequest, density: f64) -> (f64, String) {
+fn diameter(method: Method, request: &ModelRequest, density: f64) -> (f64, String) {
+    let unasked = default_occupancy(method);
     match (request.diameter, request.occupancy) {
         (Some(diameter), _) => (diameter, "asked for".to_string()),
         (None, Some(f)) => (kinetics::diameter(density, f), format!("occupancy {f} asked for")),
+        (None, None) if method == Method::HardSphere => (
+            kinetics::diameter(density, unasked),
+            format!("occupancy {unasked}: at more the pressure is far from the ideal gas's"),
+        ),
         (None, None) => (
-            kinetics::diameter(density, DEFAULT_OCCUPANCY),
+            kinetics::diameter(density, unasked),
             "0.61 of the mean spacing at the end (occupancy 0.12): more buys almost no resolution".to_string(),
         ),
     }

@@ -4,6 +4,7 @@ use super::population::WANTED_KNUDSEN;
 use super::render::significant;
 use super::resolution::Resolution;
 use super::{Measured, OpeningPlan};
+use crate::gas::kinetics;
 use crate::scene::Method;
 
 const FEW_PARTICLES: u64 = 1000;
@@ -60,6 +61,14 @@ pub fn warnings(
         ));
     }
     let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
+    if method == Method::HardSphere {
+        warnings.push(format!(
+            "rigid spheres at occupancy {} press {:.1} % harder than the ideal gas (Carnahan-Starling), more in denser gas: \
+             `hard-sphere` is for comparison with legacy results only",
+            significant(occupancy),
+            100.0 * (kinetics::rigid_compressibility(occupancy) - 1.0)
+        ));
+    }
     if method.has_rounds() && resolution.diameter > smallest {
         warnings.push(format!(
             "the collision diameter of {} mm is larger than the smallest passage, {} mm: gas on its two sides will \

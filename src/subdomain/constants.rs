@@ -60,6 +60,7 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("CHUNK", CHUNK as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
+        ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
         ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),
         ("SEED_HIGH", seed_high(PURPOSE_COLLISION)),
