@@ -101,7 +101,7 @@ fn the_rate_beside_a_thin_plate_is_that_of_kinetic_theory() {
 
 #[test]
 fn spin_and_both_gases_come_to_one_temperature() {
-    let run = mixture_by("cell", 0, 0.5, 640);
+    let run = mixture_by("cell", 0, 0.5, 1200);
     let [spin, gases] = ratios(&run);
     println!("T_int/T_tr {:.4} +- {:.4}, T1/T2 {:.4} +- {:.4}", spin.0, spin.1, gases.0, gases.1);
     for (name, (ratio, error)) in [("T_int/T_tr", spin), ("T1/T2", gases)] {
