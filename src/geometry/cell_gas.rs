@@ -179,21 +179,22 @@ mod tests {
         assert!(gas.volume.iter().all(|&volume| volume > 0.0));
     }
 
-    /// Around the edge of a plate the gas is one part, whose volume tells of the pairs that do not see each other.
+    /// Around the edge of a plate the gas is one part, whose volume tells of the pairs that do not see each other: there
+    /// the plate reaches into the cell by 0.4 of it, which hides some 8 % of the pairs.
     #[test]
     fn gas_around_an_edge_is_one_part() {
-        let (_, grid, gas) = plated(0.002, 0.06);
-        let at_edge =
-            |place: [f64; 3]| (place[0] - 0.17).abs() < 0.05 && ((place[2] - 0.15).abs() - 0.06).abs() < 0.025;
-        let edges: Vec<_> =
-            gas.parted.iter().filter(|(_, parts)| parts.len() == 1 && at_edge(parts[0].place)).collect();
-        assert!(!edges.is_empty());
-        for (cell, parts) in edges {
+        let (_, grid, gas) = plated(0.002, 0.07);
+        let mut hidden = 0;
+        for (cell, parts) in gas.parted.iter().filter(|(_, parts)| parts.len() == 1) {
             let share = parts[0].volume / gas.volume[*cell];
             assert!(share > 0.3 && share <= 1.0, "{share}");
+            let low = grid.origin[2] + (cell / (grid.cells[0] * grid.cells[1]) as usize) as f64 * grid.cell;
+            let reach = (low + grid.cell - 0.08).min(0.22 - low) / grid.cell;
+            if reach > 0.3 && reach < 1.0 {
+                assert!(share < 0.97, "{share} at {reach}");
+                hidden += 1;
+            }
         }
-        let hidden =
-            gas.parted.iter().filter(|(cell, parts)| parts.len() == 1 && parts[0].volume < 0.95 * gas.volume[*cell]);
-        assert!(hidden.count() > 0, "at {}", grid.cell);
+        assert!(hidden > 5, "{hidden}");
     }
 }
