@@ -46,6 +46,8 @@ pub struct Share {
     pub walls: f64,
     /// Time of its passes on the device; zero where the device does not time.
     pub device_seconds: f64,
+    /// Those in which pairs were sought and collided, where the device tells.
+    pub pair_seconds: Option<f64>,
     /// All its own time: device and host.
     pub own_seconds: f64,
     /// Exchanges, messages sent in them, and their bytes.
@@ -170,6 +172,10 @@ fn shared_out(ranks: &[Seen], strategy: Strategy, steps: usize, settling: usize)
             share.candidates = mean(|load| load.candidates);
             share.walls = mean(|load| load.walls);
             share.device_seconds = median(loads.iter().map(|load| load.seconds))?;
+            // The same part of the middle time as of all times.
+            let all: f64 = loads.iter().map(|load| load.seconds).sum();
+            let pairs: Option<f64> = loads.iter().map(|load| load.pair_seconds).sum();
+            share.pair_seconds = pairs.filter(|_| all > 0.0).map(|pairs| pairs / all * share.device_seconds);
         }
         shares.push(share);
     }
