@@ -7,7 +7,9 @@ use crate::gas::kinetics;
 use crate::scene::{Method, ModelRequest};
 
 /// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (specification, section 2).
-pub const PER_CELL: f64 = 6.0;
+const PER_CELL: f64 = 6.0;
+/// In thin gas: one thread collides all of a cell.
+const MOST_PER_CELL: f64 = 20.0;
 /// Largest x of the method `cell`.
 const CELL_LIMIT: f64 = 2.0;
 /// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
@@ -176,8 +178,11 @@ impl Resolution {
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
         let path = kinetics::mean_free_path(density, diameter);
         let few = libm::cbrt(PER_CELL / density);
-        let (cell, why) = if path > few {
-            (path, "the mean free path at the end: no gradient is shorter".to_string())
+        let many = libm::cbrt(MOST_PER_CELL / density);
+        let (cell, why) = if path > many {
+            (many, format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer"))
+        } else if path > few {
+            (path, "the mean free path at the end: what is shorter is no gradient of the gas".to_string())
         } else {
             let paths = significant(few / path);
             (few, format!("{PER_CELL} particles at the mean density of the end; {paths} mean free paths"))
