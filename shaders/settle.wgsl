@@ -33,11 +33,14 @@ fn perpendicular(u: vec3<f32>) -> vec3<f32> {
 // The new relative velocity of rigid spheres with `r` between their centres and relative velocity `g`: the part of its
 // direction along r is turned back.
 fn thrown_back(r: vec3<f32>, g: vec3<f32>, speed: f32) -> vec3<f32> {
-    let along = g / length(g);
     let r2 = dot(r, r);
     // Two at one place have no line of centres.
-    let back = select(-along, normalize(along - (2.0 * dot(along, r) / max(r2, 1e-37)) * r), r2 > 0.0);
-    return speed * back;
+    let back = select(-g, g - (2.0 * dot(g, r) / max(r2, 1e-30)) * r, r2 > 0.0);
+    let old_speed = length(g);
+    if (speed == old_speed) {
+        return back;
+    }
+    return (speed / old_speed) * back;
 }
 
 // The new relative velocity of a pair with miss vector `miss` (r at the closest approach) and relative velocity

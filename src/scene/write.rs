@@ -138,9 +138,8 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
 fn write_settings(out: &mut Lines, scene: &Scene) {
     let model = &scene.model;
     out.header("[model]");
-    match model.method {
-        Some(method) => out.text("method", method.name()),
-        None => {}
+    if let Some(method) = model.method {
+        out.text("method", method.name());
     }
     if let Some(particles) = model.particles {
         out.count("particles", particles);
