@@ -122,6 +122,7 @@ impl CliError {
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
+                | SimulationError::Cells(_)
                 | SimulationError::Partition(_)
                 | SimulationError::Resume(_)
                 | SimulationError::Observer(_),
