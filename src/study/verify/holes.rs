@@ -114,7 +114,9 @@ pub fn discharge(device: &Device, particles: u64, knudsen: f64) -> Result<(f64, 
         gas = "nitrogen"
         "#
     );
-    let rows = run(device, &model_of("orifice", &text)?, Options::default())?.rows;
+    let model = model_of("orifice", &text)?;
+    debug_assert!((model.plan.openings[0].length - RADIUS).abs() < 1e-9);
+    let rows = run(device, &model, Options::default())?.rows;
     // The first two rows see the flow start.
     let window = &rows[2..];
     let number = |k: usize| window[k].chambers[0].particles[0];
@@ -134,7 +136,7 @@ pub fn discharge(device: &Device, particles: u64, knudsen: f64) -> Result<(f64, 
 const DISCHARGES: [(f64, f64); 4] = [(0.1, 0.78), (0.3, 0.71), (10.0, 0.60), (0.05, 0.83)];
 
 pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let (count, particles) = if effort == Effort::Quick { (1, 20_000) } else { (DISCHARGES.len(), 60_000) };
+    let (count, particles) = if effort == Effort::Quick { (1, 32_000) } else { (DISCHARGES.len(), 60_000) };
     let check = |&(knudsen, expected): &(f64, f64)| {
         let found = discharge(device, particles, knudsen)?;
         // The table's own error, and the gas that is uniform to a few per cent.
