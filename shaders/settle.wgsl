@@ -1,9 +1,9 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl exchange.wgsl walls.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
 // cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Spin
-// exchange is Larsen-Borgnakke (section 3), i before j, i the lower id. What rounding does to the
+// exchange is that of `exchange.wgsl`, i before j, i the lower id. What rounding does to the
 // pair's energy goes into spin.
 //
 // Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
@@ -59,23 +59,11 @@ fn collide(miss: vec3<f32>, g: vec3<f32>, i: Particle, j: Particle, mu: f32, dra
     var new_speed = speed;
     if (SPIN) {
         let before = 0.5 * mu * speed * speed;
-        var energy = before;
-        let gas_i = gases[gas_of(i.tag)];
-        if (unit_interval(draw.x) < gas_i.exchange) {
-            let sum = energy + i.spin;
-            let share = pow(unit_interval(draw.y), gas_i.inverse_beta) * pow(unit_interval(draw.z), gas_i.inverse_beta1);
-            outcome.spin_i = min(sum * share, sum);
-            energy = sum - outcome.spin_i;
-        }
-        let gas_j = gases[gas_of(j.tag)];
-        if (unit_interval(draw.w) < gas_j.exchange) {
-            let sum = energy + j.spin;
-            let share = pow(unit_interval(draw2.x), gas_j.inverse_beta) * pow(unit_interval(draw2.y), gas_j.inverse_beta1);
-            outcome.spin_j = min(sum * share, sum);
-            energy = sum - outcome.spin_j;
-        }
-        if (energy != before) {
-            new_speed = sqrt(2.0 * energy / mu);
+        let exchange = exchange_spins(i, j, before, draw, draw2);
+        outcome.spin_i = exchange.spin_i;
+        outcome.spin_j = exchange.spin_j;
+        if (exchange.energy != before) {
+            new_speed = sqrt(2.0 * exchange.energy / mu);
         }
     }
     outcome.relative = new_speed * (cosine * along + sine * turn);

@@ -28,6 +28,24 @@ pub enum PlanError {
     #[error("{found} gases are more than the {limit} that a particle can tell apart")]
     #[diagnostic(help("merge gases of like molar mass and heat capacity"))]
     TooManyGases { found: usize, limit: usize },
+    #[error(
+        "gas `{gas}`: no gas can have this cp(T): between {low} and {high} K, the temperatures of the scene, it falls to \
+         that of a gas without internal energy or below (cv {least} J/(mol K) at the ends)"
+    )]
+    #[diagnostic(help(
+        "cp must be above 5/2 R = 20.79 J/(mol K) there: check the coefficients and their units; outside the \
+         temperatures it was made for a polynomial may run anywhere"
+    ))]
+    HeatCapacityLow { gas: String, low: String, high: String, least: String },
+    #[error(
+        "gas `{gas}`: between {low} and {high} K, the temperatures of the scene, the nearest heat capacity that a gas of \
+         particles can have is off by {residual:.2} %; {limit} % is allowed"
+    )]
+    #[diagnostic(help(
+        "the internal energy of particles must be that of a partition function: a cp(T) that falls with the temperature \
+         is none; give a constant `cp`, or coefficients fitted to the temperatures of the scene"
+    ))]
+    HeatCapacity { gas: String, low: String, high: String, residual: f64, limit: f64 },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

@@ -17,7 +17,7 @@ pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
         Some(Source { chamber, orifice: orifice.clone() })
     });
     let volume = ControlVolume {
-        gases: scene.gases.clone(),
+        gases: plan.species(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).collect(),
         sources: sources.collect(),
         openings: plan.openings.iter().map(opening).collect(),

@@ -9,6 +9,7 @@ mod energy_drift;
 mod equilibrium_box;
 mod equipartition;
 mod filling;
+mod heat_curve;
 mod orifice;
 mod statistics;
 mod two_chambers;

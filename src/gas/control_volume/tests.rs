@@ -2,9 +2,8 @@ use super::*;
 use crate::gas::{FlowIntegral, flow_times_temperature};
 use crate::scene::{Curve, Mixture};
 
-fn gases() -> Vec<Gas> {
-    let gas = |name: &str, molar_mass, cv: f64| Gas { name: name.into(), molar_mass, molar_cv: cv * GAS_CONSTANT };
-    vec![gas("air", 0.029, 2.5), gas("He", 0.004, 1.5)]
+fn gases() -> Vec<Species> {
+    vec![Species::constant(0.029, 2.5 * GAS_CONSTANT), Species::constant(0.004, 1.5 * GAS_CONSTANT)]
 }
 
 fn inflator() -> Orifice {
@@ -57,7 +56,7 @@ fn filling_a_closed_tank() {
     let states = tank.solve(std::slice::from_ref(&start), &[0.0, 0.004, 0.03, 0.1]);
     let orifice = inflator();
     let molar_mass = thermo::molar_mass(&orifice.mixture, &gases());
-    let cp = thermo::molar_cv(&orifice.mixture, &gases()) + GAS_CONSTANT;
+    let cp = thermo::molar_cv(&orifice.mixture, &gases(), 300.0) + GAS_CONSTANT;
     let energy_at = |end: f64| {
         2.5 * GAS_CONSTANT * start.moles[0] * 293.0
             + cp * flow_times_temperature(&orifice.mass_flow, &orifice.temperature, end) / molar_mass
@@ -117,7 +116,7 @@ fn mass_and_energy_are_conserved_between_chambers() {
     let (first, last) = (totals(&states[0]), totals(&states[200]));
     let orifice = inflator();
     let molar_mass = thermo::molar_mass(&orifice.mixture, &gases());
-    let cp = thermo::molar_cv(&orifice.mixture, &gases()) + GAS_CONSTANT;
+    let cp = thermo::molar_cv(&orifice.mixture, &gases(), 300.0) + GAS_CONSTANT;
     let moles = FlowIntegral::new(&orifice.mass_flow, 1.0).total() / molar_mass;
     let enthalpy = cp * flow_times_temperature(&orifice.mass_flow, &orifice.temperature, 1.0) / molar_mass;
     let added = [0.6 * moles, 0.4 * moles, enthalpy];
