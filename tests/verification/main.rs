@@ -10,6 +10,7 @@ mod equilibrium_box;
 mod equipartition;
 mod filling;
 mod heat_curve;
+mod mixing;
 mod orifice;
 mod statistics;
 mod two_chambers;

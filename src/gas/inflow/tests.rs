@@ -1,12 +1,14 @@
 use super::*;
-use crate::gas::fit;
+use std::sync::LazyLock;
+
+use crate::gas::{Modes, fit};
 use crate::scene::{Curve, Mixture};
 
 /// Like nitrogen, helium and carbon dioxide, the last with a heat capacity that grows.
 fn gases() -> Vec<Species> {
     let gas = |molar_mass, spin: f64| Species::constant(molar_mass, 0.5 * (3.0 + spin) * GAS_CONSTANT);
-    let curve = fit([23.0, 5.6e-2, -2.2e-5], [400.0, 1200.0]).unwrap();
-    vec![gas(0.028, 2.0), gas(0.004, 0.0), Species::with_modes(0.044, curve)]
+    static CURVE: LazyLock<Modes> = LazyLock::new(|| fit([23.0, 5.6e-2, -2.2e-5], [400.0, 1200.0]).unwrap());
+    vec![gas(0.028, 2.0), gas(0.004, 0.0), Species::with_modes(0.044, CURVE.clone())]
 }
 
 fn orifice(mixture: Vec<(usize, f64)>, jet: Option<Jet>) -> Orifice {
