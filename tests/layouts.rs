@@ -47,7 +47,7 @@ fn twins() -> Vec<Twin> {
             inner_low,
             first,
             inner_high,
-            pad,
+            ghosts,
             peers,
             near_peers,
             list,

@@ -36,7 +36,8 @@ struct Step {
     // The first slot to bin.
     first: u32,
     inner_high: vec3<u32>,
-    pad: u32,
+    // Which ghosts choose partners, and in which pass: see asked.wgsl.
+    ghosts: u32,
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
     near_peers: u32,

@@ -116,6 +116,8 @@ impl CliError {
                 | SimulationError::State(_)
                 | SimulationError::Partition(_)
                 | SimulationError::Resume(_)
+                | SimulationError::NoChamber { .. }
+                | SimulationError::NoParticles
                 | SimulationError::Observer(_),
             )
             | CliError::Scene(_)

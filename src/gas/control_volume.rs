@@ -3,7 +3,7 @@
 //! Per chamber: dn_g/dt = inflow + net flow through openings, dU/dt = inflow x h + energy through openings,
 //! with U = sum n u(T) and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
 //! number Kn = lambda / length, lambda from the number density of *particles* (moles / V / nu) on the
-//! upstream side: the reference of what the run itself models. So that nothing jumps where two pressures
+//! upstream side: the reference of what the run itself models (a run that is itself a control volume has Kn = 0). So that nothing jumps where two pressures
 //! cross, the two densities are blended while the pressures differ by less than 2 %.
 //!
 //! Integrated with the classical Runge-Kutta method (RK4), each step against two halves of it, between
@@ -30,8 +30,7 @@ pub struct ControlVolume {
     pub volumes: Vec<f64>,
     pub sources: Vec<Source>,
     pub openings: Vec<Opening>,
-    /// `None`: no collisions, every hole is in the kinetic limit.
-    pub collisions: Option<Collisions>,
+    pub collisions: Collisions,
 }
 
 /// An orifice and the chamber it blows into.
@@ -41,11 +40,15 @@ pub struct Source {
     pub orifice: Orifice,
 }
 
+/// What decides the Knudsen numbers of holes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Collisions {
-    /// m.
-    pub diameter: f64,
-    pub moles_per_particle: f64,
+pub enum Collisions {
+    /// Every hole is in the kinetic limit.
+    None,
+    /// Those of particles of a diameter (m) and an amount (mol).
+    Particles { diameter: f64, moles_per_particle: f64 },
+    /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
+    Continuum,
 }
 
 /// Contents of a chamber at the start.
@@ -200,7 +203,11 @@ impl ControlVolume {
     }
 
     fn knudsen(&self, a: Side, b: Side, length: f64) -> f64 {
-        let Some(Collisions { diameter, moles_per_particle }) = self.collisions else { return f64::INFINITY };
+        let (diameter, moles_per_particle) = match self.collisions {
+            Collisions::None => return f64::INFINITY,
+            Collisions::Continuum => return 0.0,
+            Collisions::Particles { diameter, moles_per_particle } => (diameter, moles_per_particle),
+        };
         let density = |side: Side| side.moles.iter().sum::<f64>() / (side.volume * moles_per_particle);
         let (pa, pb) = (a.pressure(), b.pressure());
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);

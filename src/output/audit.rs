@@ -114,8 +114,8 @@ impl Audit {
         if self.particles_outside > 0 {
             failures.push(format!("{} particles are outside the vessel", grouped(self.particles_outside)));
         }
-        // A run without any gas has nothing to balance.
-        if entered > 0 {
+        // A run without any gas has nothing to balance. (A control volume has gas without particles.)
+        if entered > 0 || self.mass_start + self.mass_injected > 0.0 {
             for (what, error, limit) in
                 [("mass", self.mass_error(), limits.mass_error), ("energy", self.energy_error(), limits.energy_error)]
             {

@@ -1,6 +1,7 @@
 //! The decisions in order: amounts, particles, diameter, rounds, step, grid.
 
 use super::amounts::{Amounts, highest_temperature};
+use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
 use super::population::{Population, openings, wanted};
@@ -13,9 +14,9 @@ use crate::geometry::Grid;
 use crate::scene::{Method, Scene};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
-const LADDER_LEVELS: u32 = 12;
-const STEPS_PER_INTERVAL: u32 = 32;
-const TALLY_EVERY: u32 = 8;
+pub const LADDER_LEVELS: u32 = 12;
+pub const STEPS_PER_INTERVAL: u32 = 32;
+pub const TALLY_EVERY: u32 = 8;
 /// Particles in a mean block of the coarse grid, at least.
 const PER_BLOCK: f64 = 64.0;
 
@@ -28,6 +29,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let method = method(scene, &mut reasons);
     let species = species(scene, &mut reasons)?;
     let amounts = Amounts::of(scene, &species, measured)?;
+    if method == Method::ControlVolume {
+        return control_volume::plan(scene, measured, &species, &amounts, reasons);
+    }
     let wanted_occupancy = scene.model.occupancy.unwrap_or(DEFAULT_OCCUPANCY);
     let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
     let population = Population::count(scene, &species, &amounts, wanted)?;
@@ -102,6 +106,7 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
     let value = match method {
         Method::ClosestApproach => "closest-approach",
         Method::None => "none",
+        Method::ControlVolume => "control-volume",
     };
     reasons.push(Reason { quantity: "method".into(), value: value.into(), why: why.into() });
     method

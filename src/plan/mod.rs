@@ -13,6 +13,7 @@
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;
+mod control_volume;
 mod decide;
 mod error;
 mod heat;
@@ -49,7 +50,7 @@ pub struct Measured {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     pub method: Method,
-    /// Initial and injected together.
+    /// Initial and injected together; none in a control volume, as are diameter, rounds and step.
     pub particles: u64,
     pub initial_particles: u64,
     pub injected_particles: u64,

@@ -68,7 +68,10 @@ impl Resolution {
         reasons: &mut Vec<Reason>,
     ) -> Result<Self, PlanError> {
         match method {
-            Method::None => Ok(Self::free_flight(request, states[1], extreme, end_time, reasons)),
+            // Control volumes have no particles, and need no resolution.
+            Method::None | Method::ControlVolume => {
+                Ok(Self::free_flight(request, states[1], extreme, end_time, reasons))
+            }
             Method::ClosestApproach => Self::collisional(request, states, extreme, end_time, reasons),
         }
     }

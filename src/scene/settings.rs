@@ -55,7 +55,7 @@ pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<Ra
             Some(z) if z.value < least => {
                 return Err(Problem::value(&z.span, show(z.value), allowed));
             }
-            None if COLLISION_NUMBER < least && raw.method != Some(Method::None) => {
+            None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
                 return Err(Problem::value(&raw_gas.span, found, allowed).hint("give `collision_number` in `[model]`"));
             }

@@ -238,6 +238,8 @@ pub enum Method {
     ClosestApproach,
     /// Free flight without collisions.
     None,
+    /// No particles: each chamber is uniform, gas flows between them through their openings.
+    ControlVolume,
 }
 
 /// What the plan decides unless the scene says it.

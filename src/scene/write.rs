@@ -144,6 +144,7 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     match model.method {
         Some(Method::ClosestApproach) => out.text("method", "closest-approach"),
         Some(Method::None) => out.text("method", "none"),
+        Some(Method::ControlVolume) => out.text("method", "control-volume"),
         None => {}
     }
     if let Some(particles) = model.particles {

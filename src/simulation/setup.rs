@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::gas::{Filling, fill};
 use crate::geometry::{TriangleGrid, block_volumes, region_bounds, region_contains};
 use crate::gpu::Device;
-use crate::scene::{Face, Region};
+use crate::scene::{Face, Method, Region};
 use crate::subdomain::{Domain, DomainInput, GpuParticle, GpuZone, Scales, Walls, zone_of};
 
 use super::SimulationError;
@@ -58,6 +58,9 @@ impl Setup {
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
+        if plan.method == Method::ControlVolume {
+            return Err(SimulationError::NoParticles);
+        }
         let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {

@@ -25,7 +25,7 @@ pub struct GpuStep {
     pub inner_low: [u32; 3],
     pub first: u32,
     pub inner_high: [u32; 3],
-    pub pad: u32,
+    pub ghosts: u32,
     pub peers: u32,
     pub near_peers: u32,
     pub list: u32,

@@ -31,7 +31,7 @@ pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
 };
-pub use place::{Cells, Place};
+pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
@@ -78,7 +78,7 @@ impl Subdomain {
         particles: &[GpuParticle],
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
-        let slots = u64::from(plan.steps_per_interval) * u64::from(plan.rounds + 1);
+        let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
         let fixed = FixedBuffers::new(device, domain.words, slots)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);

@@ -30,7 +30,7 @@ fn two_chambers(length: f64) -> ControlVolume {
         volumes: vec![0.002, 0.058],
         sources: vec![],
         openings: vec![Opening { name: "hole".into(), between: [0, 1], area: 1.6e-3, length }],
-        collisions: Some(Collisions { diameter: 2.4e-3, moles_per_particle: 5e-6 }),
+        collisions: Collisions::Particles { diameter: 2.4e-3, moles_per_particle: 5e-6 },
     }
 }
 
@@ -90,7 +90,7 @@ fn equal_chambers_stay_as_they_are() {
 #[test]
 fn effusion_follows_its_closed_form() {
     let mut model = two_chambers(0.04);
-    model.collisions = None;
+    model.collisions = Collisions::None;
     model.volumes[1] = 1e9;
     let start = [air(1e5, 0.002, 300.0), air(1e-12, 1e9, 300.0)];
     let times = [0.002, 0.01];
