@@ -282,9 +282,9 @@ mod tests {
             );
         }
         let last = &rows[19].chambers[0];
-        assert!(last.pressure < 2.5e5, "enough has flowed out: {}", last.pressure);
+        assert!(last.pressure < 3.3e5, "enough has flowed out: {}", last.pressure);
         // The check can fail: isothermal gas would be at 500 K.
-        assert!(last.temperature < 450.0);
+        assert!(last.temperature < 475.0);
     }
 
     #[test]
