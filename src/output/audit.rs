@@ -198,6 +198,7 @@ impl Audit {
         let overflows = if self.overflows.is_empty() { "none".to_owned() } else { self.overflows.join(", ") };
         let (to_walls, momentum_error) = match (self.momentum_to_walls, self.momentum_error()) {
             (Some(received), Some(error)) => (vector(received), format!("{error:.2e}")),
+            _ if entered == 0 => ("none: there are no particles".to_owned(), "unknown".to_owned()),
             _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
         };
         let facts = [

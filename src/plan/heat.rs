@@ -30,17 +30,12 @@ pub fn species(scene: &Scene, reasons: &mut Vec<Reason>) -> Result<Vec<Species>,
             let name = gas.name.clone();
             let Some(modes) = fit(cp, range) else {
                 let least = range.map(|t| gas.heat.molar_cv(t)).into_iter().fold(f64::INFINITY, f64::min);
-                return Err(PlanError::HeatCapacityLow { gas: name, low, high, least: significant(least) });
+                return Err(PlanError::HeatCapacityLow { gas: name, range, least });
             };
             if modes.residual > LARGEST_RESIDUAL {
                 let residual = 100.0 * modes.residual;
-                return Err(PlanError::HeatCapacity {
-                    gas: name,
-                    low,
-                    high,
-                    residual,
-                    limit: 100.0 * LARGEST_RESIDUAL,
-                });
+                let limit = 100.0 * LARGEST_RESIDUAL;
+                return Err(PlanError::HeatCapacity { gas: name, range, residual, limit });
             }
             reasons.push(Reason {
                 quantity: format!("cp(T) of {name}"),
