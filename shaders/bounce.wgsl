@@ -1,11 +1,12 @@
 //! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl
 // Flies the particles that meet walls to the end of the step, off every wall on the way (specular).
 //
-// Reads `bouncing`, `sorted`, `flights` (without collisions `particles`, `newborns`) and the walls;
+// Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`) and the walls;
 // writes `particles` and, where the scene has surfaces, the integer tally `sums`. One thread per entry of
 // `bouncing`, which writes its own particle; sums of integers do not depend on order.
 
 override COLLISIONS: bool = true;
+override ROUNDS_OF_PAIRS: bool = true;
 override ORIFICES: bool = true;
 override SPIN: bool = true;
 override SURFACES: bool = true;
@@ -50,12 +51,13 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var time = 0.0;
     if (COLLISIONS) {
         particle = sorted[s];
-        time = flights[s].start;
     } else {
         particle = particles[s];
-        if (ORIFICES) {
-            time = birth_time(id_of(particle.tag));
-        }
+    }
+    if (ROUNDS_OF_PAIRS) {
+        time = flights[s].start;
+    } else if (ORIFICES) {
+        time = birth_time(id_of(particle.tag));
     }
     let gas = gases[gas_of(particle.tag)];
     var bounces = 0u;

@@ -6,7 +6,7 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+    GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -62,6 +62,7 @@ fn twins() -> Vec<Twin> {
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
         twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
         twin!("Peer", GpuPeer, low, pad, high, pad2),
+        twin!("Part", GpuPart, place, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
     ]
 }

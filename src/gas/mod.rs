@@ -12,6 +12,7 @@ mod least_squares;
 mod modes;
 mod philox;
 mod random;
+mod riemann;
 mod species;
 pub mod thermo;
 
@@ -23,6 +24,7 @@ pub use initial::{FillError, Filling, fill};
 pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};
+pub use riemann::{Fluid, Riemann};
 pub use species::{Mode, Modes, Species};
 
 /// One particle on the host, SI.

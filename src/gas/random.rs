@@ -9,11 +9,14 @@
 //! | `InitialState`    | `[particle id, block, 0, 0]`                       | host     |
 //! | `Inflow`          | `[particle id, block, 0, 0]`                       | host     |
 //! | `Collision`       | `[step, 2 round + block, lower id, higher id]`     | device   |
+//! | `CellCollision`   | `[step, cell, 4 candidate + block, part]`           | device   |
 //! | `RefinedPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `RefinedState`    | `[particle id, block, 0, 0]`                       | host     |
 //!
 //! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
 //! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
+//!
+//! Candidates of a part of a cell count from 1; number 0 rounds how many there are.
 //!
 //! Host draws are f64 and go through crate `libm`: system mathematics libraries differ in the last bit.
 
@@ -31,6 +34,8 @@ pub enum Purpose {
     /// Of the particles that a coarser state is split into; ids are those of the refined run.
     RefinedPosition = 5,
     RefinedState = 6,
+    /// Drawn on the device only: candidate pairs of a cell, and their collisions.
+    CellCollision = 9,
 }
 
 /// The Philox key of a purpose; uses the lower 56 bits of the seed.
@@ -125,13 +130,14 @@ mod tests {
     use super::*;
 
     const COUNT: u32 = 200_000;
-    const PURPOSES: [Purpose; 6] = [
+    const PURPOSES: [Purpose; 7] = [
         Purpose::InitialPosition,
         Purpose::InitialState,
         Purpose::Inflow,
         Purpose::Collision,
         Purpose::RefinedPosition,
         Purpose::RefinedState,
+        Purpose::CellCollision,
     ];
 
     /// Mean and second moment over `COUNT` particles, one draw each, with the standard errors of both.

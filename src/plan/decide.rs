@@ -6,7 +6,7 @@ use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
 use super::population::{Population, openings, wanted};
 use super::render::significant;
-use super::resolution::{DEFAULT_OCCUPANCY, Extreme, MeanState, Resolution};
+use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::{Species, kinetics};
@@ -32,7 +32,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
     }
-    let wanted_occupancy = scene.model.occupancy.unwrap_or(DEFAULT_OCCUPANCY);
+    let wanted_occupancy = scene.model.occupancy.unwrap_or_else(|| default_occupancy(method));
     let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
     let population = Population::count(scene, &species, &amounts, wanted)?;
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
@@ -66,7 +66,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    let warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
     Ok(Plan {
         method,
         particles,
@@ -103,12 +103,7 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
         Some(method) => (method, "asked for"),
         None => (Method::ClosestApproach, "right for jets and vents, with the ideal gas's pressure at any occupancy"),
     };
-    let value = match method {
-        Method::ClosestApproach => "closest-approach",
-        Method::None => "none",
-        Method::ControlVolume => "control-volume",
-    };
-    reasons.push(Reason { quantity: "method".into(), value: value.into(), why: why.into() });
+    reasons.push(Reason { quantity: "method".into(), value: method.name().into(), why: why.into() });
     method
 }
 

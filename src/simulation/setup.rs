@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, block_volumes, region_bounds, region_contains};
+use crate::geometry::{TriangleGrid, block_volumes, cell_gas, region_bounds, region_contains};
 use crate::gpu::Device;
 use crate::scene::{Face, Method, Region};
-use crate::subdomain::{Domain, DomainInput, GpuParticle, GpuZone, Scales, Walls, zone_of};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Scales, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
@@ -68,8 +68,15 @@ impl Setup {
             !wall.is_convex_cavity()
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
+        let cells = if plan.method == Method::Cell {
+            CellTable::new(&cell_gas(&model.vessel, &plan.grid, &triangle_grid, parts), &plan.grid)?
+        } else {
+            CellTable::default()
+        };
         let zones = zones(model);
-        let input = DomainInput { plan, walls: &walls, zones: &zones, patches: patches.len(), among_others: ranks > 1 };
+        let (patch_count, among_others) = (patches.len(), ranks > 1);
+        let input =
+            DomainInput { plan, walls: &walls, cells: &cells, zones: &zones, patches: patch_count, among_others };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),
             layout: layout(model, &patches),

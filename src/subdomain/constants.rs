@@ -12,24 +12,31 @@ use super::walls::Walls;
 pub const WORKGROUP: u32 = 64;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
+const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Features {
     pub collisions: bool,
+    /// Pairs are chosen from neighbour lists, in rounds; without it they collide within their cells.
+    pub rounds: bool,
+    /// Walls part the gas of some cell.
+    pub parted: bool,
     pub spin: bool,
     /// A heat capacity depends on the temperature.
     pub curves: bool,
     pub orifices: bool,
     pub surfaces: bool,
-    /// Other devices own particles that may collide with this one's.
+    /// Other devices own the particles of other cells.
     pub halo: bool,
 }
 
 impl Features {
-    pub fn of(plan: &Plan, surfaces: usize, among_others: bool) -> Features {
+    pub fn of(plan: &Plan, surfaces: usize, parted: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
+            rounds: plan.method.has_rounds(),
+            parted,
             spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
             curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
             orifices: plan.injected_particles > 0,
@@ -43,6 +50,7 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
     let grid = &plan.grid;
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
+    let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
     vec![
         ("WORKGROUP", f64::from(WORKGROUP)),
         ("CELLS_X", f64::from(grid.cells[0])),
@@ -55,9 +63,15 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("CHUNK", CHUNK as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
+        ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
-        ("SEED_HIGH", ((((plan.seed >> 32) << 8) | PURPOSE_COLLISION) & 0xffff_ffff) as f64),
+        ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),
+        ("SEED_HIGH", seed_high(PURPOSE_COLLISION)),
+        ("CELL_SEED_HIGH", seed_high(PURPOSE_CELL)),
+        // Collisions in cells are at the start of the step.
+        ("FLOWN", if features.collisions && !features.rounds { 0.0 } else { 0.5 }),
         ("COLLISIONS", flag(features.collisions)),
+        ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
         ("CURVES", flag(features.curves)),
         ("MODES", most_modes(plan) as f64),

@@ -4,6 +4,7 @@ use crate::gpu::{Device, GpuError};
 use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_WORDS, TallyWords, ZONE_WORDS};
+use super::cell_table::CellTable;
 use super::constants::{Features, block_counts, constants};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
@@ -15,6 +16,8 @@ use super::walls::Walls;
 pub struct DomainInput<'a> {
     pub plan: &'a Plan,
     pub walls: &'a Walls,
+    /// The gas of each cell, for collisions within cells.
+    pub cells: &'a CellTable,
     /// Zone 0 is everything, then the chambers, then the probes.
     pub zones: &'a [GpuZone],
     /// Patches of wall whose impulse is tallied.
@@ -31,6 +34,8 @@ pub struct Domain {
     pub(super) words: TallyWords,
     pub(super) blocks: usize,
     pub(super) zones: usize,
+    /// Cells whose gas walls part.
+    pub(super) parted_cells: u64,
 }
 
 impl Domain {
@@ -38,7 +43,7 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let features = Features::of(plan, input.patches, input.among_others);
+        let features = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
@@ -49,10 +54,18 @@ impl Domain {
             plan: plan.clone(),
             features,
             compiled: Compiled::new(device, features, &constants(plan, features, input.walls, &Scales::new(plan)))?,
-            buffers: DomainBuffers::new(device, input.walls, input.zones, &gas_table(plan), &mode_table(plan))?,
+            buffers: DomainBuffers::new(
+                device,
+                input.walls,
+                input.cells,
+                input.zones,
+                &gas_table(plan),
+                &mode_table(plan),
+            )?,
             words,
             blocks,
             zones: input.zones.len(),
+            parted_cells: input.cells.parted,
         })
     }
 

@@ -78,7 +78,7 @@ fn inverse(beta: f64) -> f32 {
     (1.0 / beta.max(1e-9)) as f32
 }
 
-/// The device's table of modes (`shaders/shared/exchange.wgsl`), [`MOST_MODES`] for each of 16 gases.
+/// The device's table of modes (`shaders/shared/modes.wgsl`), [`MOST_MODES`] for each of 16 gases.
 pub fn mode_table(plan: &Plan) -> Vec<[f32; 4]> {
     let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 16 * MOST_MODES];
     for (gas, rows) in plan.gases.iter().zip(table.chunks_exact_mut(MOST_MODES)) {

@@ -1,11 +1,12 @@
 //! On one device.
 
+use corpuscle::scene::Method;
 use corpuscle::simulation::{Model, Options, Shuffle};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, dense, effusion, gas_box, tank};
+use crate::scenes::{burst, by, dense, effusion, gas_box, plate, tank};
 use crate::whole_run::{Run, run};
 
 /// The scene again, in every way that must not matter.
@@ -56,6 +57,18 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 #[test]
 fn box_has_the_same_bits_in_every_way() {
     every_way(&gas_box());
+}
+
+/// Inflow, two gases, and cells that a wall with a hole parts.
+#[test]
+fn collisions_within_cells_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::Cell, tank(0)));
+    every_way(&by(Method::Cell, plate()));
+}
+
+#[test]
+fn rigid_spheres_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::HardSphere, plate()));
 }
 
 /// Free flight does not sort its particles: not even its memory is in order.

@@ -10,6 +10,7 @@ mod blocks;
 mod bounce;
 mod choose;
 mod closed;
+mod collide;
 mod exchange;
 mod fly;
 mod lists;
@@ -34,6 +35,8 @@ fn every_kernel_has_its_test() {
         "blocks",
         "bounce",
         "choose",
+        "collide",
+        "collide_parted",
         "inject",
         "lost",
         "match_pairs",
