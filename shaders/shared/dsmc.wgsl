@@ -108,7 +108,11 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
         if (SPIN) {
             draw3 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 2u, part), key);
         }
-        let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw);
+        var pick = vec2<u32>(0u);
+        if (CURVES) {
+            pick = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 3u, part), key).xy;
+        }
+        let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw, pick);
         let relative = exchange.speed * direction(draw2.x, draw2.y);
         let after = deflected(i, j, mu, relative - g, exchange);
         sorted[s] = after.i;

@@ -2,7 +2,7 @@
 //! once, here, from the plan.
 
 use crate::plan::Plan;
-use crate::scene::Method;
+use crate::scene::{GAS_CONSTANT, Method};
 
 use super::buffers::CHUNK;
 use super::scales::Scales;
@@ -23,6 +23,8 @@ pub struct Features {
     /// Walls part the gas of some cell.
     pub parted: bool,
     pub spin: bool,
+    /// A heat capacity depends on the temperature.
+    pub curves: bool,
     pub orifices: bool,
     pub surfaces: bool,
     /// Other devices own the particles of other cells.
@@ -35,7 +37,8 @@ impl Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
             parted,
-            spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
+            spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
+            curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
             orifices: plan.injected_particles > 0,
             surfaces: surfaces > 0,
             halo: among_others && plan.method != Method::None,
@@ -70,6 +73,12 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("COLLISIONS", flag(features.collisions)),
         ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
+        ("CURVES", flag(features.curves)),
+        ("MODES", most_modes(plan) as f64),
+        (
+            "INVERSE_THERMAL",
+            scales.reference_mass / (plan.moles_per_particle * GAS_CONSTANT * plan.temperature_reference),
+        ),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),
         ("IMPULSE_SCALE", scales.velocity),
@@ -85,6 +94,12 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("LEVELS", f64::from(plan.ladder_levels)),
         ("BLOCK_ENERGY_SCALE", scales.block_energy),
     ]
+}
+
+/// Of a gas, at least one.
+fn most_modes(plan: &Plan) -> usize {
+    let modes = plan.gases.iter().map(|gas| gas.species.modes().map_or(1, |modes| modes.modes.len()));
+    modes.max().unwrap_or(1)
 }
 
 /// Coarse blocks per axis.

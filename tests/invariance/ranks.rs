@@ -8,7 +8,7 @@ use corpuscle::simulation::{Ghosts, Model, Options};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, by, dense, effusion, gas_box, plate, tank, tube};
+use crate::scenes::{burst, by, curves, dense, effusion, gas_box, plate, tank, tube};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -89,6 +89,16 @@ fn box_has_the_same_bits_on_any_number_of_ranks() {
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
     assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
+}
+
+/// Heat capacities that depend on the temperature, and mixtures at rest and flowing in.
+#[test]
+fn mixtures_with_modes_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(5, Dynamic, 1)];
+    let runs = same(&curves(), &ways);
+    assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
+    let in_cells = same(&by(Method::Cell, &curves()), &[Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, None) }]);
+    assert!(in_cells[0].outcome.collisions > 5000);
 }
 
 /// Free flight is shared out by ids.
