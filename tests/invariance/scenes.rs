@@ -36,7 +36,7 @@ pub fn burst() -> Model {
 /// Carbon dioxide, whose heat capacity grows, and helium blow into air and helium.
 pub fn curves() -> Model {
     model(
-        "end_time = 1.5e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+        "end_time = 8e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.667\n\
          [[gas]]\nname = \"carbon dioxide\"\nmolar_mass = 0.044\ncp = [23.0, 5.6e-2, -2.2e-5]\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
