@@ -7,6 +7,7 @@
 
 override COLLISIONS: bool = true;
 override ORIFICES: bool = true;
+override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
@@ -32,6 +33,9 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         meets_wall = flights[s].wall < step.dt;
     } else {
         particle = particles[s];
+        if (VENTS && particle.tag == NOBODY) {
+            return;
+        }
         var start = 0.0;
         if (ORIFICES) {
             start = birth_time(id_of(particle.tag));

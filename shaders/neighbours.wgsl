@@ -8,6 +8,8 @@
 // particle, which writes its own list. Where a list is too short, the longest one wanted is kept, and the
 // host runs the interval again with longer lists.
 
+override VENTS: bool = true;
+
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
@@ -23,8 +25,8 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (s >= step.total) {
         return;
     }
-    // The outermost ghosts have no neighbours beyond them here, and choose nobody.
-    if (step.depth > 0u && (layers[s] & LAYER) >= step.depth) {
+    // The outermost ghosts have no neighbours beyond them here, and choose nobody; nor do slots without particle.
+    if ((VENTS || step.depth > 0u) && (layers[s] & LAYER) >= max(step.depth, 1u)) {
         neighbour_count[s] = 0u;
         return;
     }

@@ -21,11 +21,18 @@
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 override ORIFICES: bool = true;
+override VENTS: bool = true;
 
 @compute @workgroup_size(WORKGROUP)
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
     if (s >= step.total) {
+        return;
+    }
+    if (VENTS && s >= cell_start[step.bins]) {
+        // On a device alone, whose host learns late how many have left: slots that hold no particle.
+        layers[s] = LAYER;
+        touched[s] = 0u;
         return;
     }
     let slot = slots[s];

@@ -36,7 +36,8 @@ struct Step {
     // The first slot to bin.
     first: u32,
     inner_high: vec3<u32>,
-    pad: u32,
+    // Tallies of the zones in this interval at the end of this step or later.
+    tallies_left: u32,
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
     near_peers: u32,

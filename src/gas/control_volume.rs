@@ -13,7 +13,7 @@
 use super::curve::{value_held, value_inside};
 use super::discharge::{Side, exchange};
 use super::{kinetics, thermo};
-use crate::scene::{GAS_CONSTANT, Gas, Opening, Orifice};
+use crate::scene::{GAS_CONSTANT, Gas, Opening, Orifice, Vent, WallHeat};
 
 /// Error of a step over the chamber's moles or energy.
 const TOLERANCE: f64 = 1e-10;
@@ -29,6 +29,8 @@ pub struct ControlVolume {
     pub volumes: Vec<f64>,
     pub sources: Vec<Source>,
     pub openings: Vec<Opening>,
+    pub walls: Vec<HeatedWall>,
+    pub vents: Vec<OpenVent>,
     /// `None`: no collisions, every hole is in the kinetic limit.
     pub collisions: Option<Collisions>,
 }
@@ -45,6 +47,23 @@ pub struct Collisions {
     /// m.
     pub diameter: f64,
     pub moles_per_particle: f64,
+}
+
+/// The part of a wall in one chamber that exchanges heat.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatedWall {
+    pub chamber: usize,
+    /// m2.
+    pub area: f64,
+    pub heat: WallHeat,
+}
+
+/// A vent, the chamber that it empties, and its area, m2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenVent {
+    pub chamber: usize,
+    pub area: f64,
+    pub vent: Vent,
 }
 
 /// Contents of a chamber at the start.
@@ -200,6 +219,7 @@ impl ControlVolume {
                 rate[b * stride + gas] += opening.area * flow;
             }
         }
+        self.lose(time, contents, &mut rate);
         rate
     }
 
@@ -228,5 +248,6 @@ pub fn moles_at(pressure: f64, volume: f64, temperature: f64) -> f64 {
     pressure * volume / (GAS_CONSTANT * temperature)
 }
 
+mod losses;
 #[cfg(test)]
 mod tests;

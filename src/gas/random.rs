@@ -11,6 +11,7 @@
 //! | `Collision`       | `[step, 2 round + block, lower id, higher id]`     | device   |
 //! | `RefinedPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `RefinedState`    | `[particle id, block, 0, 0]`                       | host     |
+//! | `Wall`            | `[step, 32 hit + block, particle id, 0]`           | device   |
 //!
 //! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
 //! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
@@ -31,6 +32,9 @@ pub enum Purpose {
     /// Of the particles that a coarser state is split into; ids are those of the refined run.
     RefinedPosition = 5,
     RefinedState = 6,
+    /// Drawn on the device only: whether a hit on a wall lets the particle out, and how it leaves the wall. `hit`
+    /// counts those of the particle in the step, from 1.
+    Wall = 7,
 }
 
 /// The Philox key of a purpose; uses the lower 56 bits of the seed.
@@ -125,13 +129,14 @@ mod tests {
     use super::*;
 
     const COUNT: u32 = 200_000;
-    const PURPOSES: [Purpose; 6] = [
+    const PURPOSES: [Purpose; 7] = [
         Purpose::InitialPosition,
         Purpose::InitialState,
         Purpose::Inflow,
         Purpose::Collision,
         Purpose::RefinedPosition,
         Purpose::RefinedState,
+        Purpose::Wall,
     ];
 
     /// Mean and second moment over `COUNT` particles, one draw each, with the standard errors of both.

@@ -36,6 +36,7 @@ fn tank() -> (Scene, Measured) {
         orifices: vec![inflator],
         probes: vec![],
         surfaces: vec![],
+        vents: vec![],
         model: ModelRequest { particles: Some(1_000_000), ..ModelRequest::default() },
         output: OutputRequest { rows: 200, snapshots: 10 },
     };

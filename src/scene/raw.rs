@@ -124,6 +124,13 @@ pub struct RawWall {
     pub file: Option<At<String>>,
     /// mesh: length units of the scene per unit of the mesh file; 1 unless given.
     pub scale: Option<At<f64>>,
+    /// Temperature of a wall that exchanges heat with the gas, K; without it the wall is smooth and adiabatic.
+    pub temperature: Option<At<f64>>,
+    /// Share of the hits that leave diffusely with the wall's temperature, 0 to 1; with `temperature`, 1 unless it or
+    /// `heat_transfer` is given.
+    pub accommodation: Option<At<f64>>,
+    /// Heat-transfer coefficient (SI: W/(m2 K)), instead of `accommodation`.
+    pub heat_transfer: Option<At<f64>>,
     /// box with `thickness`, plane: holes through the wall.
     #[serde(default)]
     pub hole: Vec<At<RawHole>>,

@@ -20,6 +20,8 @@ pub(super) enum Quantity {
     MolarMass,
     /// Heat capacity per mole.
     MolarHeat,
+    /// Heat per area, time and temperature.
+    HeatTransfer,
 }
 
 impl UnitSystem {
@@ -39,6 +41,8 @@ impl UnitSystem {
             (TMmS, Pressure) => 1e6,
             (TMmS, MassFlow | MolarMass) => 1e3,
             (TMmS, MolarHeat) => 1e-3,
+            (KgMmMs, HeatTransfer) => 1e9,
+            (TMmS, HeatTransfer) => 1e3,
         }
     }
 
@@ -65,6 +69,9 @@ impl UnitSystem {
             (TMmS, MassFlow) => "t/s",
             (TMmS, MolarMass) => "t/mol",
             (TMmS, MolarHeat) => "mJ/(mol K)",
+            (Si, HeatTransfer) => "W/(m2 K)",
+            (KgMmMs, HeatTransfer) => "J/(ms mm2 K)",
+            (TMmS, HeatTransfer) => "mJ/(s mm2 K)",
         }
     }
 }
@@ -88,6 +95,7 @@ mod tests {
             near(Quantity::Time, time);
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);
+            near(Quantity::HeatTransfer, mass / time.powi(3));
             near(Quantity::MolarMass, mass);
             near(Quantity::MolarHeat, mass * length * length / (time * time));
         }

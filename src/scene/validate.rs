@@ -64,6 +64,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
             orifices,
             probes,
             surfaces,
+            vents: Vec::new(),
             model,
             output,
         }),

@@ -120,6 +120,13 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
         GasSide::Outside => out.text("gas", "outside"),
         GasSide::Both => {}
     }
+    if let Some(heat) = &wall.heat {
+        out.number("temperature", heat.temperature);
+        match heat.transfer {
+            HeatTransfer::Accommodation(share) => out.number("accommodation", share),
+            HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
+        }
+    }
     for hole in holes {
         out.header("[[wall.hole]]");
         out.text("name", &hole.name);

@@ -1,6 +1,6 @@
 //! The control-volume reference of a run: the same chambers, openings and curves without space.
 
-use crate::gas::{Collisions, ControlVolume, Reservoir, Source, State};
+use crate::gas::{Collisions, ControlVolume, HeatedWall, Reservoir, Source, State};
 use crate::plan::Plan;
 use crate::scene::{Method, Opening, Scene};
 
@@ -21,10 +21,21 @@ pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).collect(),
         sources: sources.collect(),
         openings: plan.openings.iter().map(opening).collect(),
+        walls: walls(model),
+        vents: Vec::new(),
         collisions: (plan.method != Method::None)
             .then_some(Collisions { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle }),
     };
     volume.solve(&initial(scene, plan), times)
+}
+
+fn walls(model: &Model) -> Vec<HeatedWall> {
+    let coats = model.coats.coats.iter();
+    let heated = coats.filter_map(|coat| {
+        let heat = model.scene.walls[coat.wall].heat?;
+        Some(HeatedWall { chamber: coat.chamber, area: coat.area, heat })
+    });
+    heated.collect()
 }
 
 fn opening(planned: &crate::plan::OpeningPlan) -> Opening {

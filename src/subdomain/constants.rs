@@ -4,7 +4,7 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-use super::buffers::CHUNK;
+use super::buffers::{CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
 use super::walls::Walls;
 
@@ -12,6 +12,8 @@ use super::walls::Walls;
 pub const WORKGROUP: u32 = 64;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
+/// And those of hits on walls.
+const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,24 +22,57 @@ pub struct Features {
     pub spin: bool,
     pub orifices: bool,
     pub surfaces: bool,
+    /// Walls that exchange heat with the gas, or let it out.
+    pub coats: bool,
+    pub vents: bool,
     /// Other devices own particles that may collide with this one's.
     pub halo: bool,
 }
 
+/// What walls have tallies for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Patches {
+    pub surfaces: usize,
+    pub coats: usize,
+    pub vents: usize,
+}
+
+impl Patches {
+    /// Words of the tallies of surfaces, and of these and the coats.
+    pub(super) fn ends(&self) -> [usize; 2] {
+        let surfaces = self.surfaces.max(1) * SURFACE_WORDS;
+        [surfaces, surfaces + self.coats * COAT_WORDS]
+    }
+
+    pub(super) fn words(&self) -> usize {
+        self.ends()[1] + self.vents * VENT_WORDS
+    }
+}
+
 impl Features {
-    pub fn of(plan: &Plan, surfaces: usize, among_others: bool) -> Features {
+    pub fn of(plan: &Plan, patches: Patches, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
             spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
             orifices: plan.injected_particles > 0,
-            surfaces: surfaces > 0,
+            surfaces: patches.surfaces > 0,
+            coats: patches.coats > 0,
+            vents: patches.vents > 0,
             halo: among_others && plan.method != Method::None,
         }
     }
 }
 
-pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales) -> Vec<(&'static str, f64)> {
+pub fn constants(
+    plan: &Plan,
+    features: Features,
+    patches: Patches,
+    walls: &Walls,
+    scales: &Scales,
+) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
+    let [coats_at, vents_at] = patches.ends();
+    let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
     vec![
@@ -53,11 +88,16 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
-        ("SEED_HIGH", ((((plan.seed >> 32) << 8) | PURPOSE_COLLISION) & 0xffff_ffff) as f64),
+        ("SEED_HIGH", seed_high(PURPOSE_COLLISION)),
+        ("WALL_SEED_HIGH", seed_high(PURPOSE_WALL)),
         ("COLLISIONS", flag(features.collisions)),
         ("SPIN", flag(features.spin)),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),
+        ("COATS", flag(features.coats)),
+        ("VENTS", flag(features.vents)),
+        ("COATS_AT", coats_at as f64),
+        ("VENTS_AT", vents_at as f64),
         ("IMPULSE_SCALE", scales.velocity),
         ("GASES", plan.gases.len() as f64),
         ("CHAMBERS", plan.chambers.len() as f64),

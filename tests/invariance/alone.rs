@@ -1,11 +1,12 @@
 //! On one device.
 
+use corpuscle::output::AuditLimits;
 use corpuscle::simulation::{Model, Options, Shuffle};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, dense, effusion, gas_box, tank};
+use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, tank};
 use crate::whole_run::{Run, run};
 
 /// The scene again, in every way that must not matter.
@@ -56,6 +57,17 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 #[test]
 fn box_has_the_same_bits_in_every_way() {
     every_way(&gas_box());
+}
+
+/// Walls that exchange heat draw random numbers, and follow the gas.
+#[test]
+fn cold_walls_have_the_same_bits_in_every_way() {
+    let model = cold_walls();
+    let first = run(&model, Options::default());
+    let last = first.rows.last().expect("a row");
+    assert!(last.walls.iter().all(|wall| wall.heat > 0.0) && last.walls.len() == 2, "{:?}", last.walls);
+    assert_eq!(first.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    every_way(&model);
 }
 
 /// Free flight does not sort its particles: not even its memory is in order.

@@ -7,7 +7,7 @@ use corpuscle::simulation::{Model, Options};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, dense, effusion, gas_box, plate, tank, tube};
+use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, plate, tank, tube};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -87,6 +87,14 @@ fn box_has_the_same_bits_on_any_number_of_ranks() {
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
     assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
+}
+
+/// What walls have taken is one sum, and the next intervals follow it on every rank.
+#[test]
+fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [Way::new(2, Off, 1), Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)];
+    let runs = same(&cold_walls(), &ways);
+    assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
 /// Free flight is shared out by ids.

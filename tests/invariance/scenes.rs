@@ -40,6 +40,25 @@ pub fn plate() -> Model {
     )
 }
 
+/// Two hot gases between a cold box, a warmer plate with a heat-transfer coefficient, and a mirror.
+pub fn cold_walls() -> Model {
+    model(
+        "end_time = 4e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.08]\ngas = \"inside\"\n\
+         temperature = 250.0\naccommodation = 0.5\n\
+         [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.05, 0.04, 0.04]\nnormal = [0.8, 0.6, 0.0]\n\
+         u = [-0.6, 0.8, 0.0]\nsize = [0.05, 0.06]\nthickness = 0.002\ntemperature = 350.0\nheat_transfer = 2e4\n\
+         [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.02, 0.02, 0.02]\nradius = 0.01\nsubdivisions = 1\n\
+         gas = \"outside\"\n\
+         [[chamber]]\nname = \"dense\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.04, 0.08, 0.08] } }\n\
+         pressure = 2e5\ntemperature = 900.0\ngas = { air = 0.6, helium = 0.4 }\n\
+         [[chamber]]\nname = \"thin\"\npressure = 1e5\ntemperature = 600.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+         [model]\nparticles = 2000\noccupancy = 0.1\n[output]\nrows = 8\nsnapshots = 0\n",
+    )
+}
+
 /// Gas at rest, with the impulse on its walls.
 pub fn gas_box() -> Model {
     published("box.toml", 2000, 4e-4)

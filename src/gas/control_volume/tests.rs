@@ -31,6 +31,8 @@ fn two_chambers(length: f64) -> ControlVolume {
         volumes: vec![0.002, 0.058],
         sources: vec![],
         openings: vec![Opening { name: "hole".into(), between: [0, 1], area: 1.6e-3, length }],
+        walls: vec![],
+        vents: vec![],
         collisions: Some(Collisions { diameter: 2.4e-3, moles_per_particle: 5e-6 }),
     }
 }

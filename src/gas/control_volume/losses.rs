@@ -1,0 +1,33 @@
+//! What the chambers lose through their walls: heat to those that keep a temperature, gas through vents.
+//!
+//! dU/dt = -A h (T - T_w), by the same rule as the particles' walls (`wall_heat`); dn/dt = -A G / M, dU/dt = -A G h of a
+//! vent that is open (`vent`).
+
+use super::ControlVolume;
+use crate::gas::vent::{LocalGas, flux};
+use crate::gas::wall_heat::heat_flux;
+
+impl ControlVolume {
+    /// Takes the losses at a time (s) from the time derivative of the unknowns.
+    pub(super) fn lose(&self, time: f64, contents: &[f64], rate: &mut [f64]) {
+        let stride = self.stride();
+        for wall in &self.walls {
+            let side = self.side(contents, wall.chamber);
+            let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
+            let flux = heat_flux(&wall.heat, &self.gases, &concentrations, side.temperature);
+            rate[(wall.chamber + 1) * stride - 1] -= wall.area * flux;
+        }
+        for open in &self.vents {
+            let side = self.side(contents, open.chamber);
+            let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
+            let Some(gas) = LocalGas::new(&self.gases, &concentrations, side.temperature) else { continue };
+            let moles = open.area * flux(&open.vent, &gas, time) / gas.molar_mass;
+            let total: f64 = side.moles.iter().sum();
+            for (index, own) in side.moles.iter().enumerate() {
+                let flow = moles * own / total;
+                rate[open.chamber * stride + index] -= flow;
+                rate[(open.chamber + 1) * stride - 1] -= flow * self.gases[index].molar_cp() * side.temperature;
+            }
+        }
+    }
+}
