@@ -5,6 +5,7 @@ use super::error::{MOST_CELLS, MOST_GASES};
 use super::population::{Population, openings, wanted};
 use super::render::significant;
 use super::resolution::{DEFAULT_OCCUPANCY, Extreme, MeanState, Resolution};
+use super::vents;
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::kinetics;
@@ -60,7 +61,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    let mut warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    let vents = vents::planned(scene, measured);
+    warnings.extend(vents::warnings(scene, &vents, measured));
     Ok(Plan {
         method,
         particles,
@@ -87,6 +90,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: chambers(scene, measured, population.initial),
         gases,
         openings,
+        vents,
         reasons,
         warnings,
     })

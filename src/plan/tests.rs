@@ -48,6 +48,8 @@ fn tank() -> (Scene, Measured) {
         bounds_max: [0.4, 0.4, 0.4],
         openings: vec![hole],
         smallest_gap: None,
+        vents: vec![],
+        heated: vec![],
     };
     (scene, measured)
 }

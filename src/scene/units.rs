@@ -14,6 +14,7 @@ pub(super) enum Quantity {
     Length,
     Area,
     Time,
+    Velocity,
     Temperature,
     Pressure,
     MassFlow,
@@ -34,6 +35,8 @@ impl UnitSystem {
             (KgMmMs | TMmS, Length) => 1e-3,
             (KgMmMs | TMmS, Area) => 1e-6,
             (KgMmMs, Time) => 1e-3,
+            (KgMmMs, Velocity) => 1.0,
+            (TMmS, Velocity) => 1e-3,
             (KgMmMs, Pressure) => 1e9,
             (KgMmMs, MassFlow) => 1e3,
             (KgMmMs, MolarMass | MolarHeat) => 1.0,
@@ -56,6 +59,9 @@ impl UnitSystem {
             (Si, Length) => "m",
             (Si, Area) => "m2",
             (Si | TMmS, Time) => "s",
+            (Si, Velocity) => "m/s",
+            (KgMmMs, Velocity) => "mm/ms",
+            (TMmS, Velocity) => "mm/s",
             (Si, Pressure) => "Pa",
             (Si, MassFlow) => "kg/s",
             (Si | KgMmMs, MolarMass) => "kg/mol",
@@ -95,6 +101,7 @@ mod tests {
             near(Quantity::Time, time);
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);
+            near(Quantity::Velocity, length / time);
             near(Quantity::HeatTransfer, mass / time.powi(3));
             near(Quantity::MolarMass, mass);
             near(Quantity::MolarHeat, mass * length * length / (time * time));

@@ -53,7 +53,8 @@ fn heat(raw: &At<RawWall>, units: UnitSystem) -> Result<Option<WallHeat>, Proble
         }
         (None, None) => HeatTransfer::Accommodation(1.0),
         (Some(at), None) => {
-            let share = bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
+            let share =
+                bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
             HeatTransfer::Accommodation(share?)
         }
         (None, Some(at)) => HeatTransfer::Coefficient(not_negative(at, Quantity::HeatTransfer, units)?),
@@ -113,7 +114,12 @@ fn refuse_foreign_keys(raw: &At<RawWall>) -> Result<(), Problem> {
             let allowed = format!(
                 "of a {}: {}",
                 name_of(shape),
-                list(["name", "shape", "gas", "temperature", "accommodation", "heat_transfer"].iter().chain(keys_of(shape)).copied())
+                list(
+                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer"]
+                        .iter()
+                        .chain(keys_of(shape))
+                        .copied()
+                )
             );
             return Err(Problem::value(&span, format!("`{key}` of a {}", name_of(shape)), allowed));
         }

@@ -165,9 +165,9 @@ impl Account {
     fn lost(&self, tallies: &Tallies) -> (f64, f64) {
         let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
         let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
-        let (energy, tallied) = coats.chain(vents).fold((0i128, 0i128), |(energy, tallied), (e, t)| {
-            (energy + i128::from(e), tallied + i128::from(t))
-        });
+        let (energy, tallied) = coats
+            .chain(vents)
+            .fold((0i128, 0i128), |(energy, tallied), (e, t)| (energy + i128::from(e), tallied + i128::from(t)));
         let unit = self.scales.reference_mass / self.scales.energy;
         (energy as f64 * unit, tallied as f64 * unit)
     }
@@ -216,7 +216,8 @@ impl Account {
     ) {
         let counters = &tallies.counters;
         let steps = u64::from(interval.steps);
-        let mut present = interval.particles - self.counted.left - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
+        let mut present =
+            interval.particles - self.counted.left - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
         for born in &interval.entering {
             present += u64::from(*born);
             self.counted.particle_steps += present;

@@ -159,10 +159,7 @@ pub struct AveragesState {
 
 impl AveragesState {
     /// An empty window that starts at a time, s: of a run that is measured from there on.
-    pub(super) fn starting_at(
-        start: f64,
-        [zones, gases, patches, coats, vents]: [usize; 5],
-    ) -> AveragesState {
+    pub(super) fn starting_at(start: f64, [zones, gases, patches, coats, vents]: [usize; 5]) -> AveragesState {
         AveragesState {
             start,
             steps: 0,
@@ -362,10 +359,7 @@ impl Averages {
 
     fn wall(&self, coats: &[usize], area: f64, duration: f64) -> WallState {
         let sum = |since: usize| coats.iter().map(|&coat| self.heat[coat][since]).sum::<i128>() as f64;
-        WallState {
-            heat: sum(1) * self.energy_unit(),
-            heat_flux: sum(0) * self.energy_unit() / (area * duration),
-        }
+        WallState { heat: sum(1) * self.energy_unit(), heat_flux: sum(0) * self.energy_unit() / (area * duration) }
     }
 
     fn mass(&self, passed: &Passed) -> f64 {
@@ -394,7 +388,8 @@ impl Averages {
     /// All that has left through vents since the start: particles, kg, J.
     pub fn total_vented(&self) -> (u64, f64, f64) {
         let number = self.passed.iter().flat_map(|[_, all]| all.left).sum::<i64>();
-        let mass = self.passed.iter().map(|[_, all]| self.mass(all)).sum();
+        // (The sum of nothing is -0.)
+        let mass = self.passed.iter().map(|[_, all]| self.mass(all)).sum::<f64>() + 0.0;
         let energy = self.passed.iter().map(|[_, all]| all.energy).sum::<i128>() as f64;
         (number.unsigned_abs(), mass, energy * self.energy_unit())
     }

@@ -144,10 +144,7 @@ fn places(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>]) -> Result<
         match touched[..] {
             [chamber] => Ok(VentPlace { chamber, area: areas[chamber] }),
             [] => Err(ModelError::VentNowhere { vent: vent.name.clone() }),
-            _ => Err(ModelError::VentOfSeveral {
-                vent: vent.name.clone(),
-                chambers: names(&scene.chambers, &touched),
-            }),
+            _ => Err(ModelError::VentOfSeveral { vent: vent.name.clone(), chambers: names(&scene.chambers, &touched) }),
         }
     };
     scene.vents.iter().zip(&areas).map(place).collect()
@@ -180,5 +177,83 @@ fn add_areas(vents: &[Vent], here: &[usize], triangle: [DVec3; 3], splits: u32, 
         }
     } else if let Some(&first) = here.iter().find(|&&index| vents[index].disc.as_ref().is_none_or(holds)) {
         add(first, area(triangle));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulation::Model;
+
+    /// A box in a box: gas in both, and these vents.
+    fn model(vents: &str, wall: &str) -> Result<Model, ModelError> {
+        let text = format!(
+            "end_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+             [[wall]]\nname = \"outer\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.2, 0.2, 0.2]\ngas = \"inside\"\n{wall}\
+             [[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [0.05, 0.05, 0.05]\nmax = [0.1, 0.1, 0.1]\nthickness = 0.001\n\
+             [[chamber]]\nname = \"inside\"\nregion = {{ box = {{ min = [0.05, 0.05, 0.05], max = [0.1, 0.1, 0.1] }} }}\n\
+             pressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+             [[chamber]]\nname = \"around\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+             {vents}[model]\nparticles = 2000\n"
+        );
+        Model::new(crate::scene::parse(&text, "test.toml", std::path::Path::new("")).unwrap())
+    }
+
+    fn vent(name: &str, keys: &str) -> String {
+        format!("[[vent]]\nname = \"{name}\"\ndischarge = 0.1\n{keys}\n")
+    }
+
+    const DISC: &str = "wall = \"outer\"\nface = \"+x\"\nposition = [0.2, 0.1, 0.1]\ndiameter = 0.05";
+
+    #[test]
+    fn mirrors_have_no_coats() {
+        assert_eq!(model("", "").unwrap().coats, Coats::default());
+    }
+
+    /// The earlier vent has the disc, the later one the rest of the wall.
+    #[test]
+    fn places_share_the_wall_in_order() {
+        let disc = std::f64::consts::PI * 0.025 * 0.025;
+        let close = |found: f64, expected: f64| (found - expected).abs() < 1e-3 * disc;
+        let both = vent("disc", DISC) + &vent("all", "wall = \"outer\"");
+        let coats = model(&both, "").unwrap().coats;
+        assert!(close(coats.vents[0].area, disc), "{} {disc}", coats.vents[0].area);
+        assert!(close(coats.vents[1].area, 0.24 - disc), "{}", coats.vents[1].area);
+        assert!(coats.vents.iter().all(|place| place.chamber == 1));
+        // One coat with both, and one for the other faces.
+        assert_eq!((coats.coats.len(), coats.vent_entries()), (2, 3));
+        let area: f64 = coats.coats.iter().map(|coat| coat.area).sum();
+        assert!((area - 0.24).abs() < 1e-12);
+        // The other way round nothing is left for the disc.
+        let covered = vent("all", "wall = \"outer\"") + &vent("disc", DISC);
+        assert!(matches!(model(&covered, ""), Err(ModelError::VentNowhere { vent }) if vent == "disc"));
+    }
+
+    /// The inner box borders on both chambers; so does its heat.
+    #[test]
+    fn a_wall_between_chambers_has_a_coat_for_each() {
+        let two = vent("two", "wall = \"inner\"");
+        let Err(error) = model(&two, "") else { panic!("which chamber?") };
+        assert!(error.to_string().contains("\"inside\", \"around\""), "{error}");
+        let one = vent("one", "wall = \"inner\"\nchamber = \"inside\"");
+        let coats = model(&one, "").unwrap().coats;
+        assert!((coats.vents[0].area - 6.0 * 0.05 * 0.05).abs() < 1e-12 && coats.vents[0].chamber == 0);
+        assert_eq!(coats.coats.len(), 1);
+        let heated = model(&one, "temperature = 400.0\n").unwrap().coats;
+        assert_eq!(heated.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect::<Vec<_>>(), [(0, 1), (1, 0)]);
+    }
+
+    /// What a probability cannot pass is told before the run.
+    #[test]
+    fn a_vent_too_large_for_its_place_is_warned_of() {
+        let warnings = |keys: &str| model(&vent("disc", &format!("{DISC}\n{keys}")), "").unwrap().plan.warnings;
+        let told = |keys: &str, what: &str| warnings(keys).iter().any(|warning| warning.contains(what));
+        // C23 = .1: .0685 of p / sqrt(RT) on all of the place.
+        assert!(!told("", "vent `disc`"), "{:?}", warnings(""));
+        assert!(told("area = 0.004", "clipped"));
+        assert!(told("area = 0.02", "it cannot"));
+        let wall = |keys: &str| model("", keys).unwrap().plan.warnings;
+        assert!(wall("temperature = 300.0\nheat_transfer = 2e5\n").iter().any(|w| w.contains("heat-transfer")));
+        assert!(wall("temperature = 300.0\nheat_transfer = 100.0\n").is_empty());
     }
 }

@@ -83,13 +83,17 @@ impl<'a> Conditions<'a> {
     /// # Errors
     /// If the state is of another scene; then nothing is changed.
     pub fn restore(&mut self, state: &ConditionsState) -> Result<(), StateError> {
-        let empty = Seen::default();
-        let own = &self.state;
-        for (what, found, expected) in [
-            ("coats of walls", state.most_asked.len(), own.most_asked.len()),
-            ("vents", state.current.vents.len(), if self.mirrors() { 0 } else { self.model.scene.vents.len() }),
-        ] {
-            if found != expected && state.current != empty {
+        let (chambers, vents) = (self.model.plan.chambers.len(), self.model.scene.vents.len());
+        let mut lengths = vec![("coats of walls", state.most_asked.len(), self.state.most_asked.len())];
+        // Where all walls are mirrors nothing is seen.
+        for seen in [&state.latest, &state.current].into_iter().filter(|seen| **seen != Seen::default()) {
+            lengths.push(("chambers", seen.chambers.len(), chambers));
+            lengths.push(("vents", seen.vents.len(), vents));
+            let gases = seen.chambers.iter().map(|gas| ("gases", gas.moles.len(), self.model.plan.gases.len()));
+            lengths.extend(gases);
+        }
+        for (what, found, expected) in lengths {
+            if found != expected {
                 return Err(StateError::differs(what, found as u64, expected as u64));
             }
         }
@@ -184,7 +188,8 @@ impl<'a> Conditions<'a> {
             return (coating, Vec::new());
         }
         let model = self.model;
-        let flows: Vec<(Wanted, f64)> = (0..model.scene.vents.len()).map(|index| self.flow(index, start, end)).collect();
+        let flows: Vec<(Wanted, f64)> =
+            (0..model.scene.vents.len()).map(|index| self.flow(index, start, end)).collect();
         let heaviest = self.scales.reference_mass / model.plan.moles_per_particle;
         for (index, coat) in model.coats.coats.iter().enumerate() {
             let first_vent = coating.vents.len() as u32;
@@ -234,7 +239,7 @@ impl<'a> Conditions<'a> {
         let Some(gas) = self.local(&self.state.current, place.chamber) else {
             return (Wanted::default(), 0.0);
         };
-        let seen = self.state.current.vents[index];
+        let seen = self.state.current.vents.get(index).copied().unwrap_or_default();
         let area = vent.area.unwrap_or(place.area);
         let over = area * (end - start);
         let isentropic = over * gas.isentropic_flux(vent.external_pressure);

@@ -179,13 +179,8 @@ impl Machine<'_, '_> {
             first_id: interval.first_id,
             stride: interval.stride,
         };
-        let slots = self.subdomain.begin_interval(
-            device,
-            interval.first_step,
-            interval.dt,
-            &newborns,
-            &interval.coating,
-        )?;
+        let slots =
+            self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns, &interval.coating)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;

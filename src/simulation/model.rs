@@ -1,7 +1,7 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
-use crate::plan::{Measured, Plan, PlanError, plan};
+use crate::plan::{Measured, MeasuredVent, Plan, PlanError, plan};
 use crate::scene::{Opening, Scene};
 
 use super::coats::Coats;
@@ -40,6 +40,7 @@ impl Model {
     pub fn new(scene: Scene) -> Result<Model, ModelError> {
         let vessel = Vessel::build(&scene.walls)?;
         check_orifices(&scene, &vessel)?;
+        let coats = Coats::new(&scene, &vessel)?;
         let (bounds_min, bounds_max) = vessel.bounds;
         let measured = Measured {
             gas_volume: vessel.gas_volume(),
@@ -48,8 +49,9 @@ impl Model {
             bounds_max,
             openings: found_openings(&scene, &vessel),
             smallest_gap: None,
+            vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
+            heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
         };
-        let coats = Coats::new(&scene, &vessel)?;
         let plan = plan(&scene, &measured)?;
         Ok(Model { scene, vessel, plan, coats })
     }

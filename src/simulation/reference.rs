@@ -1,6 +1,6 @@
 //! The control-volume reference of a run: the same chambers, openings and curves without space.
 
-use crate::gas::{Collisions, ControlVolume, HeatedWall, Reservoir, Source, State};
+use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State};
 use crate::plan::Plan;
 use crate::scene::{Method, Opening, Scene};
 
@@ -22,7 +22,7 @@ pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
         sources: sources.collect(),
         openings: plan.openings.iter().map(opening).collect(),
         walls: walls(model),
-        vents: Vec::new(),
+        vents: vents(model),
         collisions: (plan.method != Method::None)
             .then_some(Collisions { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle }),
     };
@@ -36,6 +36,16 @@ fn walls(model: &Model) -> Vec<HeatedWall> {
         Some(HeatedWall { chamber: coat.chamber, area: coat.area, heat })
     });
     heated.collect()
+}
+
+fn vents(model: &Model) -> Vec<OpenVent> {
+    let places = model.scene.vents.iter().zip(&model.coats.vents);
+    let open = places.map(|(vent, place)| OpenVent {
+        chamber: place.chamber,
+        area: vent.area.unwrap_or(place.area),
+        vent: vent.clone(),
+    });
+    open.collect()
 }
 
 fn opening(planned: &crate::plan::OpeningPlan) -> Opening {

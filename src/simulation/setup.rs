@@ -66,11 +66,8 @@ impl Setup {
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts);
         let zones = zones(model);
-        let tallied = Patches {
-            surfaces: patches.len(),
-            coats: model.coats.coats.len(),
-            vents: model.scene.vents.len(),
-        };
+        let tallied =
+            Patches { surfaces: patches.len(), coats: model.coats.coats.len(), vents: model.scene.vents.len() };
         let input = DomainInput {
             plan,
             walls: &walls,

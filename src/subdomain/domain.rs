@@ -51,7 +51,11 @@ impl Domain {
         Ok(Domain {
             plan: plan.clone(),
             features,
-            compiled: Compiled::new(device, features, &constants(plan, features, input.patches, input.walls, &Scales::new(plan)))?,
+            compiled: Compiled::new(
+                device,
+                features,
+                &constants(plan, features, input.patches, input.walls, &Scales::new(plan)),
+            )?,
             buffers: DomainBuffers::new(device, input.walls, input.zones, &gas_table(plan))?,
             words,
             patches: input.patches,

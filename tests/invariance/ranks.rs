@@ -7,7 +7,7 @@ use corpuscle::simulation::{Model, Options};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, plate, tank, tube};
+use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -95,6 +95,13 @@ fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way::new(2, Off, 1), Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)];
     let runs = same(&cold_walls(), &ways);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
+}
+
+#[test]
+fn vents_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [Way::new(2, Dynamic, 1), Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)];
+    same(&venting(), &ways);
+    same(&venting_freely(), &[Way::new(3, Off, 1)]);
 }
 
 /// Free flight is shared out by ids.

@@ -64,6 +64,21 @@ pub fn gas_box() -> Model {
     published("box.toml", 2000, 4e-4)
 }
 
+/// Gas flows in and leaves through a vent that opens on the way and through leaking walls.
+pub fn venting() -> Model {
+    let mut scene = published("vent.toml", 1500, 0.006).scene;
+    scene.vents[0].opening_pressure = 5e3;
+    scene.output.rows = 10;
+    Model::new(scene).expect("a model")
+}
+
+/// The same in free flight, where those that have left leave their places empty.
+pub fn venting_freely() -> Model {
+    let mut scene = venting().scene;
+    scene.model.method = Some(corpuscle::scene::Method::None);
+    Model::new(scene).expect("a model")
+}
+
 /// Free flight: not even its memory is in order.
 pub fn effusion() -> Model {
     published("effusion.toml", 3000, 4e-3)

@@ -9,6 +9,7 @@ mod blocks;
 mod bounce;
 mod choose;
 mod closed;
+mod coats;
 mod exchange;
 mod fly;
 mod lists;

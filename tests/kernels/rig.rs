@@ -187,6 +187,7 @@ impl Rig {
             ("COATS", 0.0),
             ("VENTS", 0.0),
             ("SEED_LOW", 0.0),
+            ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),
         ];
         let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), constants };

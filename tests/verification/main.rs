@@ -12,7 +12,9 @@ mod filling;
 mod orifice;
 mod statistics;
 mod two_chambers;
+mod vents;
 mod vessels;
 mod wall_pressure;
+mod walls;
 #[path = "../whole_run/mod.rs"]
 mod whole_run;

@@ -4,12 +4,19 @@
 //! vent that is open (`vent`).
 
 use super::ControlVolume;
-use crate::gas::vent::{LocalGas, flux};
+use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::heat_flux;
 
 impl ControlVolume {
+    /// Opens the vents whose chambers have reached their opening pressure.
+    pub(super) fn open_vents(&self, contents: &[f64], open: &mut [bool]) {
+        for (vent, open) in self.vents.iter().zip(open) {
+            *open = opens(&vent.vent, *open, self.side(contents, vent.chamber).pressure());
+        }
+    }
+
     /// Takes the losses at a time (s) from the time derivative of the unknowns.
-    pub(super) fn lose(&self, time: f64, contents: &[f64], rate: &mut [f64]) {
+    pub(super) fn lose(&self, time: f64, contents: &[f64], open: &[bool], rate: &mut [f64]) {
         let stride = self.stride();
         for wall in &self.walls {
             let side = self.side(contents, wall.chamber);
@@ -17,7 +24,7 @@ impl ControlVolume {
             let flux = heat_flux(&wall.heat, &self.gases, &concentrations, side.temperature);
             rate[(wall.chamber + 1) * stride - 1] -= wall.area * flux;
         }
-        for open in &self.vents {
+        for (open, _) in self.vents.iter().zip(open).filter(|(_, open)| **open) {
             let side = self.side(contents, open.chamber);
             let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
             let Some(gas) = LocalGas::new(&self.gases, &concentrations, side.temperature) else { continue };
