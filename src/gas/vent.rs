@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(flux(&lower, &air, 0.0), flux(&whole, &air, 0.0));
         let subsonic = Vent { external_pressure: 1.8e5, ..whole.clone() };
         assert!(flux(&subsonic, &air, 0.0) < 0.7 * flux(&whole, &air, 0.0));
-        assert_eq!(flux(&Vent { external_pressure: 2e5, ..whole }, &air, 0.0), 0.0);
+        assert_eq!(flux(&Vent { external_pressure: 2.0001e5, ..whole }, &air, 0.0), 0.0);
     }
 
     #[test]

@@ -76,7 +76,7 @@ fn vents_have_the_same_bits_in_every_way() {
     let model = venting();
     let first = run(&model, Options::default());
     let audit = &first.outcome.audit;
-    assert!(audit.particles_vented > 100 && audit.particles_injected > 100, "{audit:?}");
+    assert!(audit.particles_vented > 20 && audit.particles_injected > 20, "{audit:?}");
     assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
     assert_eq!(first.rows.last().map(|row| row.particles), Some(audit.particles_inside));
     every_way(&model);
@@ -86,7 +86,7 @@ fn vents_have_the_same_bits_in_every_way() {
 fn vents_in_free_flight_have_the_same_bits_in_every_way() {
     let model = venting_freely();
     let first = run(&model, Options::default());
-    assert!(first.outcome.audit.particles_vented > 50, "{:?}", first.outcome.audit);
+    assert!(first.outcome.audit.particles_vented > 20, "{:?}", first.outcome.audit);
     assert_eq!(first.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
     every_way(&model);
 }

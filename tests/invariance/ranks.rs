@@ -92,15 +92,14 @@ fn box_has_the_same_bits_on_any_number_of_ranks() {
 /// What walls have taken is one sum, and the next intervals follow it on every rank.
 #[test]
 fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
-    let ways = [Way::new(2, Off, 1), Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)];
-    let runs = same(&cold_walls(), &ways);
+    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)]);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
 #[test]
 fn vents_have_the_same_bits_on_any_number_of_ranks() {
-    let ways = [Way::new(2, Dynamic, 1), Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)];
-    same(&venting(), &ways);
+    let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)]);
+    assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
     same(&venting_freely(), &[Way::new(3, Off, 1)]);
 }
 

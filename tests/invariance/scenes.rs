@@ -66,8 +66,9 @@ pub fn gas_box() -> Model {
 
 /// Gas flows in and leaves through a vent that opens on the way and through leaking walls.
 pub fn venting() -> Model {
-    let mut scene = published("vent.toml", 1500, 0.006).scene;
-    scene.vents[0].opening_pressure = 5e3;
+    let mut scene = published("vent.toml", 1000, 0.004).scene;
+    scene.vents[0].opening_pressure = 1e3;
+    scene.vents[0].area = Some(0.004);
     scene.output.rows = 10;
     Model::new(scene).expect("a model")
 }

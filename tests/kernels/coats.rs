@@ -17,7 +17,7 @@ const GASES: [GpuGas; 4] = [
 ];
 /// kT_w over the reference mass, (m/s)^2.
 const THERMAL: f32 = 9e4;
-const ENERGY_SCALE: f64 = 1e-3;
+const ENERGY_SCALE: f64 = 0.1;
 
 /// A world whose walls all have coat 0.
 fn coated() -> World {
@@ -214,8 +214,8 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     }
     let found: u32 = left.iter().sum();
     assert!((f64::from(found) - expected).abs() < 4.5 * f64::sqrt(variance), "{found} {expected}");
-    // The check can fail: a tenth more would be seen.
-    assert!(0.1 * expected > 4.5 * f64::sqrt(variance));
+    // The check can fail: a fifth more would be seen.
+    assert!(0.2 * expected > 4.5 * f64::sqrt(variance));
     assert!(inside > 2000.0 && inside < 7000.0, "{inside}");
     let words: Vec<u32> = rig.get("sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
     let at = SURFACE_WORDS + COAT_WORDS;
