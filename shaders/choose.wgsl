@@ -1,9 +1,10 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl lists.wgsl chooser.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl
 // Each particle picks its earliest possible collision (closest approach, specification, section 2).
 //
 // Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
 // One thread per particle in the first round, per entry of `rechoose` in later ones: only a particle that
-// collided, or whose neighbour did, can choose otherwise than before. The choice is the minimum over (time, partner id), so it does not depend on
+// collided, or whose neighbour did, can choose otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
+// choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
 // the order of the candidates; both particles of a pair evaluate it with the lower id first, in the one
 // place below, so that they agree to the last bit.
 
@@ -17,10 +18,18 @@ override DIAMETER: f32;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
 
+@group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
+
 @compute @workgroup_size(WORKGROUP)
 fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = chooser(linear(id, groups));
     if (s == NOBODY) {
+        return;
+    }
+    if (step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&layers[s]) & LAYER)) {
+        if (step.round == 0u) {
+            choices[s] = vec2<u32>(NOBODY, 0u);
+        }
         return;
     }
     var best = vec2<u32>(NOBODY, 0u);
@@ -64,4 +73,9 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         best_id = other_id;
     }
     choices[s] = best;
+    if (step.ghosts == GHOSTS_WAIT && best.x != NOBODY && waits(atomicLoad(&layers[best.x]) & LAYER)) {
+        if ((atomicOr(&layers[best.x], ASKED) & ASKED) == 0u) {
+            asked[append(LIST_ASKED)] = best.x;
+        }
+    }
 }

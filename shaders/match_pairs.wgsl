@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl chooser.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl chooser.wgsl
 // Settle, part 1: the pairs whose choices are mutual.
 //
 // Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.

@@ -1,11 +1,11 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than the cell edge (which the plan makes at least
 // sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more.
 //
 // Reads `middles`, `cells`, `cell_start`; writes `neighbours` (the k-th of particle s at k * stride + s)
 // and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per
-// particle, which writes its own list. Where a list is too short, the longest one wanted is kept, and the
+// particle, or per ghost that was asked (asked.wgsl), which writes its own list. Where a list is too short, the longest one wanted is kept, and the
 // host runs the interval again with longer lists.
 
 override VENTS: bool = true;
@@ -17,16 +17,23 @@ override VENTS: bool = true;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(25) var<storage, read_write> screened: array<u32>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
-@group(0) @binding(32) var<storage, read> layers: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
-    if (s >= step.total) {
+    var s = linear(id, groups);
+    let late = step.ghosts == GHOSTS_ASKED;
+    if (late) {
+        s = asked_of(s);
+        if (s == NOBODY || (layers[s] & SEARCHED) != 0u) {
+            return;
+        }
+    } else if (s >= step.total) {
         return;
     }
     // The outermost ghosts have no neighbours beyond them here, and choose nobody; nor do slots without particle.
-    if ((VENTS || step.depth > 0u) && (layers[s] & LAYER) >= max(step.depth, 1u)) {
+    let layer = layers[s] & LAYER;
+    if ((VENTS || step.depth > 0u) && (layer >= max(step.depth, 1u) || waits(layer))) {
         neighbour_count[s] = 0u;
         return;
     }
@@ -54,7 +61,10 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (found > step.list) {
         atomicMax(&counters[MOST_NEIGHBOURS], found);
     }
-    if (found > 0u && (flags & NEAR_WALL) != 0u) {
+    let walls = found > 0u && (flags & NEAR_WALL) != 0u;
+    if (late) {
+        layers[s] |= SEARCHED | select(0u, UNSCREENED, walls);
+    } else if (walls) {
         screened[append(LIST_SCREEN)] = s;
     }
 }

@@ -3,7 +3,8 @@
 // the step.
 //
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns` and the classes of the cells; writes
-// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), `layers`, clears what the
+// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), `layers`, `origins` (the place in
+// `particles`), clears what the
 // search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
 // the number of lower ids in the cell: a function of the set, not of any order.
 
@@ -18,6 +19,7 @@
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(28) var<storage, read_write> touched: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(44) var<storage, read_write> origins: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 override ORIFICES: bool = true;
@@ -53,6 +55,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let flag = select(0u, NEAR_WALL, may_part(cell_index(place_in_grid)));
     var mark = 0u;
     if (step.depth > 0u) {
+        origins[place] = slot.x;
         mark = layer_of(place_in_grid);
         if (mark == 0u && !in_box(place_in_grid, step.inner_low, step.inner_high)) {
             mark = SHARED;

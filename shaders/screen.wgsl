@@ -1,30 +1,53 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl lists.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl lists.wgsl asked.wgsl walls.wgsl
 // Takes from the neighbour lists near walls those that stand behind a wall where their flights start.
 //
 // Reads `sorted`, `flights` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
-// per entry of `screened`. The test of a pair takes the lower id first, so both sides agree.
+// per entry of `screened`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
+// and so the start of the step is taken from `particles` and `newborns`. The test of a pair takes the lower id first, so both sides agree.
 
+@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(25) var<storage, read> screened: array<u32>;
 
+@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(44) var<storage, read> origins: array<u32>;
+
+// Where a flight starts in this step.
+fn first_place(s: u32) -> vec3<u32> {
+    if (step.ghosts == GHOSTS_ASKED) {
+        let particle = particles[origins[s]];
+        return shifted(particle.position, particle.velocity * birth_time(id_of(particle.tag)));
+    }
+    return shifted(sorted[s].position, sorted[s].velocity * flights[s].start);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = linear(id, groups);
-    if (entry >= atomicLoad(&counters[LIST_SCREEN])) {
+    var s = NOBODY;
+    if (step.ghosts == GHOSTS_ASKED) {
+        s = asked_of(entry);
+        if (s == NOBODY || (layers[s] & UNSCREENED) == 0u) {
+            return;
+        }
+        layers[s] &= ~UNSCREENED;
+    } else if (entry < atomicLoad(&counters[LIST_SCREEN])) {
+        s = screened[entry];
+    } else {
         return;
     }
-    let s = screened[entry];
     let stride = arrayLength(&neighbour_count);
     let listed = neighbour_count[s];
     let tag = sorted[s].tag;
-    let place = shifted(sorted[s].position, sorted[s].velocity * flights[s].start);
+    let place = first_place(s);
     var kept = 0u;
     for (var k = 0u; k < listed; k++) {
         let j = neighbours[k * stride + s];
-        let there = shifted(sorted[j].position, sorted[j].velocity * flights[j].start);
+        let there = first_place(j);
         let first = id_of(tag) < id_of(sorted[j].tag);
         if (!blocked(select(there, place, first), select(place, there, first))) {
             neighbours[kept * stride + s] = j;

@@ -48,11 +48,13 @@ fn twins() -> Vec<Twin> {
             inner_low,
             first,
             inner_high,
-            tallies_left,
+            ghosts,
             peers,
             near_peers,
             list,
-            stride
+            stride,
+            // The tail padding is not named in the shader.
+            tallies_left
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         // The tail padding is not named in the shader.

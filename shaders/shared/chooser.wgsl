@@ -1,10 +1,13 @@
 // Who chooses in a round: all particles in the first, in later ones those of `rechoose`, which a collision
-// may have made choose otherwise.
+// may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
 @group(0) @binding(29) var<storage, read> rechoose: array<u32>;
 
 // The particle of a thread, or NOBODY.
 fn chooser(thread: u32) -> u32 {
+    if (step.ghosts == GHOSTS_ASKED) {
+        return asked_of(thread);
+    }
     if (step.round == 0u) {
         return select(NOBODY, thread, thread < step.total);
     }

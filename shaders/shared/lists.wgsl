@@ -4,7 +4,8 @@
 
 // Lists 0 .. 8 are the pairs of the rounds; list ROUNDS counts the pairs that the rounds lost. Lists
 // LIST_RECHOOSE + r are the particles that choose again in round r >= 1. LIST_BORDER are the particles
-// that other devices may need, LIST_CHANGED those of them that a round has changed; COUNT_OUTBOX and
+// that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
+// were asked for their choice; COUNT_OUTBOX and
 // COUNT_UPDATES count what is sent, COUNT_DROPPED the slots that hold no particle of this device or its halo.
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
@@ -14,6 +15,7 @@ const LIST_CHANGED: u32 = 13;
 const COUNT_OUTBOX: u32 = 14;
 const COUNT_UPDATES: u32 = 15;
 const LIST_RECHOOSE: u32 = 16;
+const LIST_ASKED: u32 = 26;
 const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
 
@@ -24,7 +26,7 @@ const GROUP_LIMIT: u32 = 65535;
 @group(0) @binding(19) var<storage, read_write> dispatches: array<atomic<u32>>;
 
 // (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs,
-// is given the buffer `rechoose_dispatches` by this name.)
+// is given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
 //
 // The place of a new entry; makes sure that the list's dispatch covers it.
 fn append(list: u32) -> u32 {

@@ -26,8 +26,12 @@ fn layer_of(c: vec3<u32>) -> u32 {
 }
 
 // `layers` holds a particle's layer and these marks: another device has it as a ghost; it is in the list
-// `changed`; it may meet a wall in this step.
+// `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched, and they
+// are yet to be screened.
 const LAYER: u32 = 0xff;
 const SHARED: u32 = 0x100;
 const LISTED: u32 = 0x200;
 const NEAR: u32 = 0x400;
+const ASKED: u32 = 0x800;
+const SEARCHED: u32 = 0x1000;
+const UNSCREENED: u32 = 0x2000;

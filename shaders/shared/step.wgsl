@@ -36,8 +36,8 @@ struct Step {
     // The first slot to bin.
     first: u32,
     inner_high: vec3<u32>,
-    // Tallies of the zones in this interval at the end of this step or later.
-    tallies_left: u32,
+    // Which ghosts choose partners, and in which pass: see asked.wgsl.
+    ghosts: u32,
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
     near_peers: u32,
@@ -45,6 +45,8 @@ struct Step {
     list: u32,
     // Distance of the ids of two newborns.
     stride: u32,
+    // Tallies of the zones in this interval at the end of this step or later.
+    tallies_left: u32,
 }
 
 override WORKGROUP: u32 = 64;

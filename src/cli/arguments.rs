@@ -157,6 +157,15 @@ pub struct TuningArguments {
     /// Rounds of collisions between two exchanges of borders: more are fewer messages and wider borders [default: what proves fastest]
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
     pub halo_rounds: Option<u32>,
+    /// Which particles of others choose partners here: those that an own one has chosen, or all within reach [default: what proves faster]
+    #[arg(long, value_enum)]
+    pub ghosts: Option<GhostsThatChoose>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum GhostsThatChoose {
+    Asked,
+    All,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -131,7 +131,7 @@ impl Job<'_> {
             batch: execution.batch,
             stop_after_steps: execution.stop_after_steps,
             checkpoint_at_stop: execution.checkpoints.every.is_some(),
-            halo_rounds: execution.sharing.halo_rounds,
+            halo: execution.sharing.halo,
             balance: execution.sharing.balance,
             ..Options::default()
         };

@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 
 use crate::partition::By;
 use crate::scene::{Scene, load};
-use crate::simulation::{BalanceMode, BalanceOptions, Model};
+use crate::simulation::{BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model};
 
 use super::CliError;
-use super::arguments::{Balance, BalanceBy, ExecutionArguments, RunArguments, SceneArguments, SharingArguments};
+use super::arguments::{
+    Balance, BalanceBy, ExecutionArguments, GhostsThatChoose, RunArguments, SceneArguments, SharingArguments,
+    TuningArguments,
+};
 use super::run::Wanted;
 
 /// The scene of the file with the overrides in it, as if the file had said so.
@@ -61,7 +64,7 @@ pub struct Sharing {
     /// Subdomains in this process; 1 under a launcher of several ranks.
     pub subdomains: usize,
     pub balance: BalanceOptions,
-    pub halo_rounds: Option<u32>,
+    pub halo: HaloOptions,
 }
 
 impl From<BalanceBy> for By {
@@ -70,6 +73,16 @@ impl From<BalanceBy> for By {
             BalanceBy::Cost => By::Cost,
             BalanceBy::Particles => By::Particles,
         }
+    }
+}
+
+impl From<&TuningArguments> for HaloOptions {
+    fn from(raw: &TuningArguments) -> HaloOptions {
+        let ghosts = raw.ghosts.map(|ghosts| match ghosts {
+            GhostsThatChoose::Asked => Ghosts::Asked,
+            GhostsThatChoose::All => Ghosts::All,
+        });
+        HaloOptions { rounds: raw.halo_rounds, ghosts }
     }
 }
 
@@ -88,7 +101,7 @@ impl Sharing {
         Ok(Sharing {
             subdomains: raw.subdomains.unwrap_or(1) as usize,
             balance: BalanceOptions { mode, by, every: raw.tuning.balance_every, threshold },
-            halo_rounds: raw.tuning.halo_rounds,
+            halo: HaloOptions::from(&raw.tuning),
         })
     }
 }

@@ -11,7 +11,7 @@ use crate::output::{
 };
 use crate::partition::By;
 use crate::scene::{Scene, to_toml};
-use crate::simulation::{Model, Setup, initial_particles};
+use crate::simulation::{Ghosts, HaloOptions, Model, Setup, initial_particles};
 use crate::study::emulation::{Effort, Emulated, State, emulate};
 use crate::study::launched::{Case, Measured, Program, compare, take_turns, together};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
@@ -20,7 +20,7 @@ use crate::study::state::{Moment, weights};
 use crate::study::{Strategy, StudyError};
 
 use super::CliError;
-use super::arguments::{Balance, BalanceBy, EmulationArguments, SweepArguments};
+use super::arguments::{Balance, BalanceBy, EmulationArguments, GhostsThatChoose, SweepArguments};
 use super::settings::{model_of, scene_of};
 use super::terminal::say;
 
@@ -202,6 +202,13 @@ impl SweepPlan {
             ("--balance-by", by.to_owned()),
         ];
         words.extend(tuning.halo_rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
+        words.extend(tuning.ghosts.map(|ghosts| {
+            let word = match ghosts {
+                GhostsThatChoose::Asked => "asked",
+                GhostsThatChoose::All => "all",
+            };
+            ("--ghosts", word.to_owned())
+        }));
         words.extend(self.raw.gpu.as_ref().map(|gpu| ("--gpu", gpu.clone())));
         words.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect()
     }
@@ -210,8 +217,10 @@ impl SweepPlan {
         let path = &self.raw.scene.scene;
         let (network, gpu) = assumed(&self.raw.emulation);
         let by = By::from(self.raw.tuning.balance_by);
-        let effort =
-            Effort { intervals: self.raw.emulation.intervals as usize, by, halo_rounds: self.raw.tuning.halo_rounds };
+        // So few steps are no time to try what is faster.
+        let halo = HaloOptions::from(&self.raw.tuning);
+        let halo = HaloOptions { ghosts: halo.ghosts.or(Some(Ghosts::Asked)), ..halo };
+        let effort = Effort { intervals: self.raw.emulation.intervals as usize, by, halo };
         let pairs = self.pairs(&self.devices);
         let mut of_pairs: Vec<Vec<(f64, Emulated)>> = vec![Vec::new(); pairs.len()];
         let mut particles = 0;

@@ -60,7 +60,8 @@ impl LocalGas {
 pub fn flux(vent: &Vent, gas: &LocalGas, time: f64) -> f64 {
     let outside = vent.external_pressure;
     let excess = gas.pressure - outside;
-    if excess <= 0.0 {
+    // Rounding is no excess.
+    if excess <= 1e-12 * gas.pressure {
         return 0.0;
     }
     match &vent.flow {

@@ -9,8 +9,11 @@
 //! sum over rows of u / u_max (t - b . z)^2  +  RIDGE sum_j (b_j - mean t)^2,   b >= 0,   c = b p
 //! ```
 //!
-//! where a row counts FORGET per interval of age. The ridge holds what the rows cannot tell apart (a uniform gas) at
-//! the prior. Four unknowns have sixteen sets of positive ones: the best is found by trying them.
+//! where a row counts FORGET per interval of age. Where the device tells the seconds of the search for pairs apart, a
+//! measurement is two rows: those seconds are of candidates and steps, the others of particles, wall tests and steps.
+//! (In one sum particles and candidates are hard to tell apart, as most particles have much the same number of them.)
+//! The ridge holds what the rows cannot tell apart (a uniform gas) at
+//! the prior. Five unknowns have 32 sets of positive ones: the best is found by trying them.
 //!
 //! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of what
 //! the speeds in force leave. It leaves 1 where it is off by more than both a dead band and five standard errors, so
@@ -44,6 +47,8 @@ pub struct Work {
 pub struct Measurement {
     pub work: Work,
     pub seconds: f64,
+    /// Those of them in which pairs were sought and collided, where the device tells.
+    pub pair_seconds: Option<f64>,
 }
 
 /// Weights for the histogram kernel. A particle of up to 2^17 candidates and as many wall tests weighs less than 2^32,
@@ -55,9 +60,11 @@ pub struct IntegerWeights {
     pub wall: u32,
 }
 
-const FEATURES: usize = 4;
-/// Costs before any are measured, relative to a particle: candidate, wall test, and the fixed cost of a step.
-const PRIOR: [f64; FEATURES] = [1.0, 0.05, 1.0, 10_000.0];
+/// Particle, candidate, wall test, step apart from the search for pairs, step of that search.
+const FEATURES: usize = 5;
+/// Costs before any are measured, relative to a particle.
+const PRIOR: [f64; FEATURES] = [1.0, 0.1, 1.0, 6_000.0, 4_000.0];
+const OF_PAIRS: [bool; FEATURES] = [false, true, false, false, true];
 /// Squared noise of a measurement (0.15) over squared doubt about the prior (1), both relative.
 const RIDGE: f64 = 0.02;
 const FORGET: f64 = 0.95;
@@ -70,6 +77,8 @@ const FOLLOW_ERRORS: f64 = 2.0;
 const NOISE: f64 = 0.2;
 /// Intervals before a speed is judged.
 const FEWEST: u32 = 10;
+/// Of what a rank would have without ghosts.
+const LEAST_SHARE: f64 = 0.2;
 /// The largest weight.
 const WEIGHT_ONE: f64 = 16_384.0;
 
@@ -120,17 +129,18 @@ impl CostModel {
     /// If the number of measurements is not that of the ranks.
     pub fn observe(&mut self, measurements: &[Measurement]) {
         assert_eq!(measurements.len(), self.ranks.len(), "one measurement per rank");
-        let units = |of: &Measurement| prior_units(&of.work).iter().sum::<f64>();
+        let units = |of: &Measurement| of.work.units().iter().sum::<f64>();
         let valid = |of: &Measurement| of.seconds.is_finite() && of.seconds > 0.0 && units(of) > 0.0;
         let largest = measurements.iter().map(units).fold(0.0, f64::max);
         for (rank, of) in self.ranks.iter_mut().zip(measurements) {
             rank.forget();
             if valid(of) {
-                rank.add_row(
-                    prior_units(&of.work).map(|unit| unit / units(of)),
-                    of.seconds / units(of),
-                    units(of) / largest,
-                );
+                for (features, seconds) in of.rows() {
+                    let all: f64 = features.iter().sum();
+                    if all > 0.0 {
+                        rank.add_row(features.map(|unit| unit / all), seconds / all, all / largest);
+                    }
+                }
             }
         }
         self.fit();
@@ -149,12 +159,13 @@ impl CostModel {
     /// Seconds per particle, candidate, wall test and step on a device of speed 1. Before anything is measured they are
     /// relative to a particle.
     pub fn coefficients(&self) -> [f64; 4] {
-        std::array::from_fn(|feature| self.scaled[feature] * PRIOR[feature])
+        let [particle, candidate, wall, step, search] = std::array::from_fn(|k| self.scaled[k] * PRIOR[k]);
+        [particle, candidate, wall, step + search]
     }
 
     /// The seconds that the work takes on a device of speed 1.
     pub fn cost(&self, work: &Work) -> f64 {
-        prior_units(work).iter().zip(&self.scaled).map(|(unit, scaled)| unit * scaled).sum()
+        work.units().iter().zip(&self.scaled).map(|(unit, scaled)| unit * scaled).sum()
     }
 
     /// The speeds of the ranks' devices, of mean 1.
@@ -172,6 +183,31 @@ impl CostModel {
         }
     }
 
+    /// As [`CostModel::shares`], less for a rank with more ghosts: they cost it time, but are weighed where they are
+    /// owned. `loads`: what each rank did, and how many of its particles were ghosts. With own weight w, cost of
+    /// ghosts g and speed v all times (w + g)/v are to be the same: w = v t - g.
+    ///
+    /// # Panics
+    /// If the number of loads is not that of the ranks.
+    pub fn shares_beside_ghosts(&self, loads: &[(Work, u64)]) -> Vec<f64> {
+        assert_eq!(loads.len(), self.ranks.len(), "one load per rank");
+        let speeds = self.shares();
+        let [particle, .., step] = self.coefficients();
+        let all: f64 = loads.iter().map(|(work, _)| self.cost(work) - step * work.steps as f64).sum();
+        if self.by == By::Particles || all <= 0.0 {
+            return speeds;
+        }
+        let count = loads.len() as f64;
+        let time = all / count;
+        let wanted = speeds.iter().zip(loads).map(|(speed, (_, ghosts))| {
+            // A rank with hardly anything but ghosts keeps a part.
+            (speed * time - particle * *ghosts as f64).max(LEAST_SHARE * speed * time)
+        });
+        let wanted: Vec<f64> = wanted.collect();
+        let mean = wanted.iter().sum::<f64>() / count;
+        wanted.iter().map(|share| share / mean).collect()
+    }
+
     /// The weights in fixed point: the largest is 2^14, or, by particles, a particle is 1.
     pub fn weights(&self) -> IntegerWeights {
         if self.by == By::Particles {
@@ -179,7 +215,7 @@ impl CostModel {
         }
         let [mut particle, mut candidate, mut wall, _] = self.coefficients();
         if particle.max(candidate).max(wall) <= 0.0 {
-            [particle, candidate, wall, _] = PRIOR;
+            [particle, candidate, wall, ..] = PRIOR;
         }
         let scale = WEIGHT_ONE / particle.max(candidate).max(wall);
         let integer = |cost: f64| (cost * scale).round() as u32;
@@ -250,9 +286,24 @@ impl Rank {
     }
 }
 
-fn prior_units(work: &Work) -> [f64; FEATURES] {
-    let counts = [work.particles, work.candidates, work.wall_tests, work.steps];
-    std::array::from_fn(|feature| counts[feature] as f64 * PRIOR[feature])
+impl Work {
+    /// By the prior, of each feature.
+    fn units(&self) -> [f64; FEATURES] {
+        let counts = [self.particles, self.candidates, self.wall_tests, self.steps, self.steps];
+        std::array::from_fn(|feature| counts[feature] as f64 * PRIOR[feature])
+    }
+}
+
+impl Measurement {
+    /// Features and the seconds that they took together.
+    fn rows(&self) -> Vec<([f64; FEATURES], f64)> {
+        let units = self.work.units();
+        let only = |of_pairs: bool| std::array::from_fn(|k| if OF_PAIRS[k] == of_pairs { units[k] } else { 0.0 });
+        match self.pair_seconds.filter(|pairs| (0.0..=self.seconds).contains(pairs)) {
+            None => vec![(units, self.seconds)],
+            Some(pairs) => vec![(only(false), self.seconds - pairs), (only(true), pairs)],
+        }
+    }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

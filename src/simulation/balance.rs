@@ -22,6 +22,8 @@ const STEPS_OF_A_REBALANCE: f64 = 5.0;
 pub struct Load {
     /// Device time of the step, s; where the device does not time, from submissions to their ends.
     pub seconds: f64,
+    /// Those of them in which pairs were sought and collided, where the device times.
+    pub pair_seconds: Option<f64>,
     /// Ghosts included.
     pub particles: u64,
     /// Entries of the neighbour lists.
@@ -39,13 +41,14 @@ pub struct Load {
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 9;
+const LOAD_WORDS: usize = 10;
 
 impl Load {
-    /// `traffic`: that of the interval.
-    pub fn new(seconds: f64, present: u32, own: &Tallies, traffic: &Traffic) -> Load {
+    /// `seconds`: all, and those of pairs; `traffic`: that of the interval.
+    pub fn new((seconds, pair_seconds): (f64, Option<f64>), present: u32, own: &Tallies, traffic: &Traffic) -> Load {
         Load {
             seconds,
+            pair_seconds,
             particles: present.into(),
             candidates: own.counters.candidates.into(),
             walls: own.counters.near_walls.into(),
@@ -71,6 +74,8 @@ impl Load {
             self.bytes,
             nanoseconds(self.rebalancing),
             nanoseconds(self.wall),
+            // 0 is no time.
+            self.pair_seconds.map_or(0, |seconds| 1 + nanoseconds(seconds)),
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -89,6 +94,7 @@ impl Load {
             bytes: w[6],
             rebalancing: 1e-9 * w[7] as f64,
             wall: 1e-9 * w[8] as f64,
+            pair_seconds: w[9].checked_sub(1).map(|nanoseconds| 1e-9 * nanoseconds as f64),
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }
@@ -96,6 +102,10 @@ impl Load {
     /// Of one step.
     pub fn work(&self) -> Work {
         Work { particles: self.particles, candidates: self.candidates, wall_tests: self.walls, steps: 1 }
+    }
+
+    fn measurement(&self) -> Measurement {
+        Measurement { work: self.work(), seconds: self.seconds, pair_seconds: self.pair_seconds }
     }
 }
 
@@ -184,8 +194,7 @@ impl Balance {
         if loads.is_empty() {
             return;
         }
-        let measured: Vec<Measurement> =
-            loads.iter().map(|load| Measurement { work: load.work(), seconds: load.seconds }).collect();
+        let measured: Vec<Measurement> = loads.iter().map(Load::measurement).collect();
         self.model.observe(&measured);
         let predicted: Vec<f64> = match self.options.by {
             By::Particles => loads.iter().map(|load| load.owned as f64).collect(),
@@ -251,7 +260,7 @@ impl Balance {
                     return Ok(0.0);
                 }
                 let weights = self.model.weights();
-                ([weights.particle, weights.candidate, weights.wall], self.model.shares())
+                ([weights.particle, weights.candidate, weights.wall], self.shares())
             }
         };
         let start = Instant::now();
@@ -262,6 +271,15 @@ impl Balance {
         self.rebalances.push((step, [over(&before), over(&after)]));
         self.since = Some(step);
         Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// Of the weights, that even out the ranks' times.
+    fn shares(&self) -> Vec<f64> {
+        let Some(latest) = self.records.last() else {
+            return self.model.shares();
+        };
+        let load = |load: &Load| (load.work(), load.particles.saturating_sub(load.owned));
+        self.model.shares_beside_ghosts(&latest.loads.iter().map(load).collect::<Vec<_>>())
     }
 
     /// Whether it is time to look, and what is seen asks for a rebalance.

@@ -12,6 +12,7 @@ use crate::subdomain::{Cells, GpuParticle, Place, Subdomain};
 
 use super::SimulationError;
 use super::exchange::Exchange;
+use super::tuning::Halo;
 
 /// Layers of cells beyond the halo from which a particle may come in a step. A particle that flew farther is
 /// found by its owner of the step before, and the interval is run again with everyone as a peer.
@@ -20,7 +21,7 @@ const FLIGHT: u32 = 6;
 pub struct Decomposition {
     tree: Tree,
     rank: usize,
-    depth: u32,
+    halo: Halo,
     /// Everyone is a peer.
     wide: bool,
     /// The particles may be with anyone.
@@ -28,21 +29,21 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Equal boxes, or boxes of equal weight of `particles`. `rounds`: those between two exchanges.
+    /// Equal boxes, or boxes of equal weight of `particles`.
     ///
     /// # Errors
     /// If there are more ranks than cells.
     pub fn new(
         plan: &Plan,
         comm: &dyn Communicator,
-        rounds: u32,
+        halo: Halo,
         particles: Option<&[GpuParticle]>,
     ) -> Result<Decomposition, PartitionError> {
         let root = root(plan);
         let shares = vec![1.0; comm.size()];
         let cells = particles.unwrap_or_default().iter().map(|particle| (cell_of(plan, particle), 1));
         let tree = bisect(root, &shares, None, cells)?;
-        Ok(Decomposition { tree, rank: comm.rank(), depth: 2 * rounds, wide: false, scattered: true })
+        Ok(Decomposition { tree, rank: comm.rank(), halo, wide: false, scattered: true })
     }
 
     /// The particles that a rank starts with: those whose cells it owns. (The first exchange decides by the cells
@@ -63,13 +64,14 @@ impl Decomposition {
         let gap = |rank: &usize| boxes[*rank].gap(&own);
         let everyone = self.wide || self.scattered;
         let others = (0..boxes.len()).filter(|&rank| rank != self.rank);
-        let mut peers: Vec<usize> = others.filter(|rank| everyone || gap(rank) < self.depth + FLIGHT).collect();
-        peers.sort_by_key(|rank| (gap(rank) >= self.depth, *rank));
-        let near = peers.iter().filter(|rank| gap(rank) < self.depth).count();
+        let mut peers: Vec<usize> = others.filter(|rank| everyone || gap(rank) < self.depth() + FLIGHT).collect();
+        peers.sort_by_key(|rank| (gap(rank) >= self.depth(), *rank));
+        let near = peers.iter().filter(|rank| gap(rank) < self.depth()).count();
         let cells = |extent: &CellBox| Cells { low: extent.low, high: extent.high };
         let place = Place {
             own: cells(&own),
-            depth: self.depth,
+            depth: self.depth(),
+            ghosts: self.halo.ghosts,
             peers: peers.iter().map(|&rank| cells(&boxes[rank])).collect(),
             near,
             scattered: self.scattered,
@@ -98,10 +100,14 @@ impl Decomposition {
         Ok(subdomain.move_to(device, place)?)
     }
 
-    /// Rounds between two exchanges from now on; true if that is a change.
-    pub fn set_rounds(&mut self, rounds: u32) -> bool {
-        let depth = 2 * rounds;
-        std::mem::replace(&mut self.depth, depth) != depth
+    /// How the halo is kept from now on; true if that is a change.
+    pub fn set_halo(&mut self, halo: Halo) -> bool {
+        std::mem::replace(&mut self.halo, halo) != halo
+    }
+
+    /// Layers of cells.
+    fn depth(&self) -> u32 {
+        2 * self.halo.rounds
     }
 
     /// From now on particles may be with anyone, until the exchange of a step has brought them home.

@@ -26,6 +26,7 @@ mod setup;
 mod step;
 mod tuning;
 
+pub use crate::subdomain::Ghosts;
 pub use audit::{AccountState, audit_limits};
 pub use averages::{AveragesState, Layout, Row, SurfaceState, ZoneState};
 pub use balance::{BalanceMode, BalanceOptions, BalanceRecord, Load, imbalance};
@@ -44,6 +45,7 @@ pub use run_state::{RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;
+pub use tuning::HaloOptions;
 
 use crate::gas::FillError;
 use crate::geometry::GeometryError;

@@ -11,6 +11,7 @@ use super::exchange::Traffic;
 use super::interrupt::Request;
 use super::run_state::RunState;
 use super::setup::Shuffle;
+use super::tuning::HaloOptions;
 
 /// What does not change a result.
 #[derive(Clone, Copy, Default)]
@@ -23,9 +24,8 @@ pub struct Options<'a> {
     pub stop_after_steps: Option<u64>,
     /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
     pub checkpoint_at_stop: bool,
-    /// Rounds of collisions between two exchanges of ghosts; `None` tries what is fastest. The halo has twice as
-    /// many layers of cells.
-    pub halo_rounds: Option<u32>,
+    /// What is not given of it is tried out.
+    pub halo: HaloOptions,
     pub balance: BalanceOptions,
 }
 

@@ -131,10 +131,10 @@ impl<'a> Simulation<'a> {
         let (size, rank) = (comm.size() as u32, comm.rank() as u32);
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
-            let rounds = Tuner::new(plan.rounds, options.halo_rounds).first();
+            let halo = Tuner::new(plan.rounds, options.halo).first();
             let cut_by = setup.cut_by.as_ref().unwrap_or(&setup.particles);
             let weighed = options.balance.at_start().then(|| cut_by.as_slice());
-            let cut = Decomposition::new(plan, comm, rounds, weighed)?;
+            let cut = Decomposition::new(plan, comm, halo, weighed)?;
             decomposition.insert(cut).own(plan, initial).collect()
         } else {
             initial.filter(|particle| particle.id() % size == rank).collect()
@@ -153,7 +153,7 @@ impl<'a> Simulation<'a> {
             },
             decomposition,
             balance: Balance::new(options.balance, comm.size()),
-            tuner: Tuner::new(plan.rounds, options.halo_rounds),
+            tuner: Tuner::new(plan.rounds, options.halo),
             inflow,
             clock: Clock::new(plan),
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
@@ -379,7 +379,7 @@ impl<'a> Simulation<'a> {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
             let seconds = self.balance.act(self.clock.steps, self.device, subdomain, comm, decomposition)?;
             self.exchange.rebalanced(seconds);
-            if decomposition.set_rounds(self.tuner.next()) {
+            if decomposition.set_halo(self.tuner.next()) {
                 decomposition.apply(self.device, &mut self.subdomain, &mut self.exchange)?;
             }
         }

@@ -7,6 +7,9 @@ use crate::subdomain::{StepSlot, Subdomain};
 use super::SimulationError;
 use super::exchange::Exchange;
 
+/// The phases in which pairs are sought and collide.
+pub const PAIR_PHASES: [&str; 4] = ["neighbours", "choose", "settle", "lost"];
+
 /// What else a step does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sampling {

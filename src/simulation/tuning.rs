@@ -1,8 +1,27 @@
-//! How many rounds of collisions to go between two exchanges of ghosts, found by trying.
+//! How many rounds of collisions to go between two exchanges of ghosts, and which ghosts choose partners, found by
+//! trying.
 //!
 //! Few rounds need a thin halo and many messages, many rounds a thick halo and few messages: what is best
-//! depends on the devices, the network and the size of the subdomains. Every choice gives the same bits. Each
+//! depends on the devices, the network and the size of the subdomains. Ghosts that choose only when asked are less work
+//! and more passes, so that depends on the device, too. Every choice gives the same bits. Each
 //! candidate runs for a few intervals; the fastest stays until the number of particles has changed much.
+
+use crate::subdomain::Ghosts;
+
+/// How a halo is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Halo {
+    /// Rounds between two exchanges.
+    pub rounds: u32,
+    pub ghosts: Ghosts,
+}
+
+/// What of a halo is not to be tried out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HaloOptions {
+    pub rounds: Option<u32>,
+    pub ghosts: Option<Ghosts>,
+}
 
 /// Intervals per candidate; the first of them makes room and is not judged.
 const TRIALS: usize = 3;
@@ -10,7 +29,7 @@ const TRIALS: usize = 3;
 const CHANGE: f64 = 1.5;
 
 pub struct Tuner {
-    candidates: Vec<u32>,
+    candidates: Vec<Halo>,
     /// s per particle and step, the fastest seen, by candidate.
     fastest: Vec<f64>,
     /// Intervals submitted since the trials began.
@@ -18,18 +37,21 @@ pub struct Tuner {
     /// What the intervals under way run with, oldest first, and whether it is judged.
     under_way: std::collections::VecDeque<Option<usize>>,
     /// What stays, and the particles when it was chosen.
-    chosen: Option<(u32, u64)>,
+    chosen: Option<(Halo, u64)>,
 }
 
 impl Tuner {
-    /// `fixed`: no trials.
-    pub fn new(rounds: u32, fixed: Option<u32>) -> Tuner {
+    /// `rounds`: of the plan.
+    pub fn new(rounds: u32, fixed: HaloOptions) -> Tuner {
         let rounds = rounds.max(1);
         let powers = (0..).map(|power| 1 << power).take_while(|&candidate| candidate < rounds);
-        let candidates: Vec<u32> = match fixed {
+        let of_rounds: Vec<u32> = match fixed.rounds {
             Some(fixed) => vec![fixed.clamp(1, rounds)],
             None => powers.chain([rounds]).collect(),
         };
+        let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::Asked, Ghosts::All], |ghosts| vec![ghosts]);
+        let halos = |&ghosts: &Ghosts| of_rounds.iter().map(move |&rounds| Halo { rounds, ghosts });
+        let candidates: Vec<Halo> = of_ghosts.iter().flat_map(halos).collect();
         Tuner {
             fastest: vec![f64::INFINITY; candidates.len()],
             candidates,
@@ -40,12 +62,12 @@ impl Tuner {
     }
 
     /// What the first interval runs with.
-    pub fn first(&self) -> u32 {
+    pub fn first(&self) -> Halo {
         self.candidates[0]
     }
 
     /// What the next interval runs with.
-    pub fn next(&mut self) -> u32 {
+    pub fn next(&mut self) -> Halo {
         if let Some((chosen, _)) = self.chosen {
             self.under_way.push_back(None);
             return chosen;
@@ -54,9 +76,9 @@ impl Tuner {
         let judged = !self.submitted.is_multiple_of(TRIALS);
         self.submitted += 1;
         match self.candidates.get(trial) {
-            Some(&rounds) => {
+            Some(&halo) => {
                 self.under_way.push_back(judged.then_some(trial));
-                rounds
+                halo
             }
             // All were tried, and the last results are on their way.
             None => {
@@ -82,7 +104,7 @@ impl Tuner {
             None if self.submitted > TRIALS * self.candidates.len() && !self.under_way.iter().any(Option::is_some) => {
                 self.chosen = Some((self.best(), particles));
                 tracing::debug!(
-                    "{} rounds between two exchanges; tried {:?}: {:?}",
+                    "the halo is kept by {:?}; tried {:?}: {:?}",
                     self.best(),
                     self.candidates,
                     self.fastest
@@ -100,7 +122,7 @@ impl Tuner {
         }
     }
 
-    fn best(&self) -> u32 {
+    fn best(&self) -> Halo {
         let fastest = (0..self.candidates.len()).min_by(|&a, &b| self.fastest[a].total_cmp(&self.fastest[b]));
         self.candidates[fastest.unwrap_or(0)]
     }
@@ -110,14 +132,21 @@ impl Tuner {
 mod tests {
     use super::*;
 
+    const ASKED: HaloOptions = HaloOptions { rounds: None, ghosts: Some(Ghosts::Asked) };
+
     /// Runs `intervals`, two under way at once, with a cost for each choice; what was run with.
     fn run(tuner: &mut Tuner, intervals: usize, particles: u64, cost: impl Fn(u32) -> f64) -> Vec<u32> {
+        let halos = run_halos(tuner, intervals, particles, |halo| cost(halo.rounds));
+        halos.iter().map(|halo| halo.rounds).collect()
+    }
+
+    fn run_halos(tuner: &mut Tuner, intervals: usize, particles: u64, cost: impl Fn(Halo) -> f64) -> Vec<Halo> {
         let mut under_way = std::collections::VecDeque::new();
         let mut ran = Vec::new();
         for _ in 0..intervals {
-            let rounds = tuner.next();
-            under_way.push_back(rounds);
-            ran.push(rounds);
+            let halo = tuner.next();
+            under_way.push_back(halo);
+            ran.push(halo);
             if under_way.len() > 2 {
                 let done = under_way.pop_front().unwrap();
                 tuner.measured(cost(done), 32, particles);
@@ -132,7 +161,7 @@ mod tests {
     /// The fastest of all divisions of the rounds is found and kept; when the gas has changed, another may be.
     #[test]
     fn the_fastest_choice_stays() {
-        let mut tuner = Tuner::new(8, None);
+        let mut tuner = Tuner::new(8, ASKED);
         let ran = run(&mut tuner, 40, 1000, |rounds| f64::from(rounds.abs_diff(4)) + 1.0);
         assert!([1, 2, 4, 8].iter().all(|candidate| ran[..12].contains(candidate)), "{ran:?}");
         assert!(ran[16..].iter().all(|&rounds| rounds == 4), "{ran:?}");
@@ -144,8 +173,25 @@ mod tests {
     /// What was asked for is not put to trial, and is at most the rounds there are.
     #[test]
     fn a_fixed_choice_stays() {
-        assert!(run(&mut Tuner::new(8, Some(2)), 30, 1000, |_| 1.0).iter().all(|&rounds| rounds == 2));
-        assert_eq!(Tuner::new(3, Some(8)).first(), 3);
-        assert!(run(&mut Tuner::new(3, None), 9, 1000, |_| 1.0).contains(&3));
+        let fixed = |rounds: u32| HaloOptions { rounds: Some(rounds), ..ASKED };
+        assert!(run(&mut Tuner::new(8, fixed(2)), 30, 1000, |_| 1.0).iter().all(|&rounds| rounds == 2));
+        assert_eq!(Tuner::new(3, fixed(8)).first().rounds, 3);
+        assert!(run(&mut Tuner::new(3, ASKED), 9, 1000, |_| 1.0).contains(&3));
+    }
+
+    /// Both ways of the ghosts are tried with each number of rounds, and the better one stays, whichever that is.
+    #[test]
+    fn ghosts_are_tried_both_ways() {
+        for better in [Ghosts::Asked, Ghosts::All] {
+            let mut tuner = Tuner::new(4, HaloOptions::default());
+            let cost = |halo: Halo| f64::from(halo.rounds) * if halo.ghosts == better { 1.0 } else { 1.5 };
+            let ran = run_halos(&mut tuner, 40, 1000, cost);
+            for rounds in [1, 2, 4] {
+                for ghosts in [Ghosts::Asked, Ghosts::All] {
+                    assert!(ran[..18].contains(&Halo { rounds, ghosts }), "{rounds} {ghosts:?}: {ran:?}");
+                }
+            }
+            assert!(ran[24..].iter().all(|&halo| halo == Halo { rounds: 1, ghosts: better }), "{ran:?}");
+        }
     }
 }

@@ -7,7 +7,9 @@
 use crate::gpu::Device;
 use crate::partition::By;
 use crate::ranks::{Communicator, Pace, in_process};
-use crate::simulation::{BalanceMode, BalanceOptions, Model, Options, RunState, Setup, Simulation, SimulationError};
+use crate::simulation::{
+    BalanceMode, BalanceOptions, HaloOptions, Model, Options, RunState, Setup, Simulation, SimulationError,
+};
 
 use super::stopwatch::{Event, Lap, Stopwatch, laps};
 use super::{Strategy, StudyError};
@@ -29,7 +31,7 @@ pub struct Effort {
     /// Intervals that are measured, after those that bring the state about.
     pub intervals: usize,
     pub by: By,
-    pub halo_rounds: Option<u32>,
+    pub halo: HaloOptions,
 }
 
 /// A step of one subdomain, measured alone.
@@ -44,6 +46,8 @@ pub struct Share {
     pub walls: f64,
     /// Time of its passes on the device; zero where the device does not time.
     pub device_seconds: f64,
+    /// Those in which pairs were sought and collided, where the device tells.
+    pub pair_seconds: Option<f64>,
     /// All its own time: device and host.
     pub own_seconds: f64,
     /// Exchanges, messages sent in them, and their bytes.
@@ -84,7 +88,7 @@ pub fn emulate(
         Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
     };
     let balance = BalanceOptions { mode, by: effort.by, ..BalanceOptions::default() };
-    let options = Options { balance, halo_rounds: effort.halo_rounds, ..Options::default() };
+    let options = Options { balance, halo: effort.halo, ..Options::default() };
     let intervals = settling + effort.intervals;
     let mut ranks = Vec::new();
     for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {
@@ -168,6 +172,10 @@ fn shared_out(ranks: &[Seen], strategy: Strategy, steps: usize, settling: usize)
             share.candidates = mean(|load| load.candidates);
             share.walls = mean(|load| load.walls);
             share.device_seconds = median(loads.iter().map(|load| load.seconds))?;
+            // The same part of the middle time as of all times.
+            let all: f64 = loads.iter().map(|load| load.seconds).sum();
+            let pairs: Option<f64> = loads.iter().map(|load| load.pair_seconds).sum();
+            share.pair_seconds = pairs.filter(|_| all > 0.0).map(|pairs| pairs / all * share.device_seconds);
         }
         shares.push(share);
     }

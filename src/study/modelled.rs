@@ -55,8 +55,12 @@ impl Costs {
     /// Fitted to the device times of all these; where there are none, those that are assumed before any is measured.
     pub fn fit<'a>(shares: impl Iterator<Item = &'a Share>) -> Costs {
         let shares: Vec<&Share> = shares.filter(|share| share.particles > 0.0).collect();
-        let measurements: Vec<Measurement> =
-            shares.iter().map(|share| Measurement { work: work_of(share), seconds: share.device_seconds }).collect();
+        let measurement = |share: &&Share| Measurement {
+            work: work_of(share),
+            seconds: share.device_seconds,
+            pair_seconds: share.pair_seconds,
+        };
+        let measurements: Vec<Measurement> = shares.iter().map(measurement).collect();
         // Each is a row of its own in one fit: nothing is forgotten, and no device counts as slower than another.
         let mut model = CostModel::new(By::Cost, measurements.len().max(1));
         if !measurements.is_empty() {

@@ -72,6 +72,7 @@ pub struct FixedBuffers {
     /// dispatch may not write the buffer that it takes its size from.
     pub dispatches: wgpu::Buffer,
     pub rechoose_dispatches: wgpu::Buffer,
+    pub asked_dispatches: wgpu::Buffer,
     pub weights: wgpu::Buffer,
     /// What coats and vents do in the interval at hand.
     pub coats: wgpu::Buffer,
@@ -93,6 +94,7 @@ impl FixedBuffers {
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
             dispatches: device.indirect("dispatches", counters::LISTS as u64)?,
             rechoose_dispatches: device.indirect("rechoose_dispatches", counters::LISTS as u64)?,
+            asked_dispatches: device.indirect("asked_dispatches", counters::LISTS as u64)?,
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
             coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
@@ -194,6 +196,8 @@ pub struct ParticleBuffers {
     /// On a device among others.
     pub border: wgpu::Buffer,
     pub changed: wgpu::Buffer,
+    pub asked: wgpu::Buffer,
+    pub origins: wgpu::Buffer,
 }
 
 impl ParticleBuffers {
@@ -232,6 +236,8 @@ impl ParticleBuffers {
             layers: device.storage::<u32>("layers", scratch)?,
             border: device.storage::<[u32; 2]>("border", exchange)?,
             changed: device.storage::<u32>("changed", exchange)?,
+            asked: device.storage::<u32>("asked", exchange)?,
+            origins: device.storage::<u32>("origins", exchange)?,
         })
     }
 
@@ -239,7 +245,7 @@ impl ParticleBuffers {
         self.buffers().iter().map(|buffer| buffer.size()).sum()
     }
 
-    fn buffers(&self) -> [&wgpu::Buffer; 20] {
+    fn buffers(&self) -> [&wgpu::Buffer; 22] {
         [
             &self.particles,
             &self.newborns,
@@ -261,6 +267,8 @@ impl ParticleBuffers {
             &self.layers,
             &self.border,
             &self.changed,
+            &self.asked,
+            &self.origins,
         ]
     }
 }
@@ -303,6 +311,9 @@ impl<'a> Buffers<'a> {
             (_, "parting") => &domain.parting,
             ("settle", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             ("receive", "dispatches") => &fixed.rechoose_dispatches,
+            // The pass over those that were asked asks nobody, and may not write what it takes its size from.
+            ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
+            ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,
             (_, "dispatches") => &fixed.dispatches,
             (_, "weights") => &fixed.weights,
             (_, "coats") => &fixed.coats,
@@ -328,6 +339,8 @@ impl<'a> Buffers<'a> {
             (_, "layers") => &particle.layers,
             (_, "border") => &particle.border,
             (_, "changed") => &particle.changed,
+            (_, "asked") => &particle.asked,
+            (_, "origins") => &particle.origins,
             (_, "peers") => &exchange.peers,
             (_, "outbox") => &exchange.outbox,
             (_, "outbox_peer") => &exchange.outbox_peer,

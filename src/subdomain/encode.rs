@@ -1,9 +1,11 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
 use crate::gpu::{BoundKernel, Device, Recording, fold};
+use crate::plan::Plan;
 
 use super::buffers::{CHUNK, step_stride};
-use super::constants::WORKGROUP;
+use super::constants::{Features, WORKGROUP};
+use super::kernels::CollisionKernels;
 use super::layout::{GpuCoat, GpuNewborn, GpuStep, GpuVent};
 use super::place::Cells;
 use super::{GpuError, Subdomain};
@@ -67,6 +69,18 @@ const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
 const LIST_RECHOOSE: u32 = 16;
+const LIST_ASKED: u32 = 26;
+
+/// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
+/// the ghosts that were asked.
+pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
+    (plan.rounds + 1) * if features.halo { 2 } else { 1 }
+}
+
+/// `GHOSTS_ALL` and so on of `shaders/shared/asked.wgsl`.
+const GHOSTS_ALL: u32 = 0;
+const GHOSTS_WAIT: u32 = 1;
+const GHOSTS_ASKED: u32 = 2;
 
 /// Particles per workgroup of the tally: WORKGROUP threads x CHUNK_LOOPS.
 const TALLY_CHUNK: u64 = 64 * 32;
@@ -136,18 +150,20 @@ impl Subdomain {
     }
 
     pub(super) fn write_parameters(&self, device: &Device, slot: &StepSlot) {
-        let stride = step_stride(device) * u64::from(self.domain.plan.rounds + 1);
+        let stride = step_stride(device) * u64::from(uniforms(&self.domain.plan, self.domain.features));
         device.write(&self.fixed.step, stride * u64::from(slot.slot), &self.parameters(device, slot));
     }
 
     /// The uniforms of all rounds of a step.
     fn parameters(&self, device: &Device, slot: &StepSlot) -> Vec<u8> {
         let rounds = self.domain.plan.rounds + 1;
+        let uniforms = uniforms(&self.domain.plan, self.domain.features);
         let stride = step_stride(device) as usize;
-        let mut bytes = vec![0u8; stride * rounds as usize];
+        let mut bytes = vec![0u8; stride * uniforms as usize];
         let (low, size) = self.place.bins(self.domain.plan.grid.cells);
         let Cells { low: inner_low, high: inner_high } = self.place.inner(self.domain.plan.grid.cells);
-        for round in 0..rounds {
+        for at in 0..uniforms {
+            let round = at % rounds;
             let step = GpuStep {
                 count: slot.count,
                 newborns: slot.newborns,
@@ -169,13 +185,19 @@ impl Subdomain {
                 // The arrivals are binned after the others.
                 first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
                 inner_high,
-                tallies_left: slot.tallies_left,
+                ghosts: match (self.place.asks(), at < rounds) {
+                    (false, _) => GHOSTS_ALL,
+                    (true, true) => GHOSTS_WAIT,
+                    (true, false) => GHOSTS_ASKED,
+                },
                 peers: self.place.peers.len() as u32,
                 near_peers: self.place.near as u32,
                 list: self.particle.list as u32,
                 stride: slot.stride,
+                tallies_left: slot.tallies_left,
+                ..GpuStep::default()
             };
-            let at = stride * round as usize;
+            let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
         }
         bytes
@@ -201,7 +223,12 @@ impl Subdomain {
     }
 
     pub(super) fn offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
-        (step_stride(device) as u32) * (step.slot * (self.domain.plan.rounds + 1) + round)
+        (step_stride(device) as u32) * (step.slot * uniforms(&self.domain.plan, self.domain.features) + round)
+    }
+
+    /// Of the pass over those that were asked.
+    fn asked_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
+        self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
     pub fn inject(&self, rec: &mut Recording<'_>, step: &StepSlot) {
@@ -265,6 +292,7 @@ impl Subdomain {
     pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
             self.choosing(&kernels.choose, rec, "choose", step, round);
+            self.choose_asked(kernels, rec, "choose", step, round);
         }
     }
 
@@ -281,8 +309,27 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             let rounds = self.domain.plan.rounds;
             self.choosing(&kernels.choose, rec, "lost", step, rounds);
+            self.choose_asked(kernels, rec, "lost", step, rounds);
             self.choosing(&kernels.match_pairs, rec, "lost", step, rounds);
             kernels.lost.dispatch(rec.phase("lost"), 0, [1, 1, 1]);
+        }
+    }
+
+    /// The ghosts that particles farther in have chosen choose.
+    fn choose_asked(
+        &self,
+        kernels: &CollisionKernels<BoundKernel>,
+        rec: &mut Recording<'_>,
+        phase: &'static str,
+        step: &StepSlot,
+        round: u32,
+    ) {
+        if self.place.asks() {
+            let offset = self.asked_offset(rec.device(), step, round);
+            let pass = rec.phase(phase);
+            for kernel in [&kernels.neighbours, &kernels.screen, &kernels.choose_asked] {
+                kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
+            }
         }
     }
 

@@ -28,6 +28,8 @@ pub struct CollisionKernels<K> {
     pub neighbours: K,
     pub screen: K,
     pub choose: K,
+    /// The same kernel, for the pass over the ghosts that were asked.
+    pub choose_asked: K,
     pub match_pairs: K,
     pub settle: K,
     pub lost: K,
@@ -55,6 +57,7 @@ impl<K> Kernels<K> {
                 neighbours: make("neighbours")?,
                 screen: make("screen")?,
                 choose: make("choose")?,
+                choose_asked: make("choose_asked")?,
                 match_pairs: make("match_pairs")?,
                 settle: make("settle")?,
                 lost: make("lost")?,
@@ -85,6 +88,11 @@ impl<K> Kernels<K> {
     }
 }
 
+/// The shader of a kernel: one may be bound twice, to different buffers, so that both do the same to the last bit.
+fn source(name: &str) -> &str {
+    if name == "choose_asked" { "choose" } else { name }
+}
+
 /// Compiled kernels by name.
 pub struct Compiled(Vec<(&'static str, Kernel)>);
 
@@ -92,7 +100,9 @@ impl Compiled {
     pub fn new(device: &Device, features: Features, constants: &Constants) -> Result<Compiled, GpuError> {
         let mut compiled = Vec::new();
         Kernels::build(features, |name| {
-            compiled.push((name, Kernel::new(device, name, constants)?));
+            if source(name) == name {
+                compiled.push((name, Kernel::new(device, name, constants)?));
+            }
             Ok::<(), GpuError>(())
         })?;
         Ok(Compiled(compiled))
@@ -105,7 +115,7 @@ impl Compiled {
         buffers: &Buffers<'_>,
     ) -> Result<Kernels<BoundKernel>, GpuError> {
         Kernels::build(features, |name| {
-            let kernel = self.0.iter().find(|(known, _)| *known == name).map(|(_, kernel)| kernel);
+            let kernel = self.0.iter().find(|(known, _)| *known == source(name)).map(|(_, kernel)| kernel);
             let Some(kernel) = kernel else {
                 return Err(GpuError::Kernel { kernel: name.into(), reason: "not compiled".into() });
             };

@@ -25,11 +25,13 @@ pub struct GpuStep {
     pub inner_low: [u32; 3],
     pub first: u32,
     pub inner_high: [u32; 3],
-    pub tallies_left: u32,
+    pub ghosts: u32,
     pub peers: u32,
     pub near_peers: u32,
     pub list: u32,
     pub stride: u32,
+    pub tallies_left: u32,
+    pub pad: [u32; 3],
 }
 
 /// `Particle` of `shaders/shared/particle.wgsl`.

@@ -32,7 +32,7 @@ pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent, GpuWeights,
     GpuZone,
 };
-pub use place::{Cells, Place};
+pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
@@ -79,7 +79,7 @@ impl Subdomain {
         particles: &[GpuParticle],
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
-        let slots = u64::from(plan.steps_per_interval) * u64::from(plan.rounds + 1);
+        let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
         let tables = [domain.patches.coats as u64, domain.vent_entries as u64];
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.

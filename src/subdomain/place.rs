@@ -16,6 +16,16 @@ impl Cells {
     }
 }
 
+/// Which of the outermost ghosts that choose partners do so. The choice of a ghost matters only if a particle farther
+/// in has chosen it; all choices are functions of the state, so this changes no result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Ghosts {
+    /// Those that were chosen: little work, three passes more a round.
+    Asked,
+    /// All, with the own particles.
+    All,
+}
+
 /// The cells of a subdomain, its halo, and the others.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
@@ -23,6 +33,7 @@ pub struct Place {
     pub own: Cells,
     /// Layers of cells around them whose particles it has as ghosts: twice the rounds between two exchanges.
     pub depth: u32,
+    pub ghosts: Ghosts,
     /// The cells that others own, in the order of the messages; the first `near` of them overlap with this
     /// one's halo.
     pub peers: Vec<Cells>,
@@ -34,7 +45,7 @@ pub struct Place {
 impl Place {
     /// A subdomain that owns all cells.
     pub fn alone(plan: &Plan) -> Place {
-        Place { own: Cells::inside(plan), depth: 0, peers: Vec::new(), near: 0, scattered: false }
+        Place { own: Cells::inside(plan), depth: 0, ghosts: Ghosts::All, peers: Vec::new(), near: 0, scattered: false }
     }
 
     /// The cells that have bins: the own ones, the halo and an empty border layer, within the grid. Low corner
@@ -70,6 +81,11 @@ impl Place {
         }
     }
 
+    /// Whether some ghosts choose only when asked.
+    pub fn asks(&self) -> bool {
+        self.depth > 0 && self.ghosts == Ghosts::Asked
+    }
+
     /// Whether the ghosts must be brought up to date before this round.
     pub fn stale(&self, round: u32) -> bool {
         let rounds = self.depth / 2;
@@ -83,7 +99,7 @@ mod tests {
 
     fn place(depth: u32) -> Place {
         let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
-        Place { own, depth, peers: Vec::new(), near: 0, scattered: false }
+        Place { own, depth, ghosts: Ghosts::Asked, peers: Vec::new(), near: 0, scattered: false }
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.

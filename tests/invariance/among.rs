@@ -5,7 +5,8 @@ use std::sync::Arc;
 use corpuscle::gpu::Device;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
-    BalanceMode, BalanceOptions, Model, Options, Outcome, Setup, Shuffle, Simulation, SimulationError,
+    BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model, Options, Outcome, Setup, Shuffle, Simulation,
+    SimulationError,
 };
 
 use crate::whole_run::{Run, Witness, device};
@@ -17,6 +18,7 @@ pub struct Way {
     pub mode: BalanceMode,
     /// Found by trying if it is not said.
     pub halo_rounds: Option<u32>,
+    pub ghosts: Option<Ghosts>,
     pub pace: Pace,
     pub batch: Option<u32>,
     pub order: Option<&'static Shuffle>,
@@ -31,19 +33,24 @@ impl Way {
         } else {
             Pace::OneAtATime
         };
-        Way { ranks, mode, halo_rounds, pace, batch: None, order: None }
+        let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::Asked } else { Ghosts::All });
+        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None }
     }
 
     pub fn name(&self) -> String {
-        let Way { ranks, mode, halo_rounds, pace, batch, order } = self;
+        let Way { ranks, mode, halo_rounds, ghosts, pace, batch, order } = self;
         let order = if order.is_some() { ", another order" } else { "" };
-        format!("{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, {pace:?}, batches of {batch:?}{order}")
+        format!(
+            "{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, ghosts {ghosts:?}, {pace:?}, \
+             batches of {batch:?}{order}"
+        )
     }
 
     fn options(&self) -> Options<'static> {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
         let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
-        Options { batch: self.batch, halo_rounds: self.halo_rounds, balance, ..Options::default() }
+        let halo = HaloOptions { rounds: self.halo_rounds, ghosts: self.ghosts };
+        Options { batch: self.batch, halo, balance, ..Options::default() }
     }
 }
 

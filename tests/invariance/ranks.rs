@@ -2,7 +2,7 @@
 
 use corpuscle::ranks::Pace;
 use corpuscle::simulation::BalanceMode::{self, Dynamic, Forced, Initial, Off};
-use corpuscle::simulation::{Model, Options};
+use corpuscle::simulation::{Ghosts, Model, Options};
 
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
@@ -32,7 +32,7 @@ fn some_ways() -> Vec<Way> {
     vec![
         Way::new(1, Dynamic, 2),
         Way::new(2, Dynamic, 1),
-        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
         Way { order: Some(&shuffled::<3>), ..Way::new(4, Initial, 4) },
         Way::new(7, Off, 8),
         Way { batch: Some(3), ..Way::new(8, Forced { seed: 2 }, 2) },
@@ -51,6 +51,7 @@ fn all_ways() -> Vec<Way> {
                     pace: if turn.is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime },
                     batch: [None, Some(1), Some(5)][turn % 3],
                     order: if turn % 5 < 2 { Some(&shuffled::<4>) } else { None },
+                    ghosts: [Some(Ghosts::Asked), Some(Ghosts::All), Some(Ghosts::Asked), None][turn % 4],
                     ..Way::new(ranks, mode, halo_rounds)
                 });
             }

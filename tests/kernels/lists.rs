@@ -14,6 +14,7 @@ fn reset_empties_every_list_and_nothing_else() {
     rig.put("counters", &noise[..COUNTERS]);
     rig.put("dispatches", &noise);
     rig.put("rechoose_dispatches", &noise);
+    rig.put("asked_dispatches", &noise);
     rig.run_groups("reset", [1, 1, 1]);
     let counters: Vec<u32> = rig.get("counters", COUNTERS);
     assert_eq!(counters[..LISTS], [0; LISTS]);
@@ -22,6 +23,7 @@ fn reset_empties_every_list_and_nothing_else() {
     let empty = [[0u32, 1, 1]; LISTS];
     assert_eq!(rig.get::<[u32; 3]>("dispatches", LISTS), empty);
     assert_eq!(rig.get::<[u32; 3]>("rechoose_dispatches", LISTS), empty);
+    assert_eq!(rig.get::<[u32; 3]>("asked_dispatches", LISTS), empty);
 }
 
 /// `inject` appends the newborns of this step after the particles; those without room are counted.

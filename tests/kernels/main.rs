@@ -5,6 +5,7 @@
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
+mod asked;
 mod blocks;
 mod bounce;
 mod choose;

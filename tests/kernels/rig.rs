@@ -24,6 +24,7 @@ pub const LIST_CHANGED: usize = 13;
 pub const COUNT_OUTBOX: usize = 14;
 pub const COUNT_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
+pub const LIST_ASKED: usize = 26;
 pub const COUNT_DROPPED: usize = 31;
 pub const LOST: usize = 34;
 pub const SAMPLED: usize = 35;
@@ -206,6 +207,10 @@ impl Rig {
         rig.put("changed", &[0u32; 4]);
         rig.put("coats", &[0u32; 4]);
         rig.put("vents", &[0u32; 8]);
+        rig.put("asked", &[0u32; 4]);
+        rig.put("asked_dispatches", &[0u32; 3 * LISTS]);
+        rig.put("origins", &[0u32; 4]);
+        rig.put("particles", &[0u32; 8]);
         rig
     }
 

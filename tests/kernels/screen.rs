@@ -9,7 +9,7 @@ use crate::oracle::walls::parted;
 use crate::rig::*;
 
 /// A tank with a tilted plate of 1 mm in it.
-fn parted_tank() -> World {
+pub fn parted_tank() -> World {
     let plate = Shape::Plane {
         center: [0.03, 0.03, 0.04],
         normal: [0.6, 0.0, 0.8],

@@ -32,7 +32,7 @@ fn observe(model: &mut CostModel, speeds: &[f64], intervals: usize, noise: f64, 
         let works = works(speeds.len(), random);
         let measured = works.iter().zip(speeds).map(|(work, speed)| {
             let seconds = seconds(work) / speed * (1.0 + noise * random.normal()).max(0.1);
-            Measurement { work: *work, seconds }
+            Measurement { work: *work, seconds, pair_seconds: None }
         });
         let measured: Vec<_> = measured.collect();
         model.observe(&measured);
@@ -69,6 +69,31 @@ fn a_slow_device_is_found() {
     assert!((candidate / TRUE[1] - 1.0).abs() < 0.2, "{candidate}");
 }
 
+/// With the shares that it is given, each rank's own work and its ghosts take the same time, and a rank without ghosts
+/// gets more; by particles, ghosts do not count.
+#[test]
+fn ghosts_leave_a_rank_less_of_the_weight() {
+    let mut model = CostModel::new(By::Cost, 4);
+    observe(&mut model, &[1.0; 4], 60, 0.02, &mut Random(31));
+    let work = |owned: u64, ghosts: u64| {
+        let work = Work { particles: owned + ghosts, candidates: 10 * owned, wall_tests: 0, steps: 1 };
+        (work, ghosts)
+    };
+    let loads = [work(2000, 0), work(3000, 2000), work(2500, 1000), work(2500, 1800)];
+    let shares = model.shares_beside_ghosts(&loads);
+    let [particle, candidate, ..] = model.coefficients();
+    let own: f64 = loads.iter().map(|(work, ghosts)| particle * (work.particles - ghosts) as f64).sum::<f64>()
+        + loads.iter().map(|(work, _)| candidate * work.candidates as f64).sum::<f64>();
+    let times: Vec<f64> =
+        shares.iter().zip(&loads).map(|(share, (_, ghosts))| share * own / 4.0 + particle * *ghosts as f64).collect();
+    let mean = times.iter().sum::<f64>() / 4.0;
+    assert!(times.iter().all(|time| (time / mean - 1.0).abs() < 1e-9), "{times:?}");
+    assert!((shares.iter().sum::<f64>() - 4.0).abs() < 1e-9 && shares[0] > 1.05 * shares[1], "{shares:?}");
+    assert_eq!(CostModel::new(By::Particles, 4).shares_beside_ghosts(&loads), [1.0; 4]);
+    // Nothing but ghosts: still a part.
+    assert!(model.shares_beside_ghosts(&[work(10, 0), work(0, 9000), work(10, 0), work(10, 0)])[1] > 0.1);
+}
+
 /// 20 % of noise on equal devices moves no share, ever.
 #[test]
 fn noise_moves_no_share() {
@@ -88,12 +113,40 @@ fn uniform_gas_keeps_the_prior() {
     let prior = model.weights();
     let work = Work { particles: 6_400_000, candidates: 64_000_000, wall_tests: 640_000, steps: 64 };
     for _ in 0..50 {
-        model.observe(&[Measurement { work, seconds: 0.3 }; 4]);
+        model.observe(&[Measurement { work, seconds: 0.3, pair_seconds: None }; 4]);
     }
     assert!((model.cost(&work) - 0.3).abs() < 1e-3);
     let weights = model.weights();
     assert!(weights.particle.abs_diff(prior.particle) <= prior.particle / 50, "{weights:?} {prior:?}");
     assert!(weights.candidate.abs_diff(prior.candidate) <= prior.candidate / 50, "{weights:?} {prior:?}");
+}
+
+/// Where all ranks' gas is much alike, their seconds as a whole say little of what a candidate costs; with those of the
+/// search for pairs apart it is found.
+#[test]
+fn the_seconds_of_the_search_tell_candidates_from_particles() {
+    const CANDIDATE: f64 = 0.5 * TRUE[0];
+    let found = |apart: bool| {
+        let (mut model, mut random) = (CostModel::new(By::Cost, 4), Random(21));
+        for _ in 0..60 {
+            let measured: Vec<_> = (0..4)
+                .map(|_| {
+                    let particles = 64.0 * (50_000.0 + 50_000.0 * random.unit());
+                    let candidates = particles * (11.5 + random.unit());
+                    let work =
+                        Work { particles: particles as u64, candidates: candidates as u64, wall_tests: 0, steps: 64 };
+                    let pairs = (CANDIDATE * candidates + 0.4 * TRUE[3] * 64.0) * (1.0 + 0.05 * random.normal());
+                    let others = (TRUE[0] * particles + 0.6 * TRUE[3] * 64.0) * (1.0 + 0.05 * random.normal());
+                    Measurement { work, seconds: pairs + others, pair_seconds: apart.then_some(pairs) }
+                })
+                .collect();
+            model.observe(&measured);
+        }
+        model.coefficients()[1] / CANDIDATE
+    };
+    let (apart, whole) = (found(true), found(false));
+    assert!((apart - 1.0).abs() < 0.1, "{apart} of the truth");
+    assert!((whole - 1.0).abs() > 0.2, "{whole} of the truth without the search apart");
 }
 
 /// A cost that is none is found to be none, never negative; the coefficients follow when costs change.
@@ -107,7 +160,7 @@ fn coefficients_are_never_negative_and_follow() {
                 .into_iter()
                 .map(|work| {
                     let seconds = 1e-8 * work.particles as f64 + candidate * work.candidates as f64;
-                    Measurement { work, seconds: seconds * (1.0 + 0.03 * random.normal()) }
+                    Measurement { work, seconds: seconds * (1.0 + 0.03 * random.normal()), pair_seconds: None }
                 })
                 .collect();
             model.observe(&measured);
@@ -130,7 +183,7 @@ fn the_state_is_a_function_of_the_measurements() {
     observe(&mut again, &[1.0, 0.7, 1.0], 30, 0.1, &mut Random(4));
     assert_eq!(one, again);
     assert_eq!(one, toml::from_str(&toml::to_string(&one).unwrap()).unwrap());
-    let nothing = Measurement { work: Work::default(), seconds: f64::NAN };
+    let nothing = Measurement { work: Work::default(), seconds: f64::NAN, pair_seconds: None };
     again.observe(&[nothing; 3]);
     assert!(again.coefficients().iter().all(|cost| cost.is_finite() && *cost >= 0.0));
     assert_eq!(again.shares(), one.shares());

@@ -7,6 +7,7 @@ use crate::simulation::exchange::Traffic;
 use crate::simulation::interrupt::Request;
 use crate::simulation::interval::{InFlight, Interval, Pending};
 use crate::simulation::observer::Observer;
+use crate::simulation::step::PAIR_PHASES;
 use crate::subdomain::{Remembered, Tallies};
 
 use super::Simulation;
@@ -26,13 +27,15 @@ impl Simulation<'_> {
         Ok(flight)
     }
 
-    /// Device time of the timed step, s; on a device that does not time, from submissions to their ends, of the
+    /// Device time of the timed step, s, and that of its phases with pairs; on a device that does not time, from submissions to their ends, of the
     /// mean step of the interval.
-    fn step_seconds(&self, phases: &[&'static str], stamps: &[u8], traffic: &Traffic) -> f64 {
-        match &self.timer {
-            Some(timer) => timer.seconds(phases, stamps).iter().map(|(_, seconds)| seconds).sum(),
-            None => traffic.device_seconds / traffic.steps.max(1) as f64,
-        }
+    fn step_seconds(&self, phases: &[&'static str], stamps: &[u8], traffic: &Traffic) -> (f64, Option<f64>) {
+        let Some(timer) = &self.timer else {
+            return (traffic.device_seconds / traffic.steps.max(1) as f64, None);
+        };
+        let timed = timer.seconds(phases, stamps);
+        let pairs = timed.iter().filter(|(phase, _)| PAIR_PHASES.contains(phase)).map(|(_, seconds)| seconds).sum();
+        (timed.iter().map(|(_, seconds)| seconds).sum(), Some(pairs))
     }
 
     /// The tallies of all ranks, the stamps of this one, and every rank's load.

@@ -1,0 +1,27 @@
+// Which ghosts choose partners.
+//
+// The choice of a ghost in the outermost layer that chooses at all matters only if a particle farther in has
+// chosen it. So such ghosts may wait until they are asked: when the others have chosen, a second pass of the same
+// kernels (the same pipelines, so that no driver rounds otherwise) searches and screens the neighbours of those asked
+// for the first time, and has all that were ever asked in this step choose. A choice is a function of the state, so
+// it does not matter when, or whether, it is made.
+
+// `step.ghosts`: all of them choose; the outermost wait; the pass over those that were asked.
+const GHOSTS_ALL: u32 = 0;
+const GHOSTS_WAIT: u32 = 1;
+const GHOSTS_ASKED: u32 = 2;
+
+@group(0) @binding(42) var<storage, read_write> asked: array<u32>;
+
+// Whether a particle of this layer waits until it is asked.
+fn waits(layer: u32) -> bool {
+    return step.ghosts == GHOSTS_WAIT && layer + 1u == step.depth;
+}
+
+// The particle of a thread in the pass over those that were asked, or NOBODY.
+fn asked_of(thread: u32) -> u32 {
+    if (thread >= atomicLoad(&counters[LIST_ASKED])) {
+        return NOBODY;
+    }
+    return asked[thread];
+}

@@ -1,0 +1,207 @@
+//! Ghosts that choose only when asked: what they choose, whom they have as neighbours, and what walls hide from them
+//! is what it would have been had they chosen with all others.
+
+use std::collections::BTreeSet;
+
+use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep};
+
+use crate::choose::{Cloud, DT, LIST};
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 1200;
+const DEPTH: u32 = 2;
+/// Values of `step.ghosts` (`shaders/shared/asked.wgsl`).
+const ALL: u32 = 0;
+const WAIT: u32 = 1;
+const PASS: u32 = 2;
+/// Marks of `layers`.
+const ASKED: u32 = 0x800;
+const SEARCHED: u32 = 0x1000;
+const UNSCREENED: u32 = 0x2000;
+
+/// Layers 0 to 2, most of them own; other marks must not matter.
+fn layers(stream: &mut Stream) -> Vec<u32> {
+    let mark = |k: u32| if k == 0 { SHARED | NEAR } else { 0 };
+    (0..COUNT).map(|_| [0, 0, 1, 2][stream.below(4) as usize] | mark(stream.below(3))).collect()
+}
+
+fn rig_of(cloud: &Cloud, layers: &[u32]) -> Rig {
+    let mut rig = cloud.rig();
+    rig.put("layers", layers);
+    rig.put("asked", &vec![NOBODY; COUNT]);
+    rig.put("choices", &vec![[7u32, 7]; COUNT]);
+    rig
+}
+
+fn step_of(cloud: &Cloud, ghosts: u32) -> GpuStep {
+    let grid = cloud.world.grid.cells;
+    GpuStep { depth: DEPTH, ghosts, size: grid, bins: grid.iter().product(), list: LIST as u32, ..cloud.step(0) }
+}
+
+/// Asked are the waiting ghosts that a particle farther in has chosen, each once; they choose as if they had not
+/// waited, and the others that wait choose nobody.
+#[test]
+fn those_that_are_asked_choose_as_if_they_had_not_waited() {
+    let mut stream = Stream::new(71);
+    let cloud = Cloud::new(&mut stream, World::plain(), COUNT, 1.0);
+    let layers = layers(&mut stream);
+    let layer = |s: usize| layers[s] & 0xff;
+    let mut rig = rig_of(&cloud, &layers);
+    rig.step(step_of(&cloud, ALL));
+    rig.run("choose", COUNT);
+    let all: Vec<[u32; 2]> = rig.get("choices", COUNT);
+    assert_eq!(rig.counter(LIST_ASKED), 0, "nobody waits, nobody is asked");
+
+    let mut rig = rig_of(&cloud, &layers);
+    rig.step(step_of(&cloud, WAIT));
+    rig.run("choose", COUNT);
+    let first: Vec<[u32; 2]> = rig.get("choices", COUNT);
+    let asked: BTreeSet<u32> = (0..COUNT)
+        .filter(|&s| layer(s) != 1 && all[s][0] != NOBODY)
+        .map(|s| all[s][0])
+        .filter(|&j| layer(j as usize) == 1)
+        .collect();
+    assert_eq!(rig.list("asked", LIST_ASKED), asked.iter().copied().collect::<Vec<_>>());
+    let marks: Vec<u32> = rig.get("layers", COUNT);
+    for s in 0..COUNT {
+        assert_eq!(first[s][0], if layer(s) == 1 { NOBODY } else { all[s][0] }, "{s}");
+        assert_eq!(marks[s], layers[s] | if asked.contains(&(s as u32)) { ASKED } else { 0 }, "{s}");
+    }
+    // Asked again in another round they are not listed again.
+    rig.step(step_of(&cloud, WAIT));
+    rig.run("choose", COUNT);
+    assert_eq!(rig.counter(LIST_ASKED) as usize, asked.len());
+
+    rig.step(step_of(&cloud, PASS));
+    rig.run("choose", COUNT);
+    let second: Vec<[u32; 2]> = rig.get("choices", COUNT);
+    for s in 0..COUNT {
+        let expected = if layer(s) == 1 && !asked.contains(&(s as u32)) { NOBODY } else { all[s][0] };
+        assert_eq!(second[s][0], expected, "{s}");
+        assert!(expected == NOBODY || second[s][1] == all[s][1], "{s}: the same time to the last bit");
+    }
+    // The check can fail: some are asked, and some of those that are not would have chosen.
+    let silent = (0..COUNT).filter(|&s| all[s][0] != second[s][0]).count();
+    assert!(asked.len() > 20 && silent > 20, "{} asked, {silent} silent", asked.len());
+}
+
+/// A ghost that waits has no list; once it is asked it gets the one it would have had, and is marked for the
+/// screening where that would have been.
+#[test]
+fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
+    let mut stream = Stream::new(72);
+    let cloud = Cloud::new(&mut stream, World::plain(), COUNT, 1.0);
+    let layers = layers(&mut stream);
+    let cells = cloud.world.cells();
+    // In the order of the cells, as the search has them.
+    let mut middles: Vec<[u32; 3]> = cloud.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
+    middles.sort_by_key(|&p| cells.index(cells.cell(p)));
+    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
+    let near_wall = |c: u32| u32::from(cloud.world.class(c) != CLEAR) << 31;
+    let part = |p: &[u32; 3], k: usize| (p[k] >> (cells.bits - 7) & 1023) << (10 * k);
+    let packed: Vec<u32> =
+        middles.iter().zip(&of).map(|(p, &c)| part(p, 0) | part(p, 1) | part(p, 2) | near_wall(c)).collect();
+    let run = |ghosts: u32, before: &[u32], asked: &[u32]| {
+        let mut rig = rig_of(&cloud, before);
+        rig.put("cell_start", &start);
+        rig.put("middles", &packed);
+        rig.put("cells", &of);
+        rig.put("neighbour_count", &vec![9u32; COUNT]);
+        rig.put("neighbours", &vec![NOBODY; LIST * COUNT]);
+        rig.put("screened", &vec![0u32; COUNT]);
+        rig.put("asked", asked);
+        rig.set_counter(LIST_ASKED, asked.len() as u32);
+        rig.step(step_of(&cloud, ghosts));
+        rig.run("neighbours", COUNT);
+        let flat: Vec<u32> = rig.get("neighbours", LIST * COUNT);
+        let counts: Vec<u32> = rig.get("neighbour_count", COUNT);
+        let list = |s: usize| (0..counts[s] as usize).map(|k| flat[k * COUNT + s]).collect::<Vec<u32>>();
+        let marks: Vec<u32> = rig.get("layers", COUNT);
+        ((0..COUNT).map(list).collect::<Vec<_>>(), marks, rig.list("screened", LIST_SCREEN))
+    };
+    let asked: Vec<u32> = (0..COUNT as u32).filter(|&s| layers[s as usize] & 0xff == 1 && s % 3 == 0).collect();
+    let known = asked[0] as usize;
+    let (all, _, screened) = run(ALL, &layers, &[0; 4][..0]);
+    let (waiting, marks, others) = run(WAIT, &layers, &[0; 4][..0]);
+    assert_eq!(marks, layers);
+    let mut before = layers.clone();
+    before[known] |= SEARCHED;
+    let (late, marks, none) = run(PASS, &before, &asked);
+    assert!(none.is_empty(), "the screening of those asked has no list of its own");
+    for s in 0..COUNT {
+        let waits = layers[s] & 0xff == 1;
+        assert_eq!(waiting[s], if waits { vec![] } else { all[s].clone() }, "{s}");
+        assert_eq!(others.contains(&(s as u32)), !waits && screened.contains(&(s as u32)), "{s}");
+        if asked.contains(&(s as u32)) && s != known {
+            assert_eq!(late[s], all[s], "{s}");
+            let unscreened = if screened.contains(&(s as u32)) { UNSCREENED } else { 0 };
+            assert_eq!(marks[s], layers[s] | SEARCHED | unscreened, "{s}");
+        } else {
+            assert_eq!(late[s], vec![NOBODY; 9], "{s}: not asked, or searched before");
+            assert_eq!(marks[s], before[s], "{s}");
+        }
+    }
+    let to_screen = asked.iter().filter(|s| screened.contains(s)).count();
+    assert!(to_screen > 0 && to_screen < asked.len(), "some are clear of walls, some are not: {to_screen}");
+}
+
+/// What walls hide is decided where the flights started, though rounds have changed them since.
+#[test]
+fn those_that_are_asked_late_are_screened_where_the_step_began() {
+    let mut stream = Stream::new(73);
+    let world = crate::screen::parted_tank();
+    let cloud = Cloud::new(&mut stream, world, COUNT, 1.0);
+    let layers: Vec<u32> = vec![1; COUNT];
+    let screened: Vec<u32> = (0..COUNT as u32).collect();
+    let lists = |rig: &Rig| {
+        let flat: Vec<u32> = rig.get("neighbours", LIST * COUNT);
+        let counts: Vec<u32> = rig.get("neighbour_count", COUNT);
+        (0..COUNT).map(|s| (0..counts[s] as usize).map(|k| flat[k * COUNT + s]).collect()).collect::<Vec<Vec<u32>>>()
+    };
+    let mut rig = rig_of(&cloud, &layers);
+    rig.put("screened", &screened);
+    rig.set_counter(LIST_SCREEN, COUNT as u32);
+    rig.step(step_of(&cloud, ALL));
+    rig.run("screen", COUNT);
+    let early = lists(&rig);
+    let hidden: usize = cloud.lists.iter().zip(&early).map(|(before, after)| before.len() - after.len()).sum();
+
+    // The particles as they were, in another order; those in `sorted` have been through rounds since.
+    let mut order: Vec<u32> = (0..COUNT as u32).collect();
+    stream.shuffle(&mut order);
+    let mut particles = vec![GpuParticle::default(); COUNT];
+    for (s, &place) in order.iter().enumerate() {
+        particles[place as usize] = cloud.particles[s];
+    }
+    let moved = cloud.world.particles(&mut stream, COUNT, 400.0);
+    let changed: Vec<GpuParticle> =
+        cloud.particles.iter().zip(&moved).map(|(old, new)| GpuParticle { tag: old.tag, ..*new }).collect();
+    let flights: Vec<GpuFlight> =
+        cloud.flights.iter().map(|flight| GpuFlight { start: 0.5 * DT, collisions: 1, ..*flight }).collect();
+    let late = |from: &[GpuParticle]| {
+        let mut rig = rig_of(&cloud, &vec![1 | UNSCREENED; COUNT]);
+        rig.put("sorted", &changed);
+        rig.put("flights", &flights);
+        rig.put("screened", &[0u32; 4]);
+        rig.put("particles", from);
+        rig.put("origins", &order);
+        rig.put("asked", &screened[..COUNT - 1]);
+        rig.set_counter(LIST_ASKED, COUNT as u32 - 1);
+        rig.step(step_of(&cloud, PASS));
+        rig.run("screen", COUNT);
+        assert_eq!(rig.get::<u32>("layers", COUNT)[..COUNT - 1], vec![1; COUNT - 1], "screened once");
+        lists(&rig)
+    };
+    let found = late(&particles);
+    assert_eq!(found[..COUNT - 1], early[..COUNT - 1]);
+    assert_eq!(found[COUNT - 1].len(), cloud.lists[COUNT - 1].len(), "not asked");
+    assert!(hidden > 50, "{hidden} hidden");
+    // The check can fail: where the particles are now, other pairs are parted.
+    let mut now = vec![GpuParticle::default(); COUNT];
+    for (s, &place) in order.iter().enumerate() {
+        now[place as usize] = changed[s];
+    }
+    assert_ne!(late(&now)[..COUNT - 1], early[..COUNT - 1]);
+}
