@@ -221,8 +221,8 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     let at = SURFACE_WORDS + COAT_WORDS;
     assert!((sum_at(&words, at + 4) - inside).abs() < 3.0);
     assert_eq!(sum_at(&words, at + 6), 0.0, "no probability above one");
-    for gas in 0..4 {
-        assert!(words[at + 8 + gas].abs_diff(left[gas]) < 2);
+    for (word, left) in words[at + 8..].iter().zip(left) {
+        assert!(word.abs_diff(left) < 2);
     }
     let tally = sum_at(&words, at) / ENERGY_SCALE;
     assert!((tally / energy_out - 1.0).abs() < 2e-3, "{tally} {energy_out}");
