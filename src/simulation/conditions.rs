@@ -105,11 +105,12 @@ impl<'a> Conditions<'a> {
         self.model.coats.coats.is_empty()
     }
 
-    /// Takes the tallies of an interval, or of the start; `wanted` is what its vents should have passed. Intervals come
-    /// in their order.
-    pub fn see(&mut self, tallies: &Tallies, samples: u32, wanted: &[Wanted]) -> Seen {
+    /// Takes the tallies of an interval from `start` to `end`, s; intervals come in their order. Also tells what its
+    /// vents should have passed, by the gas that was there (and not by that of the interval before last, whose state they
+    /// followed: so a vessel that empties fast does not lose more than it should).
+    pub fn see(&mut self, tallies: &Tallies, samples: u32, [start, end]: [f64; 2]) -> (Seen, Vec<Wanted>) {
         if self.mirrors() {
-            return Seen::default();
+            return (Seen::default(), Vec::new());
         }
         let model = self.model;
         if samples > 0 {
@@ -122,22 +123,23 @@ impl<'a> Conditions<'a> {
                 .collect();
         }
         self.state.latest.vents.resize(model.scene.vents.len(), VentSeen::default());
+        let wanted: Vec<Wanted> =
+            (0..model.scene.vents.len()).map(|index| self.flow(&self.state.latest, index, start, end).0).collect();
         for (index, vent) in model.scene.vents.iter().enumerate() {
             let mut seen = self.state.latest.vents[index];
             let pressure = self.local(&self.state.latest, model.coats.vents[index].chamber).map_or(0.0, |g| g.pressure);
             seen.open = opens(vent, seen.open, pressure);
-            if let Some(wanted) = wanted.get(index) {
-                let most = MOST_RAISED * (PAID_IN * wanted.mass).max(PAID_BY * self.scales.reference_mass);
-                seen.owed = (seen.owed + wanted.mass - self.left(tallies, index)).clamp(-most, most);
-            }
+            let mass = wanted[index].mass;
+            let most = MOST_RAISED * (PAID_IN * mass).max(PAID_BY * self.scales.reference_mass);
+            seen.owed = (seen.owed + mass - self.left(tallies, index)).clamp(-most, most);
             self.state.latest.vents[index] = seen;
         }
-        self.state.latest.clone()
+        (self.state.latest.clone(), wanted)
     }
 
     /// The state of the start of a run, before any interval.
     pub fn start(&mut self, at_start: &Tallies) {
-        self.state.current = self.see(at_start, 1, &[]);
+        self.state.current = self.see(at_start, 1, [0.0; 2]).0;
     }
 
     /// From now on the walls follow this state.
@@ -181,21 +183,21 @@ impl<'a> Conditions<'a> {
         plan.gases.iter().zip(left).map(|(gas, n)| gas.molar_mass * plan.moles_per_particle * n as f64).sum()
     }
 
-    /// What the walls do from `start` to `end`, s, and what the vents should pass.
-    pub fn coating(&mut self, start: f64, end: f64) -> (Coating, Vec<Wanted>) {
+    /// What the walls do from `start` to `end`, s.
+    pub fn coating(&mut self, start: f64, end: f64) -> Coating {
         let mut coating = Coating::default();
         if self.mirrors() {
-            return (coating, Vec::new());
+            return coating;
         }
         let model = self.model;
-        let flows: Vec<(Wanted, f64)> =
-            (0..model.scene.vents.len()).map(|index| self.flow(index, start, end)).collect();
+        let betas: Vec<f64> =
+            (0..model.scene.vents.len()).map(|index| self.flow(&self.state.current, index, start, end).1).collect();
         let heaviest = self.scales.reference_mass / model.plan.moles_per_particle;
         for (index, coat) in model.coats.coats.iter().enumerate() {
             let first_vent = coating.vents.len() as u32;
             for &vent in &coat.vents {
                 let (center, radius2) = self.disc(vent);
-                let (beta, index) = (flows[vent].1 as f32, vent as u32);
+                let (beta, index) = (betas[vent] as f32, vent as u32);
                 coating.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
             }
             let (mut thermal, mut share) = (0.0, 0.0);
@@ -217,7 +219,7 @@ impl<'a> Conditions<'a> {
                 end_vent: coating.vents.len() as u32,
             });
         }
-        (coating, flows.into_iter().map(|(wanted, _)| wanted).collect())
+        coating
     }
 
     /// Centre in quanta and the square of the radius, m2, of a vent's place.
@@ -232,14 +234,14 @@ impl<'a> Conditions<'a> {
         }
     }
 
-    /// What a vent should pass, and its beta for the reference mass, s/m.
-    fn flow(&self, index: usize, start: f64, end: f64) -> (Wanted, f64) {
+    /// What a vent should pass of the gas of a state, and its beta for the reference mass, s/m.
+    fn flow(&self, state: &Seen, index: usize, start: f64, end: f64) -> (Wanted, f64) {
         let model = self.model;
         let (vent, place) = (&model.scene.vents[index], &model.coats.vents[index]);
-        let Some(gas) = self.local(&self.state.current, place.chamber) else {
+        let Some(gas) = self.local(state, place.chamber) else {
             return (Wanted::default(), 0.0);
         };
-        let seen = self.state.current.vents.get(index).copied().unwrap_or_default();
+        let seen = state.vents.get(index).copied().unwrap_or_default();
         let area = vent.area.unwrap_or(place.area);
         let over = area * (end - start);
         let isentropic = over * gas.isentropic_flux(vent.external_pressure);

@@ -10,7 +10,6 @@ use crate::ranks::Reduction;
 use crate::subdomain::{Coating, GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
-use super::conditions::Wanted;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
 use super::step::{Sampling, step};
@@ -33,9 +32,8 @@ pub struct Interval {
     pub energy: Vec<f64>,
     /// Particles that have entered by its end, on all ranks, the initial ones with them.
     pub particles: u64,
-    /// What the walls that are no mirrors do in it, and what the vents should pass.
+    /// What the walls that are no mirrors do in it.
     pub coating: Coating,
-    pub wanted: Vec<Wanted>,
 }
 
 /// An interval on its way through the device.
@@ -93,7 +91,6 @@ impl Interval {
             momentum: [0.0; 3],
             energy: vec![0.0; steps as usize],
             coating: Coating::default(),
-            wanted: Vec::new(),
             particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
         };
         if let Deal::ById { rank, ranks } = deal {

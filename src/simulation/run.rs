@@ -393,7 +393,7 @@ impl<'a> Simulation<'a> {
             Some(_) => Deal::All,
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
-        (interval.coating, interval.wanted) = self.conditions.coating(start, end);
+        interval.coating = self.conditions.coating(start, end);
         self.submit(interval)
     }
 
