@@ -1,11 +1,12 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without collisions `particles`, `newborns`) and the classes of the cells;
-// writes `particles` (in canonical order; dead slots in place of ghosts), and appends those that meet a wall, or without collisions may
-// meet one, to `bouncing`. One thread per particle, which writes its own slot.
+// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`) and the classes of the
+// cells; writes `particles` (in canonical order; dead slots in place of ghosts), and appends those that meet a wall, or
+// without rounds may meet one (noted in `layers`), to `bouncing`. One thread per particle, which writes its own slot.
 
 override COLLISIONS: bool = true;
+override ROUNDS_OF_PAIRS: bool = true;
 override ORIFICES: bool = true;
 override VENTS: bool = true;
 
@@ -13,7 +14,7 @@ override VENTS: bool = true;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
-@group(0) @binding(32) var<storage, read> layers: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -30,12 +31,15 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             return;
         }
         particle = sorted[s];
-        meets_wall = flights[s].wall < step.dt;
     } else {
         particle = particles[s];
         if (VENTS && particle.tag == NOBODY) {
             return;
         }
+    }
+    if (ROUNDS_OF_PAIRS) {
+        meets_wall = flights[s].wall < step.dt;
+    } else {
         var start = 0.0;
         if (ORIFICES) {
             start = birth_time(id_of(particle.tag));
@@ -43,6 +47,10 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         meets_wall = may_hit(particle.position, particle.velocity, start, step.dt);
     }
     if (meets_wall) {
+        if (COLLISIONS && !ROUNDS_OF_PAIRS) {
+            layers[s] |= NEAR;
+            atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
+        }
         bouncing[append(LIST_BOUNCE)] = s;
         return;
     }

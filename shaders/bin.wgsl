@@ -1,10 +1,14 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl
-// Counts the particles of each cell, by their mid-step position, and finds those that other devices need.
+// Counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
+// are then), and finds those that other devices need.
 //
 // Reads `particles`; writes `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
 // owned here nor lies in the halo) and `cell_count`, and appends the earlier particles in cells that
 // others own or have in their halo to `border` (slot, cell). One thread per slot. The slot within the cell
 // depends on the order of the threads; `order` replaces it by the rank of the id.
+
+// What part of the step's flight is flown to the place that decides the cell.
+override FLOWN: f32 = 0.5;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
@@ -23,7 +27,7 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         atomicAdd(&counters[COUNT_DROPPED], 1u);
         return;
     }
-    let middle = shifted(particles[i].position, particles[i].velocity * (0.5 * step.dt));
+    let middle = shifted(particles[i].position, particles[i].velocity * (FLOWN * step.dt));
     let cell = nearest_cell(middle);
     // The border layer of the box has no bins to fill.
     if (all(cell - step.low - 1u < step.size - 2u)) {
@@ -37,7 +41,7 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         atomicAdd(&counters[MOVED], 1u);
     }
     // Every device has the newborns of its own cells and halo by itself; arrivals are sent by no other.
-    if (step.depth > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
+    if (step.peers > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
         border[append(LIST_BORDER)] = vec2<u32>(i, cell_index(cell));
     }
 }

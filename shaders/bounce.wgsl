@@ -2,12 +2,13 @@
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent.
 //
-// Reads `bouncing`, `sorted`, `flights` (without collisions `particles`, `newborns`), the walls, `coats` and
-// `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces, the
-// coats and the vents that the scene has. One thread per entry of `bouncing`, which writes its own particle;
+// Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the walls,
+// `coats` and `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces,
+// the coats and the vents that the scene has. One thread per entry of `bouncing`, which writes its own particle;
 // random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
 
 override COLLISIONS: bool = true;
+override ROUNDS_OF_PAIRS: bool = true;
 override ORIFICES: bool = true;
 override SPIN: bool = true;
 override SURFACES: bool = true;
@@ -114,12 +115,13 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var time = 0.0;
     if (COLLISIONS) {
         particle = sorted[s];
-        time = flights[s].start;
     } else {
         particle = particles[s];
-        if (ORIFICES) {
-            time = birth_time(id_of(particle.tag));
-        }
+    }
+    if (ROUNDS_OF_PAIRS) {
+        time = flights[s].start;
+    } else if (ORIFICES) {
+        time = birth_time(id_of(particle.tag));
     }
     let gas = gases[gas_of(particle.tag)];
     var bounces = 0u;

@@ -1,5 +1,6 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl
-// Each particle picks its earliest possible collision (closest approach, specification, section 2).
+// Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
+// or at once if they overlap and approach (specification, section 2).
 //
 // Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
 // One thread per particle in the first round, per entry of `rechoose` in later ones: only a particle that
@@ -10,6 +11,8 @@
 
 // Collision diameter, m.
 override DIAMETER: f32;
+// Rigid spheres, the method `hard-sphere`.
+override RIGID: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
@@ -52,15 +55,24 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (g2 == 0.0) {
             continue;
         }
-        let time = -dot(r, g) / g2;
+        var time = -dot(r, g) / g2;
         let earliest = max(own_flight.start, other_flight.start);
         let latest = min(step.dt, min(own_flight.wall, other_flight.wall));
-        if (!(time >= earliest && time < latest)) {
+        if (!RIGID && !(time >= earliest && time < latest)) {
             continue;
         }
         let miss = r + g * time;
-        if (dot(miss, miss) >= DIAMETER * DIAMETER) {
+        let inside = DIAMETER * DIAMETER - dot(miss, miss);
+        if (inside <= 0.0) {
             continue;
+        }
+        if (RIGID) {
+            // Apart from the closest approach on they only move apart.
+            let approach = time;
+            time = max(approach - sqrt(inside / g2), earliest);
+            if (!(approach > earliest && time < latest)) {
+                continue;
+            }
         }
         if (own_flight.partner == other.tag && other_flight.partner == own.tag) {
             continue;

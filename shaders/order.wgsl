@@ -24,6 +24,8 @@
 
 override ORIFICES: bool = true;
 override VENTS: bool = true;
+// Pairs are chosen from neighbour lists, in rounds.
+override ROUNDS_OF_PAIRS: bool = true;
 
 @compute @workgroup_size(WORKGROUP)
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -34,7 +36,6 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (VENTS && s >= cell_start[step.bins]) {
         // On a device alone, whose host learns late how many have left: slots that hold no particle.
         layers[s] = LAYER;
-        touched[s] = 0u;
         return;
     }
     let slot = slots[s];
@@ -46,13 +47,8 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         place += select(0u, 1u, slots[k].y < slot.y);
     }
     let particle = particles[slot.x];
-    var start = 0.0;
-    if (ORIFICES) {
-        start = birth_time(slot.y);
-    }
     sorted[place] = particle;
     let place_in_grid = cell_of(cell);
-    let flag = select(0u, NEAR_WALL, may_part(cell_index(place_in_grid)));
     var mark = 0u;
     if (step.depth > 0u) {
         origins[place] = slot.x;
@@ -61,8 +57,17 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
             mark = SHARED;
         }
     }
-    middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     cells[place] = cell;
+    if (!ROUNDS_OF_PAIRS) {
+        layers[place] = mark;
+        return;
+    }
+    var start = 0.0;
+    if (ORIFICES) {
+        start = birth_time(slot.y);
+    }
+    let flag = select(0u, NEAR_WALL, may_part(cell_index(place_in_grid)));
+    middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     touched[place] = 0u;
     flights[place] = Flight(start, NEVER, NOBODY, 0u);
     if (may_hit(particle.position, particle.velocity, start, step.dt)) {

@@ -1,10 +1,9 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
-// cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Spin
-// exchange is Larsen-Borgnakke (section 3), i before j, i the lower id. What rounding does to the
-// pair's energy goes into spin.
+// cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
+// back along the line of their centres.
 //
 // Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
 // and appends the particles that this may make choose otherwise to `rechoose`, and those that other
@@ -12,10 +11,10 @@
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 
 override DIAMETER: f32;
-override SPIN: bool = true;
+// Rigid spheres, the method `hard-sphere`.
+override RIGID: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
@@ -31,55 +30,35 @@ fn perpendicular(u: vec3<f32>) -> vec3<f32> {
     return normalize(cross(axis, u));
 }
 
-struct Outcome {
-    relative: vec3<f32>,
-    spin_i: f32,
-    spin_j: f32,
+// The new relative velocity of rigid spheres with `r` between their centres and relative velocity `g`: the part of its
+// direction along r is turned back.
+fn thrown_back(r: vec3<f32>, g: vec3<f32>, speed: f32) -> vec3<f32> {
+    let r2 = dot(r, r);
+    // Two at one place have no line of centres.
+    let back = select(-g, g - (2.0 * dot(g, r) / max(r2, 1e-30)) * r, r2 > 0.0);
+    let old_speed = length(g);
+    if (speed == old_speed) {
+        return back;
+    }
+    return (speed / old_speed) * back;
 }
 
-// New relative velocity and spins of a pair with miss vector `miss` (r at the closest approach) and
-// relative velocity `g`; `random` holds the words of two draws.
-fn collide(miss: vec3<f32>, g: vec3<f32>, i: Particle, j: Particle, mu: f32, draw: vec4<u32>, draw2: vec4<u32>) -> Outcome {
-    let speed = length(g);
-    let along = g / speed;
+// The new relative velocity of a pair with miss vector `miss` (r at the closest approach) and relative velocity
+// `g`, at the relative speed `speed`; a bit of `side` says on which side they pass.
+fn turned(miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> vec3<f32> {
+    let along = g / length(g);
     let across = miss - along * dot(miss, along);
     let b2 = clamp(dot(across, across) / (DIAMETER * DIAMETER), 0.0, 1.0);
     var turn = perpendicular(along);
     if (b2 > 1e-12) {
         turn = normalize(cross(across, along));
     }
-    if ((draw2.z & 0x80000000u) != 0u) {
+    if ((side & 0x80000000u) != 0u) {
         turn = -turn;
     }
     let cosine = 2.0 * b2 - 1.0;
     let sine = 2.0 * sqrt(b2 * (1.0 - b2));
-    var outcome: Outcome;
-    outcome.spin_i = i.spin;
-    outcome.spin_j = j.spin;
-    var new_speed = speed;
-    if (SPIN) {
-        let before = 0.5 * mu * speed * speed;
-        var energy = before;
-        let gas_i = gases[gas_of(i.tag)];
-        if (unit_interval(draw.x) < gas_i.exchange) {
-            let sum = energy + i.spin;
-            let share = pow(unit_interval(draw.y), gas_i.inverse_beta) * pow(unit_interval(draw.z), gas_i.inverse_beta1);
-            outcome.spin_i = min(sum * share, sum);
-            energy = sum - outcome.spin_i;
-        }
-        let gas_j = gases[gas_of(j.tag)];
-        if (unit_interval(draw.w) < gas_j.exchange) {
-            let sum = energy + j.spin;
-            let share = pow(unit_interval(draw2.x), gas_j.inverse_beta) * pow(unit_interval(draw2.y), gas_j.inverse_beta1);
-            outcome.spin_j = min(sum * share, sum);
-            energy = sum - outcome.spin_j;
-        }
-        if (energy != before) {
-            new_speed = sqrt(2.0 * energy / mu);
-        }
-    }
-    outcome.relative = new_speed * (cosine * along + sine * turn);
-    return outcome;
+    return speed * (cosine * along + sine * turn);
 }
 
 // Notes a particle that other devices have as a ghost.
@@ -148,25 +127,18 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (SPIN) {
         draw = philox(vec4<u32>(step.index, step.round * 2u, ids), key);
     }
-    let outcome = collide(miss, g, i, j, mu, draw, draw2);
-    let change = outcome.relative - g;
+    let exchange = exchanged(i, j, mu, length(g), draw, draw2.xy);
+    var relative: vec3<f32>;
+    if (RIGID) {
+        relative = thrown_back(miss, g, exchange.speed);
+    } else {
+        relative = turned(miss, g, exchange.speed, draw2.z);
+    }
     let old_i = i.velocity;
     let old_j = j.velocity;
-    i.velocity = old_i - (mu / mass_i) * change;
-    j.velocity = old_j + (mu / mass_j) * change;
-    if (SPIN) {
-        // The kinetic energy that the rounded velocities really gained, against what the spins gave.
-        let gained = 0.5 * mass_i * dot(i.velocity - old_i, i.velocity + old_i)
-            + 0.5 * mass_j * dot(j.velocity - old_j, j.velocity + old_j);
-        let residual = (i.spin - outcome.spin_i) + (j.spin - outcome.spin_j) - gained;
-        i.spin = outcome.spin_i;
-        j.spin = outcome.spin_j;
-        if (gases[gas_of(i.tag)].exchange > 0.0 && i.spin + residual >= 0.0) {
-            i.spin += residual;
-        } else if (gases[gas_of(j.tag)].exchange > 0.0 && j.spin + residual >= 0.0) {
-            j.spin += residual;
-        }
-    }
+    let after = deflected(i, j, mu, relative - g, exchange);
+    i = after.i;
+    j = after.j;
     tell(pair.x);
     tell(pair.y);
     // The two are in each other's lists.

@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent, GpuWeights,
-    GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -67,6 +67,7 @@ fn twins() -> Vec<Twin> {
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
         twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
         twin!("Peer", GpuPeer, low, pad, high, pad2),
+        twin!("Part", GpuPart, place, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
     ]
 }

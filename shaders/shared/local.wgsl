@@ -27,7 +27,7 @@ fn layer_of(c: vec3<u32>) -> u32 {
 
 // `layers` holds a particle's layer and these marks: another device has it as a ghost; it is in the list
 // `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched, and they
-// are yet to be screened.
+// are yet to be screened. (Above them `collide_parted` keeps the part of the cell.)
 const LAYER: u32 = 0xff;
 const SHARED: u32 = 0x100;
 const LISTED: u32 = 0x200;

@@ -52,6 +52,8 @@ pub enum Verb {
     Resume(ResumeArguments),
     /// Run a scene on several counts of devices, or emulate them, and compare
     Sweep(SweepArguments),
+    /// Run reference cases and compare with closed forms and published figures
+    Verify(VerifyArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -275,6 +277,29 @@ pub struct RefineArguments {
     /// Write into a folder that holds more than an earlier run's results
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct VerifyArguments {
+    /// The cases to run; all if none is named
+    #[arg(value_name = "CASE")]
+    pub cases: Vec<String>,
+    /// As much as minutes allow (the default)
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// More particles and more cases: hours on a CPU
+    #[arg(long)]
+    pub full: bool,
+    /// Only say which cases there are
+    #[arg(long, conflicts_with_all = ["quick", "full", "markdown", "gpu"])]
+    pub list: bool,
+    /// Also write the table as a page in Markdown
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub markdown: Option<PathBuf>,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
 }
 
 #[derive(Debug, Args)]

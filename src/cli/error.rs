@@ -85,6 +85,13 @@ pub enum CliError {
     #[error(transparent)]
     #[diagnostic(help("docs/clusters.md says how ranks are started"))]
     Rank(#[from] RankError),
+    #[error("there is no case `{asked}`; there are: {}", known.join(", "))]
+    UnknownCase { asked: String, known: Vec<String> },
+    #[error("{failed} of {checks} checks do not pass")]
+    #[diagnostic(help(
+        "FAIL: off by more than the tolerance; UNCLEAR: the run knows too little. Please report it with the adapter and driver"
+    ))]
+    Verification { failed: usize, checks: usize },
     #[error("the audit failed:{}", list(failures))]
     #[diagnostic(help("the results are written, and cannot be trusted; please report it with the scene"))]
     Audit { failures: Vec<String> },
@@ -109,11 +116,13 @@ impl CliError {
                 SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
             ) => DEVICE_TROUBLE,
             CliError::Audit { .. }
+            | CliError::Verification { .. }
             | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
             CliError::Simulation(
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
+                | SimulationError::Cells(_)
                 | SimulationError::Partition(_)
                 | SimulationError::Resume(_)
                 | SimulationError::Observer(_),
@@ -137,7 +146,8 @@ impl CliError {
             | CliError::PlanToml(_)
             | CliError::SchemaJson(_)
             | CliError::StandardOutput(_)
-            | CliError::UnknownVerb { .. } => BAD_INPUT,
+            | CliError::UnknownVerb { .. }
+            | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }
 }

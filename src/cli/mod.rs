@@ -18,6 +18,7 @@ mod schema;
 mod settings;
 mod sweep;
 mod terminal;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -57,6 +58,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
+        Verb::Verify(raw) => verify::verify(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),

@@ -36,6 +36,13 @@ pub fn occupancy(number_density: f64, diameter: f64) -> f64 {
     number_density * PI / 6.0 * diameter * diameter * diameter
 }
 
+/// Pressure of rigid spheres over n k T at an occupancy f: (1 + f + f^2 - f^3) / (1 - f)^3 (Carnahan and Starling
+/// 1969; specification, section 2).
+pub fn rigid_compressibility(occupancy: f64) -> f64 {
+    let f = occupancy;
+    (1.0 + f + f * f - f * f * f) / ((1.0 - f) * (1.0 - f) * (1.0 - f))
+}
+
 /// The diameter (m) of a given occupancy.
 pub fn diameter(number_density: f64, occupancy: f64) -> f64 {
     libm::cbrt(6.0 * occupancy / (PI * number_density))
@@ -105,6 +112,15 @@ mod tests {
         let speed = mean_speed(thermal_square(293.0, 0.0280134));
         assert!(close(speed, 470.6, 1e-3), "{speed}");
         assert!(!close(speed, 476.0, 1e-3));
+    }
+
+    /// The table of the specification, section 2.
+    #[test]
+    fn rigid_spheres_press_harder() {
+        for (f, expected) in [(0.01, 1.041), (0.03, 1.130), (0.1, 1.521), (0.2, 2.406), (0.3, 3.974)] {
+            assert!((rigid_compressibility(f) - expected).abs() < 6e-4, "{f}: {}", rigid_compressibility(f));
+        }
+        assert_eq!(rigid_compressibility(0.0), 1.0);
     }
 
     /// lambda = cbar tau, with gbar = sqrt2 cbar.

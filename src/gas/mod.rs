@@ -10,6 +10,7 @@ mod initial;
 pub mod kinetics;
 mod philox;
 mod random;
+mod riemann;
 pub mod thermo;
 pub mod vent;
 pub mod wall_heat;
@@ -21,6 +22,7 @@ pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
 pub use initial::{FillError, Filling, fill};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};
+pub use riemann::{Fluid, Riemann};
 
 /// One particle on the host, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,12 +9,15 @@
 //! | `InitialState`    | `[particle id, block, 0, 0]`                       | host     |
 //! | `Inflow`          | `[particle id, block, 0, 0]`                       | host     |
 //! | `Collision`       | `[step, 2 round + block, lower id, higher id]`     | device   |
+//! | `CellCollision`   | `[step, cell, 4 candidate + block, part]`           | device   |
 //! | `RefinedPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `RefinedState`    | `[particle id, block, 0, 0]`                       | host     |
 //! | `Wall`            | `[step, 32 hit + block, particle id, 0]`           | device   |
 //!
 //! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
 //! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
+//!
+//! Candidates of a part of a cell count from 1; number 0 rounds how many there are.
 //!
 //! Host draws are f64 and go through crate `libm`: system mathematics libraries differ in the last bit.
 
@@ -35,6 +38,8 @@ pub enum Purpose {
     /// Drawn on the device only: whether a hit on a wall lets the particle out, and how it leaves the wall. `hit`
     /// counts those of the particle in the step, from 1.
     Wall = 7,
+    /// Drawn on the device only: candidate pairs of a cell, and their collisions.
+    CellCollision = 9,
 }
 
 /// The Philox key of a purpose; uses the lower 56 bits of the seed.
@@ -129,7 +134,7 @@ mod tests {
     use super::*;
 
     const COUNT: u32 = 200_000;
-    const PURPOSES: [Purpose; 7] = [
+    const PURPOSES: [Purpose; 8] = [
         Purpose::InitialPosition,
         Purpose::InitialState,
         Purpose::Inflow,
@@ -137,6 +142,7 @@ mod tests {
         Purpose::RefinedPosition,
         Purpose::RefinedState,
         Purpose::Wall,
+        Purpose::CellCollision,
     ];
 
     /// Mean and second moment over `COUNT` particles, one draw each, with the standard errors of both.

@@ -137,7 +137,8 @@ impl Riemann {
     /// The pressure between the waves: both jumps and the difference of the velocities add up to nothing. The sum
     /// rises with the pressure, so halving finds its zero.
     fn between(&self) -> f64 {
-        let sum = |p: f64| self.jump(&self.left, p) + self.jump(&self.right, p) + self.right.velocity - self.left.velocity;
+        let sum =
+            |p: f64| self.jump(&self.left, p) + self.jump(&self.right, p) + self.right.velocity - self.left.velocity;
         let (mut low, mut high) = (0.0, self.left.pressure.max(self.right.pressure));
         while sum(high) < 0.0 {
             high *= 2.0;

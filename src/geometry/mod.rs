@@ -6,6 +6,7 @@
 //! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`.
 
 mod blocks;
+mod cell_gas;
 mod closed;
 mod error;
 mod grid;
@@ -20,6 +21,7 @@ mod triangle_grid;
 mod vessel;
 
 pub use blocks::block_volumes;
+pub use cell_gas::{CellGas, CellPart, cell_gas};
 pub use closed::check_closed;
 pub use error::GeometryError;
 pub use grid::{Grid, GridError};

@@ -4,7 +4,7 @@ use super::amounts::{Amounts, highest_temperature};
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::population::{Population, openings, wanted};
 use super::render::significant;
-use super::resolution::{DEFAULT_OCCUPANCY, Extreme, MeanState, Resolution};
+use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
@@ -27,7 +27,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
     let amounts = Amounts::of(scene, measured)?;
-    let wanted_occupancy = scene.model.occupancy.unwrap_or(DEFAULT_OCCUPANCY);
+    let wanted_occupancy = scene.model.occupancy.unwrap_or_else(|| default_occupancy(method));
     let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
     let population = Population::count(scene, &amounts, wanted)?;
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
@@ -61,7 +61,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let mut warnings = warnings(particles, occupancy, &resolution, &openings, measured);
+    let mut warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
     let vents = vents::planned(scene, measured);
     warnings.extend(vents::warnings(scene, &vents, measured));
     Ok(Plan {
@@ -101,11 +101,7 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
         Some(method) => (method, "asked for"),
         None => (Method::ClosestApproach, "right for jets and vents, with the ideal gas's pressure at any occupancy"),
     };
-    let value = match method {
-        Method::ClosestApproach => "closest-approach",
-        Method::None => "none",
-    };
-    reasons.push(Reason { quantity: "method".into(), value: value.into(), why: why.into() });
+    reasons.push(Reason { quantity: "method".into(), value: method.name().into(), why: why.into() });
     method
 }
 

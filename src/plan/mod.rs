@@ -8,7 +8,8 @@
 //! Invariants of a plan:
 //! - `end_time` is an integer multiple of `time_step`;
 //! - the grid's cell edge h satisfies h >= sqrt(sigma^2 + (g_max time_step / 2)^2), g_max = 6 sqrt(k
-//!   `temperature_max` / m) of the lightest gas (section 2), or for free flight h = n^(-1/3);
+//!   `temperature_max` / m) of the lightest gas (section 2); for `cell` it holds a few particles, for free flight
+//!   h = n^(-1/3);
 //! - the particles of chambers and inflow sum to `particles`, at most 2^28 - 1;
 //! - equal scenes give equal plans, bit for bit.
 
@@ -73,9 +74,9 @@ pub struct Plan {
     pub mean_free_path: f64,
     /// Z of the spin exchange.
     pub collision_number: f64,
-    /// Pairing rounds per step.
+    /// Pairing rounds per step; 0 where particles collide within their cells.
     pub rounds: u32,
-    /// Largest x = dt/tau for these rounds that loses at most 2 % of the events.
+    /// Largest x = dt/tau: that at which these rounds lose at most 2 % of the events; 2 for `cell`.
     pub collision_limit: f64,
     /// The largest of the ladder, s.
     pub time_step: f64,

@@ -6,8 +6,16 @@ use super::{PlanError, Reason};
 use crate::gas::kinetics;
 use crate::scene::{Method, ModelRequest};
 
+/// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (specification, section 2).
+const PER_CELL: f64 = 6.0;
+/// In thin gas: one thread collides all of a cell.
+const MOST_PER_CELL: f64 = 20.0;
+/// Largest x of the method `cell`.
+const CELL_LIMIT: f64 = 2.0;
 /// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
-pub const DEFAULT_OCCUPANCY: f64 = 0.12;
+const DEFAULT_OCCUPANCY: f64 = 0.12;
+/// Of rigid spheres, whose pressure is 4 % off there.
+const RIGID_OCCUPANCY: f64 = 0.01;
 const DEFAULT_ROUNDS: u32 = 8;
 /// A cell edge must not fall short of its rule by rounding.
 const EDGE_MARGIN: f64 = 1.0001;
@@ -15,6 +23,16 @@ const EDGE_MARGIN: f64 = 1.0001;
 const FASTEST_PAIR: f64 = 6.0;
 /// 99.9 % of the molecules are slower than this many sqrt(kT/m).
 const FAST_PARTICLE: f64 = 4.04;
+/// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
+const SURELY_FAST: f64 = 4.4;
+
+/// That of a scene that says nothing.
+pub fn default_occupancy(method: Method) -> f64 {
+    match method {
+        Method::HardSphere => RIGID_OCCUPANCY,
+        Method::ClosestApproach | Method::Cell | Method::None => DEFAULT_OCCUPANCY,
+    }
+}
 
 /// A uniform state of the modelled gas.
 #[derive(Debug, Clone, Copy)]
@@ -69,11 +87,15 @@ impl Resolution {
     ) -> Result<Self, PlanError> {
         match method {
             Method::None => Ok(Self::free_flight(request, states[1], extreme, end_time, reasons)),
-            Method::ClosestApproach => Self::collisional(request, states, extreme, end_time, reasons),
+            Method::Cell => Ok(Self::within_cells(request, states, extreme, end_time, reasons)),
+            Method::ClosestApproach | Method::HardSphere => {
+                Self::in_rounds(method, request, states, extreme, end_time, reasons)
+            }
         }
     }
 
-    fn collisional(
+    fn in_rounds(
+        method: Method,
         request: &ModelRequest,
         states: [MeanState; 2],
         extreme: Extreme,
@@ -84,14 +106,7 @@ impl Resolution {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
         let density = states[1].number_density;
-        let (diameter, why) = match (request.diameter, request.occupancy) {
-            (Some(diameter), _) => (diameter, "asked for".to_string()),
-            (None, Some(f)) => (kinetics::diameter(density, f), format!("occupancy {f} asked for")),
-            (None, None) => (
-                kinetics::diameter(density, DEFAULT_OCCUPANCY),
-                "0.61 of the mean spacing at the end (occupancy 0.12): more buys almost no resolution".to_string(),
-            ),
-        };
+        let (diameter, why) = diameter(method, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
 
         let rounds = request.rounds.unwrap_or(DEFAULT_ROUNDS);
@@ -124,7 +139,12 @@ impl Resolution {
         let (time_step, steps) = divide(end_time, wanted);
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
         let reach = 0.5 * fastest * time_step;
-        let cell = EDGE_MARGIN * (diameter * diameter + reach * reach).sqrt();
+        // At its closest approach a pair is perpendicular to its relative velocity; rigid spheres meet earlier.
+        let edge = match method {
+            Method::HardSphere => diameter + reach,
+            _ => (diameter * diameter + reach * reach).sqrt(),
+        };
+        let cell = EDGE_MARGIN * edge;
         because(
             "cell",
             format!("{} mm", significant(1e3 * cell)),
@@ -140,6 +160,64 @@ impl Resolution {
             collisions_per_step: time_step / tau,
             flight_over_cell: FAST_PARTICLE * extreme.0.sqrt() * time_step / cell,
         })
+    }
+
+    /// The method `cell`: a cell of a few particles, steps in which almost none crosses more than that, x <= 2.
+    fn within_cells(
+        request: &ModelRequest,
+        states: [MeanState; 2],
+        extreme: Extreme,
+        end_time: f64,
+        reasons: &mut Vec<Reason>,
+    ) -> Self {
+        let mut because = |quantity: &str, value: String, why: String| {
+            reasons.push(Reason { quantity: quantity.into(), value, why });
+        };
+        let density = states[1].number_density;
+        let (diameter, why) = diameter(Method::Cell, request, density);
+        because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
+        let path = kinetics::mean_free_path(density, diameter);
+        let few = libm::cbrt(PER_CELL / density);
+        let many = libm::cbrt(MOST_PER_CELL / density);
+        let (cell, why) = if path > many {
+            (many, format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer"))
+        } else if path > few {
+            (path, "the mean free path at the end: what is shorter is no gradient of the gas".to_string())
+        } else {
+            let paths = significant(few / path);
+            (few, format!("{PER_CELL} particles at the mean density of the end; {paths} mean free paths"))
+        };
+        because("cell", format!("{} mm", significant(1e3 * cell)), why);
+        let tau = states
+            .iter()
+            .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
+            .fold(f64::INFINITY, f64::min);
+        let speed = FAST_PARTICLE * extreme.0.sqrt();
+        let (by_cell, by_rate) = (cell / (SURELY_FAST * extreme.0.sqrt()), CELL_LIMIT * tau);
+        let (wanted, why) = match request.time_step {
+            Some(step) => (step, "asked for, cut to divide the end time".to_string()),
+            None if by_cell <= by_rate => {
+                (by_cell, "99.97 % of the hottest particles fly no further than a cell".to_string())
+            }
+            None => (by_rate, format!("{CELL_LIMIT} mean collision times")),
+        };
+        let (time_step, steps) = divide(end_time, wanted);
+        because("time step", format!("{} us", significant(1e6 * time_step)), why);
+        let collisions_per_step = time_step / tau;
+        let in_cell = 0.5 * density * cell * cell * cell * collisions_per_step;
+        let why =
+            format!("expected in a step; {} per particle, {CELL_LIMIT} at most", significant(collisions_per_step));
+        because("collisions per cell", significant(in_cell), why);
+        Self {
+            diameter,
+            rounds: 0,
+            collision_limit: CELL_LIMIT,
+            time_step,
+            steps,
+            cell,
+            collisions_per_step,
+            flight_over_cell: speed * time_step / cell,
+        }
     }
 
     fn free_flight(
@@ -171,6 +249,23 @@ impl Resolution {
             collisions_per_step: 0.0,
             flight_over_cell: speed * time_step / cell,
         }
+    }
+}
+
+/// The collision diameter, m, and why.
+fn diameter(method: Method, request: &ModelRequest, density: f64) -> (f64, String) {
+    let unasked = default_occupancy(method);
+    match (request.diameter, request.occupancy) {
+        (Some(diameter), _) => (diameter, "asked for".to_string()),
+        (None, Some(f)) => (kinetics::diameter(density, f), format!("occupancy {f} asked for")),
+        (None, None) if method == Method::HardSphere => (
+            kinetics::diameter(density, unasked),
+            format!("occupancy {unasked}: at more the pressure is far from the ideal gas's"),
+        ),
+        (None, None) => (
+            kinetics::diameter(density, unasked),
+            "0.61 of the mean spacing at the end (occupancy 0.12): more buys almost no resolution".to_string(),
+        ),
     }
 }
 

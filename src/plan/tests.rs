@@ -175,6 +175,49 @@ fn free_flight_has_no_collisions() {
     assert!(speed * plan.time_step < plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
 }
 
+/// The method `cell`: six particles in a cell, hardly one of which leaves it in a step, at most two collisions each.
+#[test]
+fn cells_hold_a_few_particles() {
+    let cell = |change: &dyn Fn(&mut Scene)| {
+        planned(|scene, _| {
+            scene.model.method = Some(Method::Cell);
+            change(scene);
+        })
+        .unwrap()
+    };
+    let plan = cell(&|_| ());
+    let density = plan.particles as f64 / 0.06;
+    assert!(near(density * plan.grid.cell.powi(3), 6.0, 1e-9));
+    assert_eq!((plan.rounds, plan.collision_limit), (0, 2.0));
+    let speed = 4.4 * kinetics::thermal_square(980.0, 0.0280134).sqrt();
+    assert!(speed * plan.time_step <= plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
+    assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
+    let of_cell = plan.reasons.iter().find(|reason| reason.quantity == "collisions per cell").unwrap();
+    let closest = planned(|_, _| ()).unwrap();
+    assert!(plan.time_step > 2.0 * closest.time_step && plan.diameter == closest.diameter);
+    // Dense gas is limited by its collisions: two per particle are six in a cell.
+    let dense = cell(&|scene| scene.model.occupancy = Some(0.5));
+    let value = |reason: &Reason| reason.value.parse::<f64>().unwrap();
+    let most = dense.reasons.iter().find(|reason| reason.quantity == "collisions per cell").unwrap();
+    assert!(value(of_cell) < value(most) && near(value(most), 6.0, 1e-2), "{} {}", of_cell.value, most.value);
+    // Thin gas has the mean free path.
+    let thin = cell(&|scene| scene.model.occupancy = Some(0.02));
+    assert!(near(thin.grid.cell, thin.mean_free_path, 1e-9) && thin.grid.cell > plan.grid.cell);
+    // But no more particles than one thread has time for.
+    let thinner = cell(&|scene| scene.model.occupancy = Some(0.001));
+    assert!(near(density * thinner.grid.cell.powi(3), 20.0, 1e-9) && thinner.mean_free_path > thinner.grid.cell);
+}
+
+/// Rigid spheres touch before their closest approach: larger cells; and the plan says what they do to the pressure.
+#[test]
+fn rigid_spheres_come_with_a_warning() {
+    let plan = planned(|scene, _| scene.model.method = Some(Method::HardSphere)).unwrap();
+    assert!(near(plan.occupancy, 0.01, 1e-9));
+    let reach = 3.0 * kinetics::thermal_square(980.0, 0.0280134).sqrt() * plan.time_step;
+    assert!(plan.grid.cell >= plan.diameter + reach && plan.grid.cell < 1.001 * (plan.diameter + reach));
+    assert!(plan.warnings.iter().any(|warning| warning.contains("press 4.1 % harder")), "{:?}", plan.warnings);
+}
+
 /// Each warning fires when it should; `the_tank_at_a_million` has none of them.
 #[test]
 fn warnings_fire() {
@@ -195,6 +238,16 @@ fn warnings_fire() {
     warns("fly", &|scene, _| {
         scene.model.method = Some(Method::None);
         scene.model.time_step = Some(3e-6);
+    });
+    for part in ["fly", "mean collision times"] {
+        warns(part, &|scene, _| {
+            scene.model.method = Some(Method::Cell);
+            scene.model.time_step = Some(3e-5);
+        });
+    }
+    warns("a cell of", &|scene, measured| {
+        scene.model.method = Some(Method::Cell);
+        measured.openings[0].length = 2e-3;
     });
 }
 

@@ -4,6 +4,8 @@ use super::population::WANTED_KNUDSEN;
 use super::render::significant;
 use super::resolution::Resolution;
 use super::{Measured, OpeningPlan};
+use crate::gas::kinetics;
+use crate::scene::Method;
 
 const FEW_PARTICLES: u64 = 1000;
 const MOST_LOST: f64 = 0.03;
@@ -36,6 +38,7 @@ pub fn lost_events(collisions_per_step: f64, rounds: u32) -> f64 {
 }
 
 pub fn warnings(
+    method: Method,
     particles: u64,
     occupancy: f64,
     resolution: &Resolution,
@@ -46,7 +49,7 @@ pub fn warnings(
     if particles < FEW_PARTICLES {
         warnings.push(format!("{particles} particles are few: pressures will be noise; {FEW_PARTICLES} is a start"));
     }
-    let collides = resolution.rounds > 0;
+    let collides = method != Method::None;
     for opening in openings.iter().filter(|opening| collides && opening.knudsen > WANTED_KNUDSEN) {
         warnings.push(format!(
             "opening `{}` has a Knudsen number of {}: its flow is off by 7 % or more; {WANTED_KNUDSEN} takes {:.1} \
@@ -58,7 +61,15 @@ pub fn warnings(
         ));
     }
     let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
-    if resolution.diameter > smallest {
+    if method == Method::HardSphere {
+        warnings.push(format!(
+            "rigid spheres at occupancy {} press {:.1} % harder than the ideal gas (Carnahan-Starling), more in denser gas: \
+             `hard-sphere` is for comparison with legacy results only",
+            significant(occupancy),
+            100.0 * (kinetics::rigid_compressibility(occupancy) - 1.0)
+        ));
+    }
+    if method.has_rounds() && resolution.diameter > smallest {
         warnings.push(format!(
             "the collision diameter of {} mm is larger than the smallest passage, {} mm: gas on its two sides will \
              collide through it",
@@ -69,7 +80,7 @@ pub fn warnings(
     if occupancy > DENSE {
         warnings.push(format!("an occupancy of {} costs search time and buys no resolution", significant(occupancy)));
     }
-    if collides {
+    if method.has_rounds() {
         let lost = lost_events(resolution.collisions_per_step, resolution.rounds);
         if lost > MOST_LOST {
             warnings.push(format!(
@@ -85,6 +96,20 @@ pub fn warnings(
         warnings.push(format!(
             "the time step lets particles fly {} cells at once",
             significant(resolution.flight_over_cell)
+        ));
+    }
+    if method == Method::Cell && resolution.collisions_per_step > resolution.collision_limit {
+        warnings.push(format!(
+            "the time step is {} mean collision times, the limit of `cell` is {}: shorter ones will be taken",
+            significant(resolution.collisions_per_step),
+            resolution.collision_limit
+        ));
+    }
+    if method == Method::Cell && resolution.cell > smallest {
+        warnings.push(format!(
+            "a cell of {} mm is larger than the smallest passage, {} mm: the gas in it is not resolved",
+            significant(1e3 * resolution.cell),
+            significant(1e3 * smallest)
         ));
     }
     warnings

@@ -24,6 +24,15 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
             "at most one of them: each follows from the other",
         ));
     }
+    if let (Some(method), Some(rounds)) = (raw.method, &raw.rounds)
+        && method == Method::Cell
+    {
+        return Err(Problem::value(
+            &rounds.span,
+            rounds.value.to_string(),
+            "no `rounds` with the method `cell`, whose particles collide within their cells",
+        ));
+    }
     let length = |at: &Option<At<f64>>| at.as_ref().map(|at| positive(at, Quantity::Length, units)).transpose();
     Ok(ModelRequest {
         method: raw.method,

@@ -288,8 +288,32 @@ pub enum VentFlow {
 pub enum Method {
     /// Pairs collide at their closest approach; ideal-gas pressure at any occupancy.
     ClosestApproach,
+    /// Rigid spheres; their pressure is not the ideal gas's. Only for comparison with legacy results.
+    HardSphere,
+    /// Pairs drawn at random within a cell collide; ideal-gas pressure, long steps, many particles.
+    Cell,
     /// Free flight without collisions.
     None,
+}
+
+impl Method {
+    /// As scenes write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::ClosestApproach => "closest-approach",
+            Method::HardSphere => "hard-sphere",
+            Method::Cell => "cell",
+            Method::None => "none",
+        }
+    }
+
+    /// Whether pairs are found among neighbours and settled in rounds.
+    pub fn has_rounds(self) -> bool {
+        match self {
+            Method::ClosestApproach | Method::HardSphere => true,
+            Method::Cell | Method::None => false,
+        }
+    }
 }
 
 /// What the plan decides unless the scene says it.

@@ -174,10 +174,8 @@ fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
 fn write_settings(out: &mut Lines, scene: &Scene) {
     let model = &scene.model;
     out.header("[model]");
-    match model.method {
-        Some(Method::ClosestApproach) => out.text("method", "closest-approach"),
-        Some(Method::None) => out.text("method", "none"),
-        None => {}
+    if let Some(method) = model.method {
+        out.text("method", method.name());
     }
     if let Some(particles) = model.particles {
         out.count("particles", particles);

@@ -234,7 +234,11 @@ impl Account {
         self.counted.collisions += counters.collisions - u64::from(counters.blocked);
         self.counted.bounces += u64::from(counters.bounces);
         self.counted.lost += u64::from(counters.lost);
-        self.counted.sampled += u64::from(counters.sampled);
+        self.counted.sampled += match plan.method {
+            // All steps are watched for candidates that were left out.
+            Method::Cell => counters.collisions,
+            _ => u64::from(counters.sampled),
+        };
         self.counted.truncated += u64::from(counters.truncated);
         self.counted.overshoot = self.counted.overshoot.max(counters.overshoot);
         self.counted.step_range =

@@ -148,7 +148,7 @@ impl<'a> Exchange<'a> {
         rec: &mut Recording<'_>,
         slot: &mut StepSlot,
     ) -> Result<(), SimulationError> {
-        if subdomain.place().depth == 0 {
+        if subdomain.place().is_alone() {
             return Ok(());
         }
         let start = Instant::now();

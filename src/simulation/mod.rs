@@ -52,7 +52,7 @@ use crate::geometry::GeometryError;
 use crate::gpu::GpuError;
 use crate::partition::PartitionError;
 use crate::ranks::RankError;
-use crate::subdomain::StateError;
+use crate::subdomain::{StateError, TooManyParts};
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum SimulationError {
@@ -64,6 +64,8 @@ pub enum SimulationError {
     Fill(#[from] FillError),
     #[error(transparent)]
     State(#[from] StateError),
+    #[error(transparent)]
+    Cells(#[from] TooManyParts),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]

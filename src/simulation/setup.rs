@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, block_volumes, region_bounds, region_contains};
+use crate::geometry::{TriangleGrid, block_volumes, cell_gas, region_bounds, region_contains};
 use crate::gpu::Device;
-use crate::scene::{Face, Region};
-use crate::subdomain::{Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
+use crate::scene::{Face, Method, Region};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
@@ -65,12 +65,18 @@ impl Setup {
             !wall.is_convex_cavity()
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts);
+        let cells = if plan.method == Method::Cell {
+            CellTable::new(&cell_gas(&model.vessel, &plan.grid, &triangle_grid, parts), &plan.grid)?
+        } else {
+            CellTable::default()
+        };
         let zones = zones(model);
         let tallied =
             Patches { surfaces: patches.len(), coats: model.coats.coats.len(), vents: model.scene.vents.len() };
         let input = DomainInput {
             plan,
             walls: &walls,
+            cells: &cells,
             zones: &zones,
             patches: tallied,
             vent_entries: model.coats.vent_entries(),

@@ -8,7 +8,7 @@ use super::SimulationError;
 use super::exchange::Exchange;
 
 /// The phases in which pairs are sought and collide.
-pub const PAIR_PHASES: [&str; 4] = ["neighbours", "choose", "settle", "lost"];
+pub const PAIR_PHASES: [&str; 5] = ["neighbours", "collide", "choose", "settle", "lost"];
 
 /// What else a step does.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,6 +35,7 @@ pub fn step(
     subdomain.scan(rec, slot);
     subdomain.sort(rec, slot);
     subdomain.neighbours(rec, slot);
+    subdomain.collide(rec, slot);
     for round in 0..rounds {
         exchange.updates(subdomain, rec, slot, round)?;
         subdomain.choose(rec, slot, round);

@@ -41,9 +41,11 @@ pub struct Tuner {
 }
 
 impl Tuner {
-    /// `rounds`: of the plan.
+    /// `rounds`: of the plan; 0 where nothing is exchanged between rounds.
     pub fn new(rounds: u32, fixed: HaloOptions) -> Tuner {
-        let rounds = rounds.max(1);
+        if rounds == 0 {
+            return Tuner::among(vec![Halo { rounds: 0, ghosts: Ghosts::All }]);
+        }
         let powers = (0..).map(|power| 1 << power).take_while(|&candidate| candidate < rounds);
         let of_rounds: Vec<u32> = match fixed.rounds {
             Some(fixed) => vec![fixed.clamp(1, rounds)],
@@ -52,6 +54,10 @@ impl Tuner {
         let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::Asked, Ghosts::All], |ghosts| vec![ghosts]);
         let halos = |&ghosts: &Ghosts| of_rounds.iter().map(move |&rounds| Halo { rounds, ghosts });
         let candidates: Vec<Halo> = of_ghosts.iter().flat_map(halos).collect();
+        Tuner::among(candidates)
+    }
+
+    fn among(candidates: Vec<Halo>) -> Tuner {
         Tuner {
             fastest: vec![f64::INFINITY; candidates.len()],
             candidates,

@@ -10,6 +10,7 @@ pub mod modelled;
 pub mod report;
 pub mod state;
 pub mod stopwatch;
+pub mod verify;
 
 use crate::output::OutputError;
 use crate::ranks::RankError;

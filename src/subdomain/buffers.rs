@@ -2,6 +2,7 @@
 
 use crate::gpu::{Device, GpuError};
 
+use super::cell_table::CellTable;
 use super::constants::Features;
 use super::counters;
 use super::layout::{
@@ -33,10 +34,18 @@ pub struct DomainBuffers {
     pub cell_class: wgpu::Buffer,
     pub parting: wgpu::Buffer,
     pub zones: wgpu::Buffer,
+    pub cell_volume: wgpu::Buffer,
+    pub cell_parts: wgpu::Buffer,
 }
 
 impl DomainBuffers {
-    pub fn new(device: &Device, walls: &Walls, zones: &[GpuZone], gases: &[GpuGas]) -> Result<DomainBuffers, GpuError> {
+    pub fn new(
+        device: &Device,
+        walls: &Walls,
+        cells: &CellTable,
+        zones: &[GpuZone],
+        gases: &[GpuGas],
+    ) -> Result<DomainBuffers, GpuError> {
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(gases);
         let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
@@ -49,6 +58,8 @@ impl DomainBuffers {
             cell_class: device.storage_of("cell_class", &walls.class)?,
             parting: device.storage_of("parting", &walls.parting)?,
             zones: device.storage_of("zones", zones)?,
+            cell_volume: device.storage_of("cell_volume", &cells.volume)?,
+            cell_parts: device.storage_of("cell_parts", &cells.parts)?,
         })
     }
 }
@@ -77,6 +88,8 @@ pub struct FixedBuffers {
     /// What coats and vents do in the interval at hand.
     pub coats: wgpu::Buffer,
     pub vents: wgpu::Buffer,
+    /// The cells whose gas walls part, of a step.
+    pub parted: wgpu::Buffer,
 }
 
 impl FixedBuffers {
@@ -84,7 +97,7 @@ impl FixedBuffers {
         device: &Device,
         words: TallyWords,
         step_slots: u64,
-        [coats, vents]: [u64; 2],
+        [coats, vents, parted]: [u64; 3],
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
@@ -98,6 +111,7 @@ impl FixedBuffers {
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
             coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
+            parted: device.storage::<u32>("parted", parted)?,
         })
     }
 }
@@ -212,6 +226,9 @@ impl ParticleBuffers {
         let capacity = capacity.max(64).next_multiple_of(64);
         // Without collisions the particles are flown in place.
         let scratch = if features.collisions { capacity } else { 4 };
+        // Without rounds nobody chooses.
+        let chosen = if features.rounds { capacity } else { 4 };
+        let weighed = if features.rounds || features.halo { scratch } else { 4 };
         let exchange = if features.halo { capacity } else { 4 };
         Ok(ParticleBuffers {
             capacity,
@@ -221,17 +238,17 @@ impl ParticleBuffers {
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<[u32; 2]>("slots", scratch)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
-            flights: device.storage::<GpuFlight>("flights", scratch)?,
-            middles: device.storage::<u32>("middles", scratch)?,
+            flights: device.storage::<GpuFlight>("flights", chosen)?,
+            middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", scratch)?,
-            touched: device.storage::<u32>("touched", scratch)?,
-            rechoose: device.storage::<u32>("rechoose", scratch)?,
-            neighbours: device.storage::<u32>("neighbours", scratch * list)?,
-            neighbour_count: device.storage::<u32>("neighbour_count", scratch)?,
-            choices: device.storage::<[u32; 2]>("choices", scratch)?,
-            pairs: device.storage::<[u32; 2]>("pairs", scratch / 2)?,
-            near_walls: device.storage::<u32>("near_walls", scratch)?,
-            screened: device.storage::<u32>("screened", scratch)?,
+            touched: device.storage::<u32>("touched", chosen)?,
+            rechoose: device.storage::<u32>("rechoose", chosen)?,
+            neighbours: device.storage::<u32>("neighbours", chosen * list)?,
+            neighbour_count: device.storage::<u32>("neighbour_count", weighed)?,
+            choices: device.storage::<[u32; 2]>("choices", chosen)?,
+            pairs: device.storage::<[u32; 2]>("pairs", chosen / 2)?,
+            near_walls: device.storage::<u32>("near_walls", chosen)?,
+            screened: device.storage::<u32>("screened", chosen)?,
             bouncing: device.storage::<u32>("bouncing", capacity)?,
             layers: device.storage::<u32>("layers", scratch)?,
             border: device.storage::<[u32; 2]>("border", exchange)?,
@@ -319,6 +336,9 @@ impl<'a> Buffers<'a> {
             (_, "coats") => &fixed.coats,
             (_, "vents") => &fixed.vents,
             (_, "zones") => &domain.zones,
+            (_, "cell_volume") => &domain.cell_volume,
+            (_, "cell_parts") => &domain.cell_parts,
+            (_, "parted") => &fixed.parted,
             (_, "particles") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins") => &particle.bins,

@@ -12,6 +12,7 @@ use super::walls::Walls;
 pub const WORKGROUP: u32 = 64;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
+const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
 /// And those of hits on walls.
 const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 
@@ -19,13 +20,17 @@ const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Features {
     pub collisions: bool,
+    /// Pairs are chosen from neighbour lists, in rounds; without it they collide within their cells.
+    pub rounds: bool,
+    /// Walls part the gas of some cell.
+    pub parted: bool,
     pub spin: bool,
     pub orifices: bool,
     pub surfaces: bool,
     /// Walls that exchange heat with the gas, or let it out.
     pub coats: bool,
     pub vents: bool,
-    /// Other devices own particles that may collide with this one's.
+    /// Other devices own the particles of other cells.
     pub halo: bool,
 }
 
@@ -50,9 +55,11 @@ impl Patches {
 }
 
 impl Features {
-    pub fn of(plan: &Plan, patches: Patches, among_others: bool) -> Features {
+    pub fn of(plan: &Plan, patches: Patches, parted: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
+            rounds: plan.method.has_rounds(),
+            parted,
             spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
             orifices: plan.injected_particles > 0,
             surfaces: patches.surfaces > 0,
@@ -72,9 +79,9 @@ pub fn constants(
 ) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
     let [coats_at, vents_at] = patches.ends();
-    let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
+    let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
     vec![
         ("WORKGROUP", f64::from(WORKGROUP)),
         ("CELLS_X", f64::from(grid.cells[0])),
@@ -87,10 +94,16 @@ pub fn constants(
         ("CHUNK", CHUNK as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
+        ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
+        ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),
         ("SEED_HIGH", seed_high(PURPOSE_COLLISION)),
+        ("CELL_SEED_HIGH", seed_high(PURPOSE_CELL)),
+        // Collisions in cells are at the start of the step.
+        ("FLOWN", if features.collisions && !features.rounds { 0.0 } else { 0.5 }),
         ("WALL_SEED_HIGH", seed_high(PURPOSE_WALL)),
         ("COLLISIONS", flag(features.collisions)),
+        ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),

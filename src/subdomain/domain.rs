@@ -4,6 +4,7 @@ use crate::gpu::{Device, GpuError};
 use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, TallyWords, ZONE_WORDS};
+use super::cell_table::CellTable;
 use super::constants::{Features, Patches, block_counts, constants};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
@@ -15,6 +16,8 @@ use super::walls::Walls;
 pub struct DomainInput<'a> {
     pub plan: &'a Plan,
     pub walls: &'a Walls,
+    /// The gas of each cell, for collisions within cells.
+    pub cells: &'a CellTable,
     /// Zone 0 is everything, then the chambers, then the probes.
     pub zones: &'a [GpuZone],
     pub patches: Patches,
@@ -34,6 +37,8 @@ pub struct Domain {
     pub(super) vent_entries: usize,
     pub(super) blocks: usize,
     pub(super) zones: usize,
+    /// Cells whose gas walls part.
+    pub(super) parted_cells: u64,
 }
 
 impl Domain {
@@ -41,7 +46,7 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let features = Features::of(plan, input.patches, input.among_others);
+        let features = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
@@ -56,12 +61,13 @@ impl Domain {
                 features,
                 &constants(plan, features, input.patches, input.walls, &Scales::new(plan)),
             )?,
-            buffers: DomainBuffers::new(device, input.walls, input.zones, &gas_table(plan))?,
+            buffers: DomainBuffers::new(device, input.walls, input.cells, input.zones, &gas_table(plan))?,
             words,
             patches: input.patches,
             vent_entries: input.vent_entries,
             blocks,
             zones: input.zones.len(),
+            parted_cells: input.cells.parted,
         })
     }
 

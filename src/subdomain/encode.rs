@@ -65,6 +65,7 @@ impl StepSlot {
 }
 
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
+const LIST_PARTED: u32 = 0;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
@@ -125,7 +126,7 @@ impl Subdomain {
                 tallies_left: (tallies(of_step.len()) - tallies(k)) as u32,
             };
             entered += born;
-            if self.place.depth == 0 {
+            if self.place.is_alone() {
                 bytes.extend(self.parameters(device, &slot));
                 self.count += born;
             }
@@ -140,7 +141,7 @@ impl Subdomain {
     /// # Errors
     /// If room must be made and the device has none.
     pub fn begin_step(&mut self, device: &Device, slot: &mut StepSlot) -> Result<(), GpuError> {
-        if self.place.depth > 0 {
+        if !self.place.is_alone() {
             self.make_room(device, slot.newborns.into(), 0, 0)?;
             slot.count = self.count;
             slot.total = self.count + slot.newborns;
@@ -247,18 +248,16 @@ impl Subdomain {
     }
 
     pub(super) fn bin_slots(&self, rec: &mut Recording<'_>, step: &StepSlot, slots: u64) {
-        if let Some(kernels) = &self.kernels.collisions {
+        if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
             kernels.bin.dispatch(rec.phase("bin"), self.offset(device, step, 0), threads(device, slots));
         }
     }
 
     pub fn scan(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(kernels) = &self.kernels.collisions {
+        if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
-            let (_, size) = self.place.bins(self.domain.plan.grid.cells);
-            let bins: u64 = size.iter().map(|&n| u64::from(n)).product();
-            let chunks = threads(device, bins.div_ceil(CHUNK));
+            let chunks = threads(device, self.bins().div_ceil(CHUNK));
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
             kernels.scan_sums.dispatch(pass, offset, chunks);
@@ -268,13 +267,17 @@ impl Subdomain {
     }
 
     pub fn sort(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(kernels) = &self.kernels.collisions {
+        if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
             let offset = self.offset(device, step, 0);
             let slots = u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals);
             let pass = rec.phase("sort");
             kernels.scatter.dispatch(pass, offset, threads(device, slots));
             kernels.order.dispatch(pass, offset, all(device, step));
+        }
+        if let Some(kernels) = &self.kernels.collisions {
+            let offset = self.offset(rec.device(), step, 0);
+            let pass = rec.phase("sort");
             kernels.wall_times.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_NEAR_WALLS);
         }
     }
@@ -287,6 +290,25 @@ impl Subdomain {
             kernels.neighbours.dispatch(pass, offset, all(device, step));
             kernels.screen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_SCREEN);
         }
+    }
+
+    /// The collisions of the method `cell`, within each cell.
+    pub fn collide(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        if let Some(kernels) = &self.kernels.cells {
+            let device = rec.device();
+            let offset = self.offset(device, step, 0);
+            let pass = rec.phase("collide");
+            kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
+            if let Some(parted) = &kernels.parted {
+                parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
+            }
+        }
+    }
+
+    /// Cells with bins.
+    fn bins(&self) -> u64 {
+        let (_, size) = self.place.bins(self.domain.plan.grid.cells);
+        size.iter().map(|&n| u64::from(n)).product()
     }
 
     pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
@@ -359,7 +381,7 @@ impl Subdomain {
         let pass = rec.phase("advect");
         self.kernels.advect.dispatch(pass, offset, all(device, step));
         self.kernels.bounce.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_BOUNCE);
-        if self.place.depth > 0 {
+        if !self.place.is_alone() {
             self.count = step.total;
         }
     }

@@ -135,10 +135,10 @@ impl Subdomain {
     /// If the device has no memory for the copy.
     pub fn pack_updates(&mut self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) -> Result<Outgoing, GpuError> {
         let device = rec.device();
-        if let Some(kernels) = &self.kernels.exchange {
+        if let Some(kernels) = self.kernels.exchange.as_ref().and_then(|kernels| kernels.updates.as_ref()) {
             let offset = self.offset(device, step, round);
             let (list, sizes) = (counters::CHANGED as u32, &self.fixed.rechoose_dispatches);
-            kernels.pack_updates.dispatch_indirect(rec.phase("update"), offset, sizes, list);
+            kernels.pack.dispatch_indirect(rec.phase("update"), offset, sizes, list);
         }
         let entries = self.update_guess.0.min(self.exchange.update_room);
         let staging = self.staging_of(device, HEADER + entries * UPDATE)?;
@@ -217,7 +217,7 @@ impl Subdomain {
         let mut bytes = bytemuck::bytes_of(&count).to_vec();
         bytes.extend(messages.iter().flatten());
         device.write(&self.exchange.updates_in, 0, &bytes);
-        if let Some(kernels) = &self.kernels.exchange {
+        if let Some(kernels) = self.kernels.exchange.as_ref().and_then(|kernels| kernels.updates.as_ref()) {
             let offset = self.offset(device, step, round);
             kernels.receive.dispatch(rec.phase("update"), offset, threads(device, updates));
         }

@@ -8,7 +8,9 @@ use super::constants::Features;
 /// What a scene needs is there; what it lacks is not compiled.
 pub struct Kernels<K> {
     pub inject: Option<K>,
+    pub sort: Option<SortKernels<K>>,
     pub collisions: Option<CollisionKernels<K>>,
+    pub cells: Option<CellKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
     pub reset: K,
     pub advect: K,
@@ -17,13 +19,18 @@ pub struct Kernels<K> {
     pub blocks: K,
 }
 
-pub struct CollisionKernels<K> {
+/// Where there are collisions at all.
+pub struct SortKernels<K> {
     pub bin: K,
     pub scan_sums: K,
     pub scan_chunks: K,
     pub scan_cells: K,
     pub scatter: K,
     pub order: K,
+}
+
+/// Collisions of neighbours, in rounds.
+pub struct CollisionKernels<K> {
     pub wall_times: K,
     pub neighbours: K,
     pub screen: K,
@@ -35,24 +42,50 @@ pub struct CollisionKernels<K> {
     pub lost: K,
 }
 
+/// Collisions within cells.
+pub struct CellKernels<K> {
+    pub collide: K,
+    /// Of a scene whose walls part the gas of a cell.
+    pub parted: Option<K>,
+}
+
 /// On a device among others.
 pub struct ExchangeKernels<K> {
     pub pack: K,
-    pub pack_updates: K,
-    pub receive: K,
+    pub updates: Option<UpdateKernels<K>>,
     pub weigh: K,
+}
+
+/// What the rounds did to ghosts.
+pub struct UpdateKernels<K> {
+    pub pack: K,
+    pub receive: K,
 }
 
 impl<K> Kernels<K> {
     fn build<E>(features: Features, mut make: impl FnMut(&'static str) -> Result<K, E>) -> Result<Kernels<K>, E> {
-        let collisions = if features.collisions {
-            Some(CollisionKernels {
+        let sort = if features.collisions {
+            Some(SortKernels {
                 bin: make("bin")?,
                 scan_sums: make("scan_sums")?,
                 scan_chunks: make("scan_chunks")?,
                 scan_cells: make("scan_cells")?,
                 scatter: make("scatter")?,
                 order: make("order")?,
+            })
+        } else {
+            None
+        };
+        let cells = if features.collisions && !features.rounds {
+            Some(CellKernels {
+                collide: make("collide")?,
+                parted: if features.parted { Some(make("collide_parted")?) } else { None },
+            })
+        } else {
+            None
+        };
+        let collisions = if features.rounds {
+            Some(CollisionKernels {
                 wall_times: make("wall_times")?,
                 neighbours: make("neighbours")?,
                 screen: make("screen")?,
@@ -68,8 +101,11 @@ impl<K> Kernels<K> {
         let exchange = if features.halo {
             Some(ExchangeKernels {
                 pack: make("pack")?,
-                pack_updates: make("pack_updates")?,
-                receive: make("receive")?,
+                updates: if features.rounds {
+                    Some(UpdateKernels { pack: make("pack_updates")?, receive: make("receive")? })
+                } else {
+                    None
+                },
                 weigh: make("weigh")?,
             })
         } else {
@@ -77,7 +113,9 @@ impl<K> Kernels<K> {
         };
         Ok(Kernels {
             inject: if features.orifices { Some(make("inject")?) } else { None },
+            sort,
             collisions,
+            cells,
             exchange,
             reset: make("reset")?,
             advect: make("advect")?,

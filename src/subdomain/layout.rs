@@ -34,6 +34,16 @@ pub struct GpuStep {
     pub pad: [u32; 3],
 }
 
+/// `Part` of `shaders/shared/cell_gas.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuPart {
+    /// Quanta of the grid.
+    pub place: [u32; 3],
+    /// m3.
+    pub volume: f32,
+}
+
 /// `Particle` of `shaders/shared/particle.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]

@@ -5,6 +5,7 @@
 //! tallies of an interval, one interval late, and whole states on request.
 
 mod buffers;
+mod cell_table;
 mod constants;
 mod counters;
 mod domain;
@@ -23,14 +24,15 @@ use std::sync::Arc;
 use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
 
 pub use buffers::{BLOCK_WORDS, CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles};
+pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
 pub use domain::{Domain, DomainInput};
 pub use encode::{Coating, Newborns, StepSlot};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent, GpuWeights,
-    GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;
@@ -80,7 +82,7 @@ impl Subdomain {
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
-        let tables = [domain.patches.coats as u64, domain.vent_entries as u64];
+        let tables = [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells];
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);
@@ -245,12 +247,12 @@ impl Subdomain {
         Ok(particles)
     }
 
-    /// The flights of the last step, in the order of [`Subdomain::particles`]; zeros without collisions.
+    /// The flights of the last step, in the order of [`Subdomain::particles`]; none without rounds of pairs.
     ///
     /// # Errors
     /// If the device fails.
     pub fn flights(&self, device: &Device) -> Result<Vec<GpuFlight>, GpuError> {
-        device.read(&self.particle.flights, if self.domain.features.collisions { self.count as usize } else { 0 })
+        device.read(&self.particle.flights, if self.domain.features.rounds { self.count as usize } else { 0 })
     }
 
     /// Copies the interval's tallies (and the timer's stamps) for a late read, and clears them.

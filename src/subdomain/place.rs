@@ -31,7 +31,8 @@ pub enum Ghosts {
 pub struct Place {
     /// The cells whose particles it owns.
     pub own: Cells,
-    /// Layers of cells around them whose particles it has as ghosts: twice the rounds between two exchanges.
+    /// Layers of cells around them whose particles it has as ghosts: twice the rounds between two exchanges, none
+    /// where particles collide within their cells.
     pub depth: u32,
     pub ghosts: Ghosts,
     /// The cells that others own, in the order of the messages; the first `near` of them overlap with this
@@ -46,6 +47,11 @@ impl Place {
     /// A subdomain that owns all cells.
     pub fn alone(plan: &Plan) -> Place {
         Place { own: Cells::inside(plan), depth: 0, ghosts: Ghosts::All, peers: Vec::new(), near: 0, scattered: false }
+    }
+
+    /// Whether there are no others.
+    pub fn is_alone(&self) -> bool {
+        self.peers.is_empty()
     }
 
     /// The cells that have bins: the own ones, the halo and an empty border layer, within the grid. Low corner

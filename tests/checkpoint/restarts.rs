@@ -2,7 +2,7 @@
 //! never stopped, to the last byte.
 
 use corpuscle::output::latest;
-use corpuscle::scene::Scene;
+use corpuscle::scene::{Method, Scene};
 
 use super::program::{Case, Numbers, Program, Results, dense, newest, published, tank};
 
@@ -50,6 +50,16 @@ fn the_tank_goes_on_from_any_step_on_any_number_of_subdomains() {
 #[test]
 fn the_box_with_its_surfaces_goes_on_from_any_step() {
     restarts(&published("box.toml", 1500, 1.6e-3), 2, [2, 1, 3, 2]);
+}
+
+/// The other methods with collisions.
+#[test]
+fn cells_and_rigid_spheres_go_on_from_any_step() {
+    for (seed, method) in [(5, Method::Cell), (6, Method::HardSphere)] {
+        let mut scene = tank(0.004);
+        scene.model.method = Some(method);
+        restarts(&scene, seed, [2, 1, 3, 1]);
+    }
 }
 
 /// Without collisions particles are dealt out by their ids.

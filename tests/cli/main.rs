@@ -73,8 +73,8 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 10] =
-    ["run", "resume", "refine", "sweep", "plan", "check", "schema", "adapters", "completions", "man"];
+const VERBS: [&str; 11] =
+    ["run", "resume", "refine", "sweep", "verify", "plan", "check", "schema", "adapters", "completions", "man"];
 
 #[test]
 fn every_verb_has_its_help() {
@@ -129,6 +129,21 @@ fn the_adapters_are_listed_with_their_limits() {
     let facts = ["0: ", "type", "backend", "driver", "PCI id", "largest binding", "largest buffer"];
     let more = ["workgroups per dimension", "timestamps", "particles by the binding"];
     assert!(facts.iter().chain(&more).all(|fact| text.contains(fact)), "{text}");
+}
+
+/// The cases are listed, one can be run by its name, and what is no case is bad input.
+#[test]
+fn reference_cases_are_listed_run_and_judged() {
+    let list = printed(&["verify", "--list"]);
+    assert!(list.lines().count() > 8 && list.contains("wall-pressure"), "{list}");
+    let folder = TempDir::new().unwrap();
+    let page = folder.path().join("page.md");
+    let text = printed(&["verify", "filling", "--markdown", page.to_str().unwrap()]);
+    assert!(text.contains("2 of 2 pass") && text.lines().count() == 4, "{text}");
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("corpuscle verify filling --quick") && page.contains("2 of 2 pass"), "{page}");
+    let (code, _, err) = outcome(&["verify", "pressure"]);
+    assert!(code == 2 && err.contains("`pressure`") && err.contains("wall-pressure"), "{err}");
 }
 
 #[test]

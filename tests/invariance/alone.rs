@@ -1,12 +1,13 @@
 //! On one device.
 
 use corpuscle::output::AuditLimits;
+use corpuscle::scene::Method;
 use corpuscle::simulation::{Model, Options, Shuffle};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, tank, venting, venting_freely};
+use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, plate, tank, venting, venting_freely};
 use crate::whole_run::{Run, run};
 
 /// The scene again, in every way that must not matter.
@@ -89,6 +90,18 @@ fn vents_in_free_flight_have_the_same_bits_in_every_way() {
     assert!(first.outcome.audit.particles_vented > 20, "{:?}", first.outcome.audit);
     assert_eq!(first.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
     every_way(&model);
+}
+
+/// Inflow, two gases, and cells that a wall with a hole parts.
+#[test]
+fn collisions_within_cells_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::Cell, tank(0)));
+    every_way(&by(Method::Cell, plate()));
+}
+
+#[test]
+fn rigid_spheres_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::HardSphere, plate()));
 }
 
 /// Free flight does not sort its particles: not even its memory is in order.

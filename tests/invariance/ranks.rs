@@ -1,13 +1,14 @@
 //! Among ranks.
 
 use corpuscle::ranks::Pace;
+use corpuscle::scene::Method;
 use corpuscle::simulation::BalanceMode::{self, Dynamic, Forced, Initial, Off};
 use corpuscle::simulation::{Ghosts, Model, Options};
 
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, cold_walls, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely};
+use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -102,6 +103,7 @@ fn vents_have_the_same_bits_on_any_number_of_ranks() {
     let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)]);
     assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
     same(&venting_freely(), &[Way::new(3, Off, 1)]);
+    same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1)]);
 }
 
 /// Free flight is shared out by ids.
@@ -117,6 +119,35 @@ fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
         &plate(),
         &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)],
     );
+}
+
+/// Without ghosts: only who changes its owner is sent.
+#[test]
+fn collisions_within_cells_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { order: Some(&shuffled::<6>), ..Way::new(4, Initial, None) },
+        Way { batch: Some(3), ..Way::new(7, Forced { seed: 7 }, 2) },
+    ];
+    let runs = same(&by(Method::Cell, tank(0)), &ways);
+    assert!(runs[0].outcome.collisions > 1000 && rebalanced(&runs[3]) > 1);
+    let particles = runs[0].outcome.particles.len() as u64;
+    for run in &runs[1..] {
+        let traffic = &run.outcome.traffic;
+        assert!(traffic.present <= traffic.steps * particles, "there are no ghosts");
+        assert!(traffic.arrived > 0);
+    }
+    let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 8 }, 2)];
+    same(&by(Method::Cell, plate()), &ways);
+    same(&by(Method::Cell, burst()), &ways);
+}
+
+#[test]
+fn rigid_spheres_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [Way::new(2, Dynamic, 1), Way { batch: Some(3), ..Way::new(5, Forced { seed: 9 }, 2) }];
+    let runs = same(&by(Method::HardSphere, tank(0)), &ways);
+    assert!(runs[0].outcome.collisions > 100);
+    same(&by(Method::HardSphere, plate()), &ways);
 }
 
 /// Intervals are run again with longer lists, after the cuts have moved.
@@ -191,4 +222,13 @@ fn a_plate_with_a_hole_has_the_same_bits_in_all_ways() {
 fn dense_gas_and_a_burst_have_the_same_bits_in_all_ways() {
     same(&dense(1), &all_ways());
     same(&burst(), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn the_other_methods_have_the_same_bits_in_all_ways() {
+    for method in [Method::Cell, Method::HardSphere] {
+        same(&by(method, tank(0)), &all_ways());
+        same(&by(method, plate()), &all_ways());
+    }
 }

@@ -1,8 +1,17 @@
 //! The scenes whose bits are compared.
 
+use corpuscle::scene::Method;
 use corpuscle::simulation::Model;
 
 use crate::whole_run::{model, published};
+
+/// The same scene by another method, in at least five intervals.
+pub fn by(method: Method, model: Model) -> Model {
+    let mut scene = model.scene;
+    scene.model.method = Some(method);
+    scene.model.time_step = Some(scene.model.time_step.unwrap_or(f64::INFINITY).min(scene.end_time / 160.0));
+    Model::new(scene).expect("a model")
+}
 
 /// The first 4 ms of the tank with steps so long that the inner box's rise makes them finer.
 pub fn tank(snapshots: u32) -> Model {

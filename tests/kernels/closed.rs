@@ -74,7 +74,7 @@ fn fly(world: &World, seed: u32, open: Option<usize>) -> Leaks {
         triangles[hole] = GpuTriangle { normal: [0.0; 3], ..triangles[hole] };
         rig.put("triangles", &triangles);
     }
-    for (flag, on) in [("COLLISIONS", 0.0), ("ORIFICES", 0.0), ("SURFACES", 0.0)] {
+    for (flag, on) in [("COLLISIONS", 0.0), ("ROUNDS_OF_PAIRS", 0.0), ("ORIFICES", 0.0), ("SURFACES", 0.0)] {
         rig.constant(flag, on);
     }
     rig.gases(&[GpuGas { mass: 1.0, exchange: 0.0, inverse_beta: 0.0, inverse_beta1: 1.0 }; 2]);

@@ -119,6 +119,7 @@ fn advect_flies_the_free_and_lists_the_others() {
         };
         let mut rig = Rig::new(&world);
         rig.constant("COLLISIONS", f64::from(u8::from(collisions)));
+        rig.constant("ROUNDS_OF_PAIRS", f64::from(u8::from(collisions)));
         let nowhere = vec![GpuParticle::default(); COUNT];
         rig.put("sorted", if collisions { &particles } else { &nowhere });
         rig.put("particles", if collisions { &nowhere } else { &particles });

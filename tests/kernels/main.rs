@@ -11,6 +11,7 @@ mod bounce;
 mod choose;
 mod closed;
 mod coats;
+mod collide;
 mod exchange;
 mod fly;
 mod lists;
@@ -35,6 +36,8 @@ fn every_kernel_has_its_test() {
         "blocks",
         "bounce",
         "choose",
+        "collide",
+        "collide_parted",
         "inject",
         "lost",
         "match_pairs",

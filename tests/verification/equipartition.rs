@@ -14,7 +14,7 @@ use crate::whole_run::{Run, model, run};
 
 /// Kinetic energy times 2/3 and spin energy times 2/zeta (zeta = 2) per particle of a gas, over the reference
 /// mass; `mass` is that of the gas over the heaviest.
-fn temperatures(particles: &[GpuParticle], gas: u8, mass: f64) -> [f64; 2] {
+pub fn temperatures(particles: &[GpuParticle], gas: u8, mass: f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
     let mut count = 0.0;
     for particle in particles.iter().filter(|particle| particle.gas() == gas) {
@@ -27,7 +27,12 @@ fn temperatures(particles: &[GpuParticle], gas: u8, mass: f64) -> [f64; 2] {
 
 /// Masses 1:7, half each, from a start with the light gas 9 times as hot as the heavy one and no spin.
 fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
+    mixture_by("closest-approach", rounds, step_over_tau, steps)
+}
+
+pub fn mixture_by(method: &str, rounds: u32, step_over_tau: f64, steps: u32) -> Run {
     let gas = EquilibriumBox {
+        method,
         particles: 4000,
         rounds,
         step_over_tau,
@@ -41,7 +46,7 @@ fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
     };
     let mut model = model(&gas.toml());
     model.plan.steps_per_interval = 16;
-    model.plan.collision_limit = 1.0;
+    model.plan.collision_limit = model.plan.collision_limit.max(1.0);
     let unequal = |particles: &mut [GpuParticle]| {
         for particle in particles {
             let factor = if particle.gas() == 0 { 1.5 } else { 0.5 };
@@ -53,7 +58,7 @@ fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
 }
 
 /// Mean and standard error of T_int/T_tr of all, and of T1/T2, after the first quarter of a run.
-fn ratios(run: &Run) -> [(f64, f64); 2] {
+pub fn ratios(run: &Run) -> [(f64, f64); 2] {
     let late = &run.snapshots[run.snapshots.len() / 4..];
     let states: Vec<[[f64; 2]; 2]> = late
         .iter()
@@ -95,9 +100,14 @@ fn one_round_at_long_steps_breaks_equipartition() {
 /// sqrt(5/(3N)) sqrt(1 - exp(-2a)) T, T = 3/5 of that at the start: relative to D and to a = .83, 1.5
 /// sqrt(5/(3N)).
 fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> (f64, f64) {
+    collision_number_by("closest-approach", asked, occupancy, step_over_tau)
+}
+
+pub fn collision_number_by(method: &str, asked: f64, occupancy: f64, step_over_tau: f64) -> (f64, f64) {
     let particles = 50_000u64;
     let steps = (0.5 * asked / step_over_tau).round() as u32;
     let gas = EquilibriumBox {
+        method,
         particles,
         occupancy,
         step_over_tau,
@@ -106,7 +116,7 @@ fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> 
         ..EquilibriumBox::default()
     };
     let mut model = model(&gas.toml());
-    model.plan.collision_limit = 1.0;
+    model.plan.collision_limit = model.plan.collision_limit.max(1.0);
     let without_spin = |particles: &mut [GpuParticle]| particles.iter_mut().for_each(|particle| particle.spin = 0.0);
     let run = run(&model, Options { shuffle: Some(&without_spin), ..Options::default() });
     let [translation, spin] = temperatures(&run.outcome.particles, 0, 1.0);

@@ -3,6 +3,7 @@
 //! integral; its enthalpy is cp T0.
 
 use corpuscle::output::AuditLimits;
+use corpuscle::scene::Method;
 use corpuscle::simulation::{Model, Options};
 
 use crate::whole_run::{Run, published, run};
@@ -28,16 +29,27 @@ fn energy_error(run: &Run, enthalpy: f64) -> f64 {
     audit.energy_end / (audit.energy_start + enthalpy) - 1.0
 }
 
-fn filled() -> (Model, Run) {
+fn filled(method: Method) -> (Model, Run) {
     // Moles per particle follow from the gas that is in at the end of the run.
-    let model = published("tank.toml", 1500, DURATION);
+    let mut scene = published("tank.toml", 1500, DURATION).scene;
+    scene.model.method = Some(method);
+    let model = Model::new(scene).expect("a model");
     let run = run(&model, Options::default());
     (model, run)
 }
 
 #[test]
 fn a_tank_receives_the_mass_and_the_enthalpy_of_its_inflow() {
-    let (model, run) = filled();
+    receives(Method::ClosestApproach);
+}
+
+#[test]
+fn so_it_does_where_particles_collide_within_their_cells() {
+    receives(Method::Cell);
+}
+
+fn receives(method: Method) {
+    let (model, run) = filled(method);
     let audit = &run.outcome.audit;
     assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
     let orifice = &model.scene.orifices[0];

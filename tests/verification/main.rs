@@ -3,12 +3,14 @@
 //! Each case states its law, takes its tolerance from the statistics of the run (a fixed seed makes the
 //! outcome of each the same every time), and shows that the check fails where the law does not hold.
 
+mod cell;
 mod collision_rate;
 mod effusion;
 mod energy_drift;
 mod equilibrium_box;
 mod equipartition;
 mod filling;
+mod hard_sphere;
 mod orifice;
 mod statistics;
 mod two_chambers;

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use corpuscle::gpu::Device;
 use corpuscle::scene;
-use corpuscle::simulation::{Model, Observer, Options, Outcome, Row, Simulation, SimulationError};
-use corpuscle::subdomain::GpuParticle;
+use corpuscle::simulation::{Model, Options};
+use corpuscle::study::verify;
+pub use corpuscle::study::verify::{Run, Witness};
 
 pub fn device() -> Device {
     Device::open(None).expect("an adapter")
@@ -32,37 +33,6 @@ pub fn published(name: &str, particles: u64, end_time: f64) -> Model {
     Model::new(scene).expect("a model")
 }
 
-/// What a run told, and what it left.
-pub struct Run {
-    pub rows: Vec<Row>,
-    /// Time, s, and the particles by id.
-    pub snapshots: Vec<(f64, Vec<GpuParticle>)>,
-    pub outcome: Outcome,
-}
-
-/// Keeps all it is told.
-#[derive(Default)]
-pub struct Witness {
-    pub rows: Vec<Row>,
-    pub snapshots: Vec<(f64, Vec<GpuParticle>)>,
-}
-
-impl Observer for Witness {
-    fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
-        self.rows.push(row.clone());
-        Ok(())
-    }
-
-    fn snapshot(&mut self, time: f64, particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
-        self.snapshots.push((time, particles.to_vec()));
-        Ok(())
-    }
-}
-
 pub fn run(model: &Model, options: Options<'_>) -> Run {
-    let device = device();
-    let mut witness = Witness::default();
-    let simulation = Simulation::new(model, &device, options).expect("a simulation");
-    let outcome = simulation.run(&mut witness).expect("a run");
-    Run { rows: witness.rows, snapshots: witness.snapshots, outcome }
+    verify::run(&device(), model, options).expect("a run")
 }

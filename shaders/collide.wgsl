@@ -1,0 +1,60 @@
+//! uses: step.wgsl grid.wgsl local.wgsl dsmc.wgsl cell_gas.wgsl
+// The collisions of the method `cell`, in cells that no wall parts.
+//
+// Reads `cell_start`, `cell_volume`, `newborns`; reads and writes `sorted`, appends the cells that walls part to
+// `parted`, and among other devices leaves the number of a cell's candidates with its first particle, in
+// `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids.
+// Collisions are at the start of the step, where positions hold and no particle has met a wall.
+
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+@group(0) @binding(51) var<storage, read_write> parted: array<u32>;
+
+var<workgroup> collisions: atomic<u32>;
+
+fn member(begin: u32, k: u32, part: u32) -> u32 {
+    return begin + k;
+}
+
+fn hidden(i: Particle, j: Particle) -> bool {
+    return false;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn collide(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let bin = linear(id, groups);
+    if (bin < step.bins) {
+        let begin = cell_start[bin];
+        let bin_end = cell_start[bin + 1u];
+        var candidates = 0u;
+        if (bin_end > begin + 1u) {
+            let cell = cell_index(cell_of(bin));
+            let entry = cell_volume[cell];
+            let end = last_of(begin, bin_end);
+            if ((entry & PARTED) != 0u) {
+                parted[append(LIST_PARTED)] = bin;
+            } else if (end > begin + 1u) {
+                let done = collide_members(begin, end - begin, bitcast<f32>(entry), cell, 0u);
+                candidates = done.candidates;
+                if (done.collisions > 0u) {
+                    atomicAdd(&collisions, done.collisions);
+                }
+            }
+        }
+        if (step.peers > 0u) {
+            for (var s = begin; s < bin_end; s++) {
+                neighbour_count[s] = select(0u, candidates, s == begin);
+            }
+        }
+    }
+    workgroupBarrier();
+    if (thread == 0u) {
+        let number = atomicLoad(&collisions);
+        if (number > 0u) {
+            count_collisions(number);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl dsmc.wgsl cell_gas.wgsl
+// The collisions of the method `cell`, in cells that walls part: each part of the gas by itself.
+//
+// A particle belongs to the first part whose point it sees, or if it sees none, to the one with the nearest point.
+// Pairs that a wall parts do not collide (where the gas of a part is not convex; the volumes allow for it).
+//
+// Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns` and the walls; reads and writes `sorted` and
+// the part of each particle in `layers`. One thread per entry of `parted`; each works on its own cell.
+
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(51) var<storage, read> parted: array<u32>;
+@group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
+
+const PART_SHIFT: u32 = 16;
+
+// The k-th particle of a part.
+fn member(begin: u32, k: u32, part: u32) -> u32 {
+    var s = begin;
+    var left = k;
+    loop {
+        if ((layers[s] >> PART_SHIFT) == part) {
+            if (left == 0u) {
+                return s;
+            }
+            left--;
+        }
+        s++;
+    }
+    return s;
+}
+
+fn hidden(i: Particle, j: Particle) -> bool {
+    return blocked(i.position, j.position);
+}
+
+fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
+    var nearest = 0u;
+    var least = NEVER;
+    for (var part = 0u; part < parts; part++) {
+        let away = between(place, cell_parts[first + part].place);
+        if (!blocked(place, cell_parts[first + part].place)) {
+            return part;
+        }
+        if (dot(away, away) < least) {
+            nearest = part;
+            least = dot(away, away);
+        }
+    }
+    return nearest;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let place_in_list = linear(id, groups);
+    if (place_in_list >= atomicLoad(&counters[LIST_PARTED])) {
+        return;
+    }
+    let bin = parted[place_in_list];
+    let cell = cell_index(cell_of(bin));
+    let entry = cell_volume[cell];
+    let parts = parts_of(entry);
+    let begin = cell_start[bin];
+    let end = last_of(begin, cell_start[bin + 1u]);
+    for (var s = begin; s < end; s++) {
+        let part = part_of(sorted[s].position, first_part(entry), parts);
+        layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
+    }
+    var candidates = 0u;
+    for (var part = 0u; part < parts; part++) {
+        var count = 0u;
+        for (var s = begin; s < end; s++) {
+            count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
+        }
+        if (count > 1u) {
+            let volume = cell_parts[first_part(entry) + part].volume;
+            let done = collide_members(begin, count, volume, cell, part);
+            candidates += done.candidates;
+            if (done.collisions > 0u) {
+                count_collisions(done.collisions);
+            }
+        }
+    }
+    if (step.peers > 0u) {
+        neighbour_count[begin] = candidates;
+    }
+}

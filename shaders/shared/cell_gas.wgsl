@@ -1,0 +1,21 @@
+// The gas of a cell: its volume, and where walls part it, its parts (src/geometry/cell_gas.rs).
+
+// A part of the gas of a cell: a point that sees it, and its volume, m3.
+struct Part {
+    place: vec3<u32>,
+    volume: f32,
+}
+
+// Per cell its volume, m3 (the bits of an f32), or this mark, and below it the number of its parts and the first of
+// them in `cell_parts`.
+const PARTED: u32 = 0x80000000;
+
+@group(0) @binding(50) var<storage, read> cell_volume: array<u32>;
+
+fn parts_of(entry: u32) -> u32 {
+    return (entry >> 24u) & 0x7fu;
+}
+
+fn first_part(entry: u32) -> u32 {
+    return entry & 0xffffffu;
+}

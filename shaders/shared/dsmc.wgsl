@@ -1,0 +1,130 @@
+//! uses: step.wgsl particle.wgsl counters.wgsl lists.wgsl spin.wgsl
+// The collisions of the method `cell` in one part of a cell (direct simulation Monte Carlo without a time
+// counter, specification, section 2).
+//
+// Of the N particles of a part of volume V, floor(N (N-1) / 2  pi sigma^2 g_max dt / V + U) candidate pairs are
+// drawn; each collides with the probability g / g_max and goes off in a random direction. g_max = 2 max |v - u|, u
+// the mean velocity, bounds every relative speed. Where spin exchange makes a particle faster than that, the rest of
+// the candidates becomes more numerous in proportion, and so less often accepted.
+//
+// A kernel that uses this says with `member` which particle is the k-th of the part, by id, and with `hidden`
+// whether a wall parts a pair. One thread does the whole part, candidate after candidate, and draws are keyed on
+// (step, cell, candidate, part): the result is a function of the set of particles.
+
+// pi sigma^2, m2.
+override CROSS_SECTION: f32;
+// The upper half of the key of these draws: seed and purpose, as SEED_HIGH.
+override CELL_SEED_HIGH: u32;
+override ORIFICES: bool = true;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
+
+// More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
+const MOST_CANDIDATES: f32 = 65536.0;
+
+// The particles begin .. end of a bin that can collide: those that enter in this step cannot yet. They have the
+// highest ids and so come last.
+fn last_of(begin: u32, bin_end: u32) -> u32 {
+    var end = bin_end;
+    if (ORIFICES) {
+        while (end > begin && id_of(sorted[end - 1u].tag) - step.newborn_first_id < step.newborns) {
+            end--;
+        }
+    }
+    return end;
+}
+
+fn at_most(wanted: f32) -> u32 {
+    if (wanted > MOST_CANDIDATES) {
+        atomicAdd(&counters[LOST], u32(min(wanted - MOST_CANDIDATES, 1e9)));
+    }
+    return u32(clamp(wanted, 0.0, MOST_CANDIDATES));
+}
+
+// A unit vector, uniform on the sphere.
+fn direction(word: u32, word2: u32) -> vec3<f32> {
+    let up = 2.0 * unit_interval(word) - 1.0;
+    let angle = 6.2831853 * unit_interval(word2);
+    let d = vec3<f32>(sqrt(1.0 - up * up) * vec2<f32>(cos(angle), sin(angle)), up);
+    // Sine and cosine miss its length by some rounding. (`normalize` may take an inverse root that errs to one side,
+    // which over many collisions is a drift of the energy.)
+    return d / length(d);
+}
+
+struct Collided {
+    candidates: u32,
+    collisions: u32,
+}
+
+// The collisions of the `count` members, two at least, of a part of this volume, m3, from `begin` on.
+fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) -> Collided {
+    let key = vec2<u32>(SEED_LOW, CELL_SEED_HIGH);
+    var mean = vec3<f32>(0.0);
+    for (var k = 0u; k < count; k++) {
+        mean += sorted[member(begin, k, part)].velocity;
+    }
+    mean /= f32(count);
+    var farthest = 0.0;
+    for (var k = 0u; k < count; k++) {
+        let away = sorted[member(begin, k, part)].velocity - mean;
+        farthest = max(farthest, dot(away, away));
+    }
+    // (A little more than the bound, for its rounding.)
+    var bound = 2.000002 * sqrt(farthest);
+    let pairs = 0.5 * f32(count) * f32(count - 1u);
+    let first = philox(vec4<u32>(step.index, cell, 0u, part), key);
+    var candidates = at_most(pairs * (CROSS_SECTION * bound * step.dt / volume) + unit_interval(first.x));
+    var done = Collided(0u, 0u);
+    while (done.candidates < candidates) {
+        done.candidates++;
+        let draw = philox(vec4<u32>(step.index, cell, 4u * done.candidates, part), key);
+        let one = multiply_high(draw.x, count);
+        var other = multiply_high(draw.y, count - 1u);
+        other += select(0u, 1u, other >= one);
+        // By id, as the members are.
+        let s = member(begin, min(one, other), part);
+        let t = member(begin, max(one, other), part);
+        let i = sorted[s];
+        let j = sorted[t];
+        let g = j.velocity - i.velocity;
+        let speed = length(g);
+        if (unit_interval(draw.z) * bound >= speed) {
+            continue;
+        }
+        done.collisions++;
+        if (hidden(i, j)) {
+            // Counted as the other methods do: as a pair that met, and was parted.
+            atomicAdd(&counters[BLOCKED], 1u);
+            continue;
+        }
+        let draw2 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 1u, part), key);
+        let mass_i = gases[gas_of(i.tag)].mass;
+        let mass_j = gases[gas_of(j.tag)].mass;
+        let mu = mass_i * mass_j / (mass_i + mass_j);
+        var draw3 = vec4<u32>(0u);
+        if (SPIN) {
+            draw3 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 2u, part), key);
+        }
+        let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw);
+        let relative = exchange.speed * direction(draw2.x, draw2.y);
+        let after = deflected(i, j, mu, relative - g, exchange);
+        sorted[s] = after.i;
+        sorted[t] = after.j;
+        let new_bound = 2.000002 * max(length(after.i.velocity - mean), length(after.j.velocity - mean));
+        if (new_bound > bound) {
+            let rest = f32(candidates - done.candidates) * (new_bound / bound);
+            candidates = done.candidates + at_most(rest + unit_interval(draw.w));
+            bound = new_bound;
+        }
+    }
+    return done;
+}
+
+fn count_collisions(number: u32) {
+    let old = atomicAdd(&counters[COLLISIONS_LOW], number);
+    if (old + number < old) {
+        atomicAdd(&counters[COLLISIONS_HIGH], 1u);
+    }
+}

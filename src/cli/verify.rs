@@ -1,0 +1,62 @@
+//! `corpuscle verify`: the reference cases, and whether they hold here.
+
+use std::fs;
+
+use crate::gpu::Device;
+use crate::output::OutputError;
+use crate::study::verify::{CASES, Case, Check, Effort, Verdict, report};
+
+use super::CliError;
+use super::arguments::VerifyArguments;
+use super::terminal::say;
+
+pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
+    let cases = chosen(&raw.cases)?;
+    if raw.list {
+        let widest = cases.iter().map(|case| case.name.len()).max().unwrap_or(0);
+        let lines: String = cases.iter().map(|case| format!("{:<widest$}  {}\n", case.name, case.law)).collect();
+        return say(&lines);
+    }
+    let effort = if raw.full { Effort::Full } else { Effort::Quick };
+    let device = Device::open(raw.gpu.as_deref())?;
+    say(&report::head())?;
+    let mut outcomes: Vec<(&Case, Vec<Check>)> = Vec::new();
+    for case in cases {
+        let checks = case.run(&device, effort)?;
+        say(&report::lines(case, &checks))?;
+        outcomes.push((case, checks));
+    }
+    let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, checks)| checks).collect();
+    let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
+    if let Some(path) = &raw.markdown {
+        let info = &device.adapter().info;
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        let page = report::page(&outcomes, &command(&raw), &format!("{} ({})", info.name, driver.trim()));
+        fs::write(path, page).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
+    }
+    say(&format!("{passed} of {} pass\n", checks.len()))?;
+    if passed == checks.len() {
+        Ok(())
+    } else {
+        Err(CliError::Verification { failed: checks.len() - passed, checks: checks.len() })
+    }
+}
+
+/// The named ones, all if none is named.
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>, CliError> {
+    let known = || CASES.iter().map(|case| case.name.to_owned()).collect();
+    let of_name = |name: &String| {
+        let unknown = || CliError::UnknownCase { asked: name.clone(), known: known() };
+        CASES.iter().find(|case| case.name == name).ok_or_else(unknown)
+    };
+    if names.is_empty() { Ok(CASES.iter().collect()) } else { names.iter().map(of_name).collect() }
+}
+
+/// As it would be typed.
+fn command(raw: &VerifyArguments) -> String {
+    let mut words = vec!["corpuscle verify".to_owned()];
+    words.extend(raw.cases.iter().cloned());
+    words.push(if raw.full { "--full" } else { "--quick" }.to_owned());
+    words.extend(raw.markdown.as_ref().map(|path| format!("--markdown {}", path.display())));
+    words.join(" ")
+}

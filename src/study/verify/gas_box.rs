@@ -1,0 +1,113 @@
+//! A gas at rest in a cube, the scene of most closed forms: what it is made of, and what follows from that
+//! by the formulas of the specification (section "Notation"), written here once more, independently.
+
+use std::f64::consts::PI;
+
+use crate::simulation::Model;
+use crate::study::StudyError;
+
+use super::witness::model_of;
+
+pub const GAS_CONSTANT: f64 = 8.314462618;
+/// m.
+pub const EDGE: f64 = 0.1;
+pub const TEMPERATURE: f64 = 300.0;
+
+/// One gas or several in a cube of [`EDGE`]; all that a case may want to vary.
+pub struct EquilibriumBox<'a> {
+    pub particles: u64,
+    pub occupancy: f64,
+    /// x = dt/tau.
+    pub step_over_tau: f64,
+    pub rounds: u32,
+    pub steps: u32,
+    /// Molar mass of the (mean) gas, kg/mol.
+    pub molar_mass: f64,
+    /// `[[gas]]` tables.
+    pub gases: &'a str,
+    /// Gas or mixture, in TOML.
+    pub mixture: &'a str,
+    pub rows: u32,
+    pub snapshots: u32,
+    pub collision_number: f64,
+}
+
+pub const NITROGEN: &str = "[[gas]]\nname = \"nitrogen\"\nmolar_mass = 0.028\ngamma = 1.4\n";
+
+impl Default for EquilibriumBox<'_> {
+    fn default() -> Self {
+        EquilibriumBox {
+            particles: 1000,
+            occupancy: 0.1,
+            step_over_tau: 0.1,
+            rounds: 3,
+            steps: 100,
+            molar_mass: 0.028,
+            gases: NITROGEN,
+            mixture: "\"nitrogen\"",
+            rows: 1,
+            snapshots: 0,
+            collision_number: 5.0,
+        }
+    }
+}
+
+impl EquilibriumBox<'_> {
+    /// Particles per m3.
+    pub fn number_density(&self) -> f64 {
+        self.particles as f64 / EDGE.powi(3)
+    }
+
+    /// m.
+    pub fn diameter(&self) -> f64 {
+        (6.0 * self.occupancy / (PI * self.number_density())).cbrt()
+    }
+
+    /// sqrt(kT/m), m/s.
+    pub fn thermal_speed(&self) -> f64 {
+        (GAS_CONSTANT * TEMPERATURE / self.molar_mass).sqrt()
+    }
+
+    /// m.
+    pub fn mean_free_path(&self) -> f64 {
+        1.0 / (2f64.sqrt() * PI * self.number_density() * self.diameter().powi(2))
+    }
+
+    /// s.
+    pub fn collision_time(&self) -> f64 {
+        self.mean_free_path() / (self.thermal_speed() * (8.0 / PI).sqrt())
+    }
+
+    pub fn time_step(&self) -> f64 {
+        self.step_over_tau * self.collision_time()
+    }
+
+    /// # Errors
+    /// If no plan can be made for it.
+    pub fn model(&self) -> Result<Model, StudyError> {
+        model_of("equilibrium-box", &self.toml())
+    }
+
+    pub fn toml(&self) -> String {
+        let time_step = self.time_step();
+        format!(
+            "end_time = {end:e}\nseed = 7\n{gases}\n\
+             [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\n\
+             gas = \"inside\"\n\
+             [[chamber]]\nname = \"all\"\npressure = 101325.0\ntemperature = {TEMPERATURE}\ngas = {mixture}\n\
+             [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+             [model]\nparticles = {particles}\noccupancy = {occupancy}\ntime_step = {time_step:e}\nrounds = {rounds}\n\
+             collision_number = {collision_number}\n\
+             [output]\nrows = {rows}\nsnapshots = {snapshots}\n",
+            end = time_step * f64::from(self.steps),
+            gases = self.gases,
+            mixture = self.mixture,
+            particles = self.particles,
+            occupancy = self.occupancy,
+            rounds = self.rounds,
+            collision_number = self.collision_number,
+            rows = self.rows,
+            snapshots = self.snapshots,
+        )
+    }
+}

@@ -1,0 +1,178 @@
+//! Reference cases: runs against closed forms and published figures.
+//!
+//! A [`Case`] runs scenes and says of each quantity what it should be, what it was, by how much it may be off and how
+//! well the run knows it ([`Check`]). The tolerance is that of the law (how far a method of this kind may be from the
+//! reference), fixed before any run; a run must know its quantity three times better than that, or it says nothing and
+//! counts as a failure. Seeds are fixed, so an outcome is the same every time on one adapter.
+//!
+//! The same functions serve the tests, which also show that each check can fail.
+
+pub mod collisions;
+pub mod equilibrium;
+pub mod filling;
+pub mod gas_box;
+pub mod holes;
+pub mod report;
+pub mod statistics;
+pub mod tube;
+mod witness;
+
+use crate::gpu::Device;
+
+pub use witness::{Run, Witness, run, scene_of};
+
+use super::StudyError;
+
+/// How much a case takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// All cases together under five minutes on two cores.
+    Quick,
+    /// The figures of the documentation.
+    Full,
+}
+
+/// A law and the runs that show it.
+pub struct Case {
+    pub name: &'static str,
+    /// What is compared with what, and where the reference is from.
+    pub law: &'static str,
+    run: fn(&Device, Effort) -> Result<Vec<Check>, StudyError>,
+}
+
+impl Case {
+    /// # Errors
+    /// If a run fails.
+    pub fn run(&self, device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+        (self.run)(device, effort)
+    }
+}
+
+/// A quantity of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    pub quantity: String,
+    pub reference: f64,
+    pub measured: f64,
+    /// Largest difference of the two.
+    pub tolerance: f64,
+    /// Standard error of `measured`; 0 where it is a number of the run and no estimate.
+    pub error: f64,
+}
+
+/// Standard errors that a tolerance must have.
+const ERRORS_IN_TOLERANCE: f64 = 3.0;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    Pass,
+    Fail,
+    /// The run knows too little.
+    Unclear,
+}
+
+impl Verdict {
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Pass => "pass",
+            Verdict::Fail => "FAIL",
+            Verdict::Unclear => "UNCLEAR",
+        }
+    }
+}
+
+impl Check {
+    /// An estimate with a standard error.
+    pub fn of(quantity: impl Into<String>, reference: f64, (measured, error): (f64, f64), tolerance: f64) -> Check {
+        Check { quantity: quantity.into(), reference, measured, tolerance, error }
+    }
+
+    pub fn verdict(&self) -> Verdict {
+        let off = (self.measured - self.reference).abs();
+        // Without a number there is no pass either.
+        if off.is_nan() || self.error.is_nan() || ERRORS_IN_TOLERANCE * self.error > self.tolerance {
+            Verdict::Unclear
+        } else if off <= self.tolerance {
+            Verdict::Pass
+        } else {
+            Verdict::Fail
+        }
+    }
+}
+
+/// All cases, in the order of the tables.
+pub const CASES: &[Case] = &[
+    Case {
+        name: "wall-pressure",
+        law: "pressure on the walls over n k T at several occupancies (ideal gas)",
+        run: collisions::wall_pressures,
+    },
+    Case {
+        name: "collision-rate",
+        law: "collisions per particle over n pi sigma^2 gbar (kinetic theory), away from walls",
+        run: collisions::rates,
+    },
+    Case {
+        name: "equipartition",
+        law: "spin against translation, and masses 1:7, from an unequal start (equipartition theorem)",
+        run: equilibrium::one_temperature,
+    },
+    Case {
+        name: "spin-relaxation",
+        law: "collision number Z from the decay of T_tr - T_int, exp(-(1 + zeta/3) s/Z)",
+        run: equilibrium::relaxation,
+    },
+    Case {
+        name: "energy-drift",
+        law: "relative change of the energy of a closed box, per 1e5 steps",
+        run: equilibrium::conservation,
+    },
+    Case {
+        name: "filling",
+        law: "mass and energy of a closed tank that is filled: the curve's integral, U0 + integral of h dm",
+        run: filling::balances,
+    },
+    Case { name: "effusion", law: "free flight through a hole over n cbar A/4 (kinetic theory)", run: holes::effusion },
+    Case {
+        name: "orifice",
+        law: "discharge into near-vacuum over choked isentropic flow, by Knudsen number of the hole's radius",
+        run: holes::discharges,
+    },
+    Case { name: "sod", law: "Sod's shock tube, gamma 7/5, against the exact Riemann solution", run: tube::sod },
+    Case { name: "sod-monatomic", law: "the same with gamma 5/3", run: tube::sod_monatomic },
+    Case {
+        name: "expansion",
+        law: "expansion into a vacuum: exact Riemann solution; at rest again the temperature of the start (Joule)",
+        run: tube::expansion,
+    },
+    Case {
+        name: "sound",
+        law: "frequency of a standing wave over that of sound at sqrt(gamma k T/m)",
+        run: tube::sound,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A check passes within its tolerance, fails beyond it, and says nothing where it does not know.
+    #[test]
+    fn a_check_passes_fails_or_knows_too_little() {
+        let check = |measured, error| Check::of("x", 1.0, (measured, error), 0.03).verdict();
+        assert_eq!(check(1.029, 0.005), Verdict::Pass);
+        assert_eq!(check(0.971, 0.0), Verdict::Pass);
+        assert_eq!(check(1.031, 0.005), Verdict::Fail);
+        assert_eq!(check(1.0, 0.011), Verdict::Unclear);
+        assert_eq!(check(f64::NAN, 0.0), Verdict::Unclear);
+        assert_eq!(check(1.0, f64::NAN), Verdict::Unclear);
+    }
+
+    #[test]
+    fn names_are_unique() {
+        let mut names: Vec<_> = CASES.iter().map(|case| case.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), CASES.len());
+    }
+}

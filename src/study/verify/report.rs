@@ -1,0 +1,110 @@
+//! The outcome of the reference cases as a table: for a terminal, and as a page of the documentation.
+
+use std::fmt::Write;
+
+use super::{Case, Check, Verdict};
+
+/// Columns of the table: case, quantity, reference, measured, standard error, tolerance, verdict.
+const WIDTHS: [usize; 7] = [15, 44, 10, 12, 10, 10, 8];
+const TITLES: [&str; 7] = ["case", "quantity", "reference", "measured", "std error", "tolerance", "verdict"];
+
+/// The titles above the lines of [`lines`].
+pub fn head() -> String {
+    line(&TITLES.map(str::to_owned))
+}
+
+/// A line for each check of a case.
+pub fn lines(case: &Case, checks: &[Check]) -> String {
+    checks.iter().map(|check| line(&cells(case, check))).collect()
+}
+
+/// A page with all cases, their laws and what came of them. `made_by`: the command, and the device that it ran on.
+pub fn page(outcomes: &[(&Case, Vec<Check>)], command: &str, device: &str) -> String {
+    let mut page = format!(
+        "# Accuracy\n\n\
+         Reference cases and what a run gave for them, as printed by\n\n```sh\n{command}\n```\n\n\
+         on {device}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
+         a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n"
+    );
+    let passed = outcomes.iter().flat_map(|(_, checks)| checks).filter(|c| c.verdict() == Verdict::Pass).count();
+    let all: usize = outcomes.iter().map(|(_, checks)| checks.len()).sum();
+    let _ = writeln!(page, "{passed} of {all} pass.\n\n| {} |", TITLES.join(" | "));
+    page += "|---|---|--:|--:|--:|--:|---|\n";
+    for (case, checks) in outcomes {
+        for check in checks {
+            let _ = writeln!(page, "| {} |", cells(case, check).map(|cell| cell.replace('|', "\\|")).join(" | "));
+        }
+    }
+    page += "\n## The laws\n\n";
+    for (case, _) in outcomes {
+        let _ = writeln!(page, "- `{}`: {}.", case.name, case.law);
+    }
+    page
+}
+
+fn cells(case: &Case, check: &Check) -> [String; 7] {
+    let error = if check.error == 0.0 { "exact".to_owned() } else { figure(check.error) };
+    [
+        case.name.to_owned(),
+        check.quantity.clone(),
+        figure(check.reference),
+        figure(check.measured),
+        error,
+        figure(check.tolerance),
+        check.verdict().word().to_owned(),
+    ]
+}
+
+/// Four significant digits.
+fn figure(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&size) {
+        let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+fn line(cells: &[String; 7]) -> String {
+    let mut text = String::new();
+    for (column, (cell, width)) in cells.iter().zip(WIDTHS).enumerate() {
+        // Words to the left, figures to the right.
+        let _ = match column {
+            0 | 1 | 6 => write!(text, "{cell:<width$} "),
+            _ => write!(text, "{cell:>width$} "),
+        };
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::CASES;
+    use super::*;
+
+    #[test]
+    fn figures_have_four_digits() {
+        for (value, text) in
+            [(0.0, "0"), (1.0, "1.000"), (0.00512, "0.005120"), (293.15, "293.1"), (-3.2e-7, "-3.20e-7")]
+        {
+            assert_eq!(figure(value), text);
+        }
+    }
+
+    /// The page has a row for each check and says how many pass; bars in a quantity do not end its cell.
+    #[test]
+    fn the_page_tells_what_passed() {
+        let good = Check::of("mean |x|", 1.0, (1.01, 0.001), 0.02);
+        let bad = Check { measured: 1.03, ..good.clone() };
+        let page = page(&[(&CASES[0], vec![good, bad])], "corpuscle verify", "a device");
+        assert!(page.contains("1 of 2 pass"), "{page}");
+        assert!(
+            page.contains("| wall-pressure | mean \\|x\\| | 1.000 | 1.010 | 0.001000 | 0.02000 | pass |"),
+            "{page}"
+        );
+        assert!(page.contains("| FAIL |"), "{page}");
+    }
+}

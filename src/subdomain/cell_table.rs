@@ -1,0 +1,49 @@
+//! The gas of the cells as the device sees it (`shaders/shared/cell_gas.wgsl`).
+
+use crate::geometry::{CellGas, Grid};
+
+use super::layout::GpuPart;
+
+/// The mark of a cell that walls part; below it the number of its parts (7 bits) and the first of them (24).
+const PARTED: u32 = 1 << 31;
+const MOST_PARTS: usize = 127;
+const MOST_ENTRIES: usize = 1 << 24;
+
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellTable {
+    pub volume: Vec<u32>,
+    pub parts: Vec<GpuPart>,
+    /// Cells that walls part.
+    pub parted: u64,
+}
+
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "walls part the gas of {cells} cells, more than the {limit} parts that a cell can name; take larger cells (fewer `particles`) or the method `closest-approach`"
+)]
+pub struct TooManyParts {
+    cells: usize,
+    limit: usize,
+}
+
+impl CellTable {
+    /// # Errors
+    /// If walls part more cells than can be named.
+    pub fn new(gas: &CellGas, grid: &Grid) -> Result<CellTable, TooManyParts> {
+        let mut table = CellTable { parted: gas.parted.len() as u64, ..CellTable::default() };
+        table.volume = gas.volume.iter().map(|&volume| (volume as f32).to_bits()).collect();
+        for (cell, parts) in &gas.parted {
+            let count = parts.len().min(MOST_PARTS);
+            if table.parts.len() + count > MOST_ENTRIES {
+                return Err(TooManyParts { cells: gas.parted.len(), limit: MOST_ENTRIES });
+            }
+            table.volume[*cell] = PARTED | (count as u32) << 24 | table.parts.len() as u32;
+            // A point of a cell of the grid is on the grid.
+            table.parts.extend(parts[..count].iter().map(|part| GpuPart {
+                place: grid.to_fixed(part.place).unwrap_or_default(),
+                volume: part.volume as f32,
+            }));
+        }
+        Ok(table)
+    }
+}
