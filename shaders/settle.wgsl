@@ -127,7 +127,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (SPIN) {
         draw = philox(vec4<u32>(step.index, step.round * 2u, ids), key);
     }
-    let exchange = exchanged(i, j, mu, length(g), draw, draw2.xy);
+    // The sides take the top bit of the third word.
+    let exchange = exchanged(i, j, mu, length(g), draw, draw2.xy, vec2<u32>(draw2.w, draw2.z << 1u));
     var relative: vec3<f32>;
     if (RIGID) {
         relative = thrown_back(miss, g, exchange.speed);

@@ -46,10 +46,11 @@ fn at_most(wanted: f32) -> u32 {
 // A unit vector, uniform on the sphere.
 fn direction(word: u32, word2: u32) -> vec3<f32> {
     let up = 2.0 * unit_interval(word) - 1.0;
-    let angle = 6.2831853 * unit_interval(word2);
-    let d = vec3<f32>(sqrt(1.0 - up * up) * vec2<f32>(cos(angle), sin(angle)), up);
-    // Sine and cosine miss its length by some rounding. (`normalize` may take an inverse root that errs to one side,
-    // which over many collisions is a drift of the energy.)
+    let share = unit_interval(word2);
+    let angle = 6.2831853 * share;
+    // Some length from 1 to 2, not one that is 1 but for the rounding of sine and cosine: next to 1 roots and quotients
+    // are rounded to one side, which over many collisions is a drift of the energy.
+    let d = (1.0 + share) * vec3<f32>(sqrt(1.0 - up * up) * vec2<f32>(cos(angle), sin(angle)), up);
     return d / length(d);
 }
 
@@ -107,7 +108,11 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
         if (SPIN) {
             draw3 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 2u, part), key);
         }
-        let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw);
+        var pick = vec2<u32>(0u);
+        if (CURVES) {
+            pick = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 3u, part), key).xy;
+        }
+        let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw, pick);
         let relative = exchange.speed * direction(draw2.x, draw2.y);
         let after = deflected(i, j, mu, relative - g, exchange);
         sorted[s] = after.i;

@@ -1,4 +1,4 @@
-//! uses: particle.wgsl gas.wgsl philox.wgsl
+//! uses: particle.wgsl gas.wgsl philox.wgsl modes.wgsl
 // What a collision does to the two particles beyond turning them: spin exchange (Larsen-Borgnakke,
 // specification, section 3), i before j, i the lower id; new velocities about the common centre of mass; and what
 // rounding does to the pair's energy goes into spin.
@@ -14,8 +14,9 @@ struct Exchanged {
     spin_j: f32,
 }
 
-// `draw`: one word to decide for i, two for its share, one to decide for j; `draw2`: two for j's share.
-fn exchanged(i: Particle, j: Particle, mu: f32, speed: f32, draw: vec4<u32>, draw2: vec2<u32>) -> Exchanged {
+// `draw`: one word to decide for i, two for its share, one to decide for j; `draw2`: two for j's share; `pick`: one
+// each for the modes of i and j.
+fn exchanged(i: Particle, j: Particle, mu: f32, speed: f32, draw: vec4<u32>, draw2: vec2<u32>, pick: vec2<u32>) -> Exchanged {
     var after = Exchanged(speed, i.spin, j.spin);
     if (SPIN) {
         let before = 0.5 * mu * speed * speed;
@@ -23,14 +24,18 @@ fn exchanged(i: Particle, j: Particle, mu: f32, speed: f32, draw: vec4<u32>, dra
         let gas_i = gases[gas_of(i.tag)];
         if (unit_interval(draw.x) < gas_i.exchange) {
             let sum = energy + i.spin;
-            let share = pow(unit_interval(draw.y), gas_i.inverse_beta) * pow(unit_interval(draw.z), gas_i.inverse_beta1);
+            let own = vec2<f32>(gas_i.inverse_beta, gas_i.inverse_beta1);
+            let betas = inverse_betas(gas_of(i.tag), own, sum, pick.x);
+            let share = pow(unit_interval(draw.y), betas.x) * pow(unit_interval(draw.z), betas.y);
             after.spin_i = min(sum * share, sum);
             energy = sum - after.spin_i;
         }
         let gas_j = gases[gas_of(j.tag)];
         if (unit_interval(draw.w) < gas_j.exchange) {
             let sum = energy + j.spin;
-            let share = pow(unit_interval(draw2.x), gas_j.inverse_beta) * pow(unit_interval(draw2.y), gas_j.inverse_beta1);
+            let own = vec2<f32>(gas_j.inverse_beta, gas_j.inverse_beta1);
+            let betas = inverse_betas(gas_of(j.tag), own, sum, pick.y);
+            let share = pow(unit_interval(draw2.x), betas.x) * pow(unit_interval(draw2.y), betas.y);
             after.spin_j = min(sum * share, sum);
             energy = sum - after.spin_j;
         }

@@ -125,6 +125,8 @@ impl CliError {
                 | SimulationError::Cells(_)
                 | SimulationError::Partition(_)
                 | SimulationError::Resume(_)
+                | SimulationError::NoChamber { .. }
+                | SimulationError::NoParticles
                 | SimulationError::Observer(_),
             )
             | CliError::Scene(_)

@@ -10,6 +10,7 @@ mod recorder;
 mod reference;
 pub(super) mod table;
 mod timing;
+mod uniform;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -20,7 +21,7 @@ use crate::output::{
     SCENE_FILE, forget_after, grouped,
 };
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
-use crate::scene::to_toml;
+use crate::scene::{Method, to_toml};
 use crate::simulation::{Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits};
 
 use super::CliError;
@@ -69,6 +70,10 @@ pub fn launch(
         for warning in &model.plan.warnings {
             tracing::warn!("{warning}");
         }
+    }
+    if model.plan.method == Method::ControlVolume {
+        // Nothing to share out: the first rank does it.
+        return if comm.rank() == 0 { uniform::run(settings, quiet, started) } else { Ok(()) };
     }
     let device = devices::open(execution.gpu.as_deref(), comm)?;
     devices::agree(&device, model, comm)?;

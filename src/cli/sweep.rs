@@ -10,8 +10,8 @@ use crate::output::{
     OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, Timing, grouped,
 };
 use crate::partition::By;
-use crate::scene::{Scene, to_toml};
-use crate::simulation::{Ghosts, HaloOptions, Model, Setup, initial_particles};
+use crate::scene::{Method, Scene, to_toml};
+use crate::simulation::{Ghosts, HaloOptions, Model, Setup, SimulationError, initial_particles};
 use crate::study::emulation::{Effort, Emulated, State, emulate};
 use crate::study::launched::{Case, Measured, Program, compare, take_turns, together};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
@@ -78,7 +78,9 @@ impl SweepPlan {
     fn new(raw: SweepArguments) -> Result<SweepPlan, CliError> {
         check(&raw)?;
         let mut scene = scene_of(&raw.scene)?;
-        model_of(&raw.scene.scene, scene.clone())?;
+        if model_of(&raw.scene.scene, scene.clone())?.plan.method == Method::ControlVolume {
+            return Err(SimulationError::NoParticles.into());
+        }
         // They would be timed.
         scene.output.snapshots = 0;
         let path = &raw.scene.scene;

@@ -1,19 +1,20 @@
 //! The control-volume (0-D) reference: uniform chambers, the curves of the orifices, the holes between.
 //!
 //! Per chamber: dn_g/dt = inflow + net flow through openings, dU/dt = inflow x h + energy through openings,
-//! with U = sum n cv T and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
+//! with U = sum n u(T) and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
 //! number Kn = lambda / length, lambda from the number density of *particles* (moles / V / nu) on the
-//! upstream side: the reference of what the run itself models. So that nothing jumps where two pressures
+//! upstream side: the reference of what the run itself models (a run that is itself a control volume has Kn = 0). So that nothing jumps where two pressures
 //! cross, the two densities are blended while the pressures differ by less than 2 %.
 //!
 //! Integrated with the classical Runge-Kutta method (RK4), each step against two halves of it, between
 //! the kinks of all curves. Invariant: Runge-Kutta keeps linear invariants, and its quadrature is exact for a
-//! product of two linear curves, so moles and U = U0 + integral h dm hold to rounding at any step.
+//! product of two linear curves, so moles and U = U0 + integral h dm hold to rounding at any step (of gases with
+//! constant heat capacities; else, where a temperature of inflow changes, within the tolerance).
 
 use super::curve::{value_held, value_inside};
 use super::discharge::{Side, exchange};
-use super::{kinetics, thermo};
-use crate::scene::{GAS_CONSTANT, Gas, Opening, Orifice, Vent, VentFlow, WallHeat};
+use super::{Species, kinetics, thermo};
+use crate::scene::{GAS_CONSTANT, Opening, Orifice, Vent, VentFlow, WallHeat};
 
 /// Error of a step over the chamber's moles or energy.
 const TOLERANCE: f64 = 1e-10;
@@ -24,15 +25,14 @@ const BLENDED_DIFFERENCE: f64 = 0.02;
 /// Chambers, what flows into them and what connects them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlVolume {
-    pub gases: Vec<Gas>,
+    pub gases: Vec<Species>,
     /// m3, by chamber.
     pub volumes: Vec<f64>,
     pub sources: Vec<Source>,
     pub openings: Vec<Opening>,
     pub walls: Vec<HeatedWall>,
     pub vents: Vec<OpenVent>,
-    /// `None`: no collisions, every hole is in the kinetic limit.
-    pub collisions: Option<Collisions>,
+    pub collisions: Collisions,
 }
 
 /// An orifice and the chamber it blows into.
@@ -42,11 +42,15 @@ pub struct Source {
     pub orifice: Orifice,
 }
 
+/// What decides the Knudsen numbers of holes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Collisions {
-    /// m.
-    pub diameter: f64,
-    pub moles_per_particle: f64,
+pub enum Collisions {
+    /// Every hole is in the kinetic limit.
+    None,
+    /// Those of particles of a diameter (m) and an amount (mol).
+    Particles { diameter: f64, moles_per_particle: f64 },
+    /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
+    Continuum,
 }
 
 /// The part of a wall in one chamber that exchanges heat.
@@ -95,7 +99,7 @@ impl ControlVolume {
         let mut contents = Vec::with_capacity(initial.len() * self.stride());
         for reservoir in initial {
             contents.extend_from_slice(&reservoir.moles);
-            contents.push(self.heat_capacity(&reservoir.moles) * reservoir.temperature);
+            contents.push(thermo::energy(&reservoir.moles, &self.gases, reservoir.temperature));
         }
         let mut kinks = self.kinks();
         kinks.extend_from_slice(times);
@@ -131,15 +135,10 @@ impl ControlVolume {
         curves.chain(vents).flat_map(|curve| &curve.points).map(|point| point[0]).collect()
     }
 
-    fn heat_capacity(&self, moles: &[f64]) -> f64 {
-        moles.iter().zip(&self.gases).map(|(n, gas)| n * gas.molar_cv).sum()
-    }
-
     fn side<'a>(&self, contents: &'a [f64], chamber: usize) -> Side<'a> {
         let own = &contents[chamber * self.stride()..(chamber + 1) * self.stride()];
         let (moles, energy) = own.split_at(self.gases.len());
-        let capacity = self.heat_capacity(moles);
-        let temperature = if capacity > 0.0 { energy[0] / capacity } else { 0.0 };
+        let temperature = thermo::temperature(moles, &self.gases, energy[0]);
         Side { moles, volume: self.volumes[chamber], temperature }
     }
 
@@ -211,7 +210,7 @@ impl ControlVolume {
             let temperature = value_held(&orifice.temperature, time);
             for &(gas, fraction) in &orifice.mixture.0 {
                 rate[chamber * stride + gas] += moles * fraction;
-                rate[(chamber + 1) * stride - 1] += moles * fraction * self.gases[gas].molar_cp() * temperature;
+                rate[(chamber + 1) * stride - 1] += self.gases[gas].enthalpy(moles * fraction, temperature);
             }
         }
         let mut flux = vec![0.0; self.gases.len()];
@@ -231,7 +230,11 @@ impl ControlVolume {
     }
 
     fn knudsen(&self, a: Side, b: Side, length: f64) -> f64 {
-        let Some(Collisions { diameter, moles_per_particle }) = self.collisions else { return f64::INFINITY };
+        let (diameter, moles_per_particle) = match self.collisions {
+            Collisions::None => return f64::INFINITY,
+            Collisions::Continuum => return 0.0,
+            Collisions::Particles { diameter, moles_per_particle } => (diameter, moles_per_particle),
+        };
         let density = |side: Side| side.moles.iter().sum::<f64>() / (side.volume * moles_per_particle);
         let (pa, pb) = (a.pressure(), b.pressure());
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);

@@ -85,15 +85,38 @@ impl FlowIntegral {
 /// The integral of flow x temperature from 0 to `end_time`: Simpson's rule between the points of both
 /// curves, exact for the product of two linear functions. kg K for a flow in kg/s.
 pub fn flow_times_temperature(flow: &Curve, temperature: &Curve, end_time: f64) -> f64 {
-    let (Some(first), Some(last)) = (flow.points.first(), flow.points.last()) else { return 0.0 };
+    let product = |t: f64| value_inside(flow, t) * value_held(temperature, t);
+    let simpson = |a: f64, b: f64| (b - a) / 6.0 * (product(a) + 4.0 * product(0.5 * (a + b)) + product(b));
+    knots(flow, temperature, end_time).windows(2).map(|pair| simpson(pair[0], pair[1])).sum()
+}
+
+/// The integral of flow x f(temperature) from 0 to `end_time`, for any smooth f: Gauss-Legendre of five points
+/// between the points of both curves.
+pub fn flow_times_of_temperature(flow: &Curve, temperature: &Curve, end_time: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const NODES: [[f64; 2]; 5] = [
+        [-0.906_179_845_938_664, 0.236_926_885_056_189_1],
+        [-0.538_469_310_105_683_1, 0.478_628_670_499_366_5],
+        [0.0, 0.568_888_888_888_888_9],
+        [0.538_469_310_105_683_1, 0.478_628_670_499_366_5],
+        [0.906_179_845_938_664, 0.236_926_885_056_189_1],
+    ];
+    let product = |t: f64| value_inside(flow, t) * f(value_held(temperature, t));
+    let piece = |a: f64, b: f64| -> f64 {
+        let sum: f64 = NODES.iter().map(|[x, w]| w * product(0.5 * (a + b) + 0.5 * (b - a) * x)).sum();
+        0.5 * (b - a) * sum
+    };
+    knots(flow, temperature, end_time).windows(2).map(|pair| piece(pair[0], pair[1])).sum()
+}
+
+/// The points of both curves within the flow and the run; none without a flow.
+fn knots(flow: &Curve, temperature: &Curve, end_time: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (flow.points.first(), flow.points.last()) else { return Vec::new() };
     let (start, end) = (first[0].max(0.0), last[0].min(end_time));
     let mut knots: Vec<f64> = flow.points.iter().chain(&temperature.points).map(|p| p[0]).collect();
     knots.retain(|&t| t > start && t < end);
     knots.extend([start, end]);
     knots.sort_by(f64::total_cmp);
-    let product = |t: f64| value_inside(flow, t) * value_held(temperature, t);
-    let simpson = |a: f64, b: f64| (b - a) / 6.0 * (product(a) + 4.0 * product(0.5 * (a + b)) + product(b));
-    if end > start { knots.windows(2).map(|pair| simpson(pair[0], pair[1])).sum() } else { 0.0 }
+    if end > start { knots } else { Vec::new() }
 }
 
 #[cfg(test)]

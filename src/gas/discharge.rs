@@ -2,7 +2,7 @@
 //! (specification, section 4 "Resolved hole").
 //!
 //! With Q the pressure ratio down/up, both limits relative to the choked isentropic flow of the upstream gas:
-//! - kinetic: effusion both ways, per gas n cbar/4 carrying (4 + zeta)/2 kT a molecule; at one temperature
+//! - kinetic: effusion both ways, per gas n cbar/4 carrying 2 kT and its internal energy a molecule; at one temperature
 //!   fm(Q) = fm(0) (1 - Q), fm(0) = .583 for gamma 1.4;
 //! - continuum: .84 x isentropic(Q), the upstream mixture with the upstream enthalpy.
 //!
@@ -16,8 +16,8 @@
 //! Q = .8 are relative to choked flow too; all were measured at gamma 1.4 and give the same w at any gamma;
 //! the continuum limit stays .84 at every Q.
 
-use super::{kinetics, thermo};
-use crate::scene::{GAS_CONSTANT, Gas, Mixture};
+use super::{Species, kinetics, thermo};
+use crate::scene::{GAS_CONSTANT, Mixture};
 
 /// Discharge coefficient of a thin orifice in the continuum.
 const CONTINUUM_COEFFICIENT: f64 = 0.84;
@@ -49,7 +49,7 @@ impl Side<'_> {
 
 /// Flow per area from `a` to `b` at the Knudsen number `knudsen`: adds to `moles` each gas's mol/(m2 s) and
 /// returns the energy, W/m2; negative from `b` to `a`.
-pub fn exchange(gases: &[Gas], a: Side, b: Side, knudsen: f64, moles: &mut [f64]) -> f64 {
+pub fn exchange(gases: &[Species], a: Side, b: Side, knudsen: f64, moles: &mut [f64]) -> f64 {
     let (pa, pb) = (a.pressure(), b.pressure());
     let (up, sign) = if pa >= pb { (a, 1.0) } else { (b, -1.0) };
     let high = pa.max(pb);
@@ -64,17 +64,17 @@ pub fn exchange(gases: &[Gas], a: Side, b: Side, knudsen: f64, moles: &mut [f64]
             let speed = kinetics::mean_speed(kinetics::thermal_square(side.temperature, gas.molar_mass));
             let flow = sign * (1.0 - share) * 0.25 * speed * amount / side.volume;
             *moles += flow;
-            energy += flow * 0.5 * (4.0 + gas.spin_dof()) * GAS_CONSTANT * side.temperature;
+            energy += flow * 0.5 * (4.0 + gas.spin_energy_dof(side.temperature)) * GAS_CONSTANT * side.temperature;
         }
     }
     let total: f64 = up.moles.iter().sum();
     let mixture = Mixture(up.moles.iter().map(|amount| amount / total).enumerate().collect());
-    let gamma = thermo::heat_capacity_ratio(&mixture, gases);
+    let gamma = thermo::heat_capacity_ratio(&mixture, gases, up.temperature);
     let unit = high / (thermo::molar_mass(&mixture, gases) * GAS_CONSTANT * up.temperature).sqrt();
     let continuum = sign * share * CONTINUUM_COEFFICIENT * unit * isentropic(gamma, ratio);
     for &(gas, fraction) in &mixture.0 {
         moles[gas] += continuum * fraction;
-        energy += continuum * fraction * gases[gas].molar_cp() * up.temperature;
+        energy += gases[gas].enthalpy(continuum * fraction, up.temperature);
     }
     energy
 }
@@ -117,8 +117,8 @@ fn share_in_table(table: &[[f64; 2]], ratio: f64, knudsen: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn nitrogen() -> Vec<Gas> {
-        vec![Gas { name: "N2".into(), molar_mass: 0.028, molar_cv: 2.5 * GAS_CONSTANT }]
+    fn nitrogen() -> Vec<Species> {
+        vec![Species::constant(0.028, 2.5 * GAS_CONSTANT)]
     }
 
     /// Net molar flow over choked flow, one gas at 300 K.

@@ -5,8 +5,9 @@
 //! per gas and orifice.
 //!
 //! **With what.** Without a jet the normal speed has the Maxwell speed distribution, pdf ~ v^2 exp(-m
-//! v^2/2kT), i.e. m v^2/2kT is Gamma(3/2); tangential components are normal, spin is Gamma(zeta/2) kT, all at
-//! the stagnation temperature T0 of the moment: the mean energy is exactly the enthalpy h = (5 + zeta)/2 kT0.
+//! v^2/2kT), i.e. m v^2/2kT is Gamma(3/2); tangential components are normal, spin is Gamma(zeta/2) kT (or as its
+//! modes have it, see [`Species`]), all at the stagnation temperature T0 of the moment: the mean energy is exactly the
+//! enthalpy h = (5 + zeta)/2 kT0.
 //! With a jet of Mach number M, a flux Maxwellian drifts at u = M sqrt(gamma R Ts / M_mix) with
 //! cp Ts + u^2/2 = cp T0, its direction uniform over the solid angle of the cone.
 //!
@@ -24,8 +25,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::curve::{FlowIntegral, value_held};
-use super::{Draws, Particle, Purpose, thermo};
-use crate::scene::{GAS_CONSTANT, Gas, Jet, Orifice};
+use super::{Draws, Particle, Purpose, Species, thermo};
+use crate::scene::{GAS_CONSTANT, Jet, Mixture, Orifice};
 
 /// Share of the debt that one particle pays.
 const DEBT_SHARE: f64 = 0.125;
@@ -46,7 +47,7 @@ pub struct Newborn {
 pub struct Inflow {
     sources: Vec<Source>,
     streams: Vec<Stream>,
-    gases: Vec<Gas>,
+    gases: Vec<Species>,
     moles_per_particle: f64,
     seed: u64,
     first_id: u32,
@@ -134,7 +135,7 @@ impl Inflow {
     /// `scene::load` and by the plan).
     pub fn new(
         orifices: &[Orifice],
-        gases: &[Gas],
+        gases: &[Species],
         moles_per_particle: f64,
         seed: u64,
         first_id: u32,
@@ -259,7 +260,7 @@ impl Inflow {
         source.left -= 1;
         let species = &self.gases[gas];
         let temperature = value_held(&source.orifice.temperature, time);
-        let enthalpy = self.moles_per_particle * species.molar_cp() * temperature;
+        let enthalpy = species.enthalpy(self.moles_per_particle, temperature);
         self.enthalpy += enthalpy;
         let mass = species.molar_mass * self.moles_per_particle;
 
@@ -270,19 +271,19 @@ impl Inflow {
             Some(jet) => source.jet_velocity(jet, temperature, species, &self.gases, &mut draws),
         };
         let thermal_energy = self.moles_per_particle * GAS_CONSTANT * static_temperature;
-        let mut spin_energy = thermal_energy * draws.gamma(0.5 * species.spin_dof());
+        let mut spin_energy = species.draw_spin(thermal_energy, static_temperature, &mut draws);
         let translational = 0.5 * mass * local.iter().map(|v| v * v).sum::<f64>();
 
         let settling = source.left < SETTLING;
         let drawn = translational + spin_energy;
         let mut due = if settling { source.debt + enthalpy - drawn } else { DEBT_SHARE * source.debt };
-        if species.spin_dof() > 0.0 {
+        if species.has_spin() {
             let paid = due.max(-spin_energy);
             spin_energy += paid;
             due -= paid;
         }
         let mut factor = 1.0;
-        if settling || species.spin_dof() <= 0.0 {
+        if settling || !species.has_spin() {
             factor = (1.0 + due / translational).clamp(1.0 / SPEED_PAYMENT, SPEED_PAYMENT);
         }
         source.debt += enthalpy - (factor * translational + spin_energy);
@@ -292,9 +293,22 @@ impl Inflow {
 }
 
 /// Normal, then two tangential components, m/s: mean energy (5 + zeta)/2 kT with the spin.
-fn effusing_velocity(temperature: f64, gas: &Gas, draws: &mut Draws) -> [f64; 3] {
+fn effusing_velocity(temperature: f64, gas: &Species, draws: &mut Draws) -> [f64; 3] {
     let c0 = (GAS_CONSTANT * temperature / gas.molar_mass).sqrt();
     [c0 * (2.0 * draws.gamma(1.5)).sqrt(), c0 * draws.normal(), c0 * draws.normal()]
+}
+
+/// Of a flow at a Mach number, K: h(Ts) + u^2/2 = h(T0) with u^2 = Ma^2 gamma R Ts / M.
+fn static_temperature(stagnation: f64, mach: f64, mixture: &Mixture, gases: &[Species]) -> f64 {
+    if thermo::is_constant(mixture, gases) {
+        let gamma = thermo::heat_capacity_ratio(mixture, gases, stagnation);
+        return stagnation / (1.0 + 0.5 * (gamma - 1.0) * mach * mach);
+    }
+    let available = thermo::molar_enthalpy(mixture, gases, stagnation);
+    let kinetic = |t: f64| 0.5 * mach * mach * thermo::heat_capacity_ratio(mixture, gases, t) * GAS_CONSTANT;
+    let excess = |t: f64| thermo::molar_enthalpy(mixture, gases, t) + kinetic(t) * t - available;
+    let slope = |t: f64| thermo::molar_cv(mixture, gases, t) + GAS_CONSTANT + kinetic(t);
+    thermo::root(excess, slope, stagnation)
 }
 
 impl Source {
@@ -306,9 +320,16 @@ impl Source {
     }
 
     /// Velocity in the orifice's axes, m/s, and the jet's static temperature, K.
-    fn jet_velocity(&self, jet: Jet, stagnation: f64, gas: &Gas, gases: &[Gas], draws: &mut Draws) -> ([f64; 3], f64) {
-        let gamma = thermo::heat_capacity_ratio(&self.orifice.mixture, gases);
-        let temperature = stagnation / (1.0 + 0.5 * (gamma - 1.0) * jet.mach * jet.mach);
+    fn jet_velocity(
+        &self,
+        jet: Jet,
+        stagnation: f64,
+        gas: &Species,
+        gases: &[Species],
+        draws: &mut Draws,
+    ) -> ([f64; 3], f64) {
+        let temperature = static_temperature(stagnation, jet.mach, &self.orifice.mixture, gases);
+        let gamma = thermo::heat_capacity_ratio(&self.orifice.mixture, gases, temperature);
         let molar_mass = thermo::molar_mass(&self.orifice.mixture, gases);
         let drift = jet.mach * (gamma * GAS_CONSTANT * temperature / molar_mass).sqrt();
         let cosine = 1.0 - draws.uniform() * (1.0 - libm::cos(jet.cone_angle));

@@ -1,15 +1,15 @@
 //! The gas at rest at the start of a run.
 //!
 //! Positions are uniform in each chamber (rejection from its bounding box); velocities Maxwell, spin energy
-//! Gamma(zeta/2) kT (specification, section 1). Then each chamber is made exact: its total momentum is
+//! Gamma(zeta/2) kT (specification, section 1) or as its modes have it ([`Species`]). Then each chamber is made exact: its total momentum is
 //! shifted to zero and its translational energy scaled to 3/2 N kT by one factor for all its gases (several
-//! factors would bring the momentum back), and the spin energy of each gas to zeta/2 N kT. A chamber with a
+//! factors would bring the momentum back), and the spin energy of each gas to its mean. A chamber with a
 //! single particle keeps its momentum: it could not have the energy otherwise.
 //!
 //! Invariants: ids are 0.. in the order chamber, gas, particle; each particle's draws depend on its id only.
 
-use super::{Draws, Particle, Purpose};
-use crate::scene::{GAS_CONSTANT, Gas};
+use super::{Draws, Particle, Purpose, Species};
+use crate::scene::GAS_CONSTANT;
 
 /// One chamber to be filled.
 pub struct Filling<'a> {
@@ -42,7 +42,7 @@ pub enum FillError {
 /// gas space.
 pub fn fill(
     chambers: &[Filling],
-    gases: &[Gas],
+    gases: &[Species],
     is_gas: &dyn Fn([f64; 3]) -> bool,
     moles_per_particle: f64,
     seed: u64,
@@ -59,7 +59,7 @@ pub fn fill(
                     place(chamber, is_gas, seed, id).ok_or(FillError::NoRoom { chamber: index, tries: MOST_TRIES })?;
                 let mut draws = Draws::new(seed, Purpose::InitialState, id);
                 let velocity = [(); 3].map(|()| thermal_speed * draws.normal());
-                let spin_energy = thermal_energy * draws.gamma(0.5 * species.spin_dof());
+                let spin_energy = species.draw_spin(thermal_energy, chamber.temperature, &mut draws);
                 particles.push(Particle { id, gas: gas as u8, position, velocity, spin_energy });
             }
         }
@@ -84,7 +84,7 @@ fn place(chamber: &Filling, is_gas: &dyn Fn([f64; 3]) -> bool, seed: u64, id: u3
 }
 
 /// Subtracts the velocity of the centre of mass.
-fn stop_drift(particles: &mut [Particle], gases: &[Gas]) {
+fn stop_drift(particles: &mut [Particle], gases: &[Species]) {
     if particles.len() < 2 {
         return;
     }
@@ -104,7 +104,7 @@ fn stop_drift(particles: &mut [Particle], gases: &[Gas]) {
     }
 }
 
-fn make_energy_exact(particles: &mut [Particle], gases: &[Gas], moles_per_particle: f64, temperature: f64) {
+fn make_energy_exact(particles: &mut [Particle], gases: &[Species], moles_per_particle: f64, temperature: f64) {
     let thermal_energy = moles_per_particle * GAS_CONSTANT * temperature;
     let mut translational = 0.0;
     let mut spin = vec![0.0; gases.len()];
@@ -121,7 +121,7 @@ fn make_energy_exact(particles: &mut [Particle], gases: &[Gas], moles_per_partic
     for particle in particles {
         let gas = usize::from(particle.gas);
         particle.velocity = particle.velocity.map(|v| v * speed_factor);
-        let wanted = 0.5 * gases[gas].spin_dof() * count[gas] as f64 * thermal_energy;
+        let wanted = 0.5 * gases[gas].spin_energy_dof(temperature) * count[gas] as f64 * thermal_energy;
         particle.spin_energy *= ratio(wanted, spin[gas]);
     }
 }
@@ -130,13 +130,9 @@ fn make_energy_exact(particles: &mut [Particle], gases: &[Gas], moles_per_partic
 mod tests {
     use super::*;
 
-    fn gases() -> Vec<Gas> {
-        let gas = |name: &str, molar_mass, spin: f64| Gas {
-            name: name.into(),
-            molar_mass,
-            molar_cv: 0.5 * (3.0 + spin) * GAS_CONSTANT,
-        };
-        vec![gas("N2", 0.028, 2.0), gas("He", 0.004, 0.0)]
+    fn gases() -> Vec<Species> {
+        let gas = |molar_mass, spin: f64| Species::constant(molar_mass, 0.5 * (3.0 + spin) * GAS_CONSTANT);
+        vec![gas(0.028, 2.0), gas(0.004, 0.0)]
     }
 
     fn left(point: [f64; 3]) -> bool {
@@ -171,7 +167,7 @@ mod tests {
                 translational += 0.5 * mass * speed * speed;
             }
             spin += particle.spin_energy;
-            spin_wanted += 0.5 * gas.spin_dof() * kt;
+            spin_wanted += 0.5 * gas.spin_dof(temperature) * kt;
         }
         let n = particles.len() as f64;
         let scale = n * (kt * 0.028e-6).sqrt();

@@ -8,21 +8,26 @@ mod discharge;
 mod inflow;
 mod initial;
 pub mod kinetics;
+mod least_squares;
+mod modes;
 mod philox;
 mod random;
 mod riemann;
+mod species;
 pub mod thermo;
 pub mod vent;
 pub mod wall_heat;
 
 pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
-pub use curve::{FlowIntegral, flow_times_temperature, value_held, value_inside};
+pub use curve::{FlowIntegral, flow_times_of_temperature, flow_times_temperature, value_held, value_inside};
 pub use discharge::{Side, exchange};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
 pub use initial::{FillError, Filling, fill};
+pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};
 pub use riemann::{Fluid, Riemann};
+pub use species::{Mode, Modes, Species};
 
 /// One particle on the host, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

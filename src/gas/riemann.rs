@@ -223,9 +223,9 @@ mod tests {
                 [momentum, momentum * f.velocity + f.pressure, f.velocity * (energy(f) + f.pressure)]
             };
             let content = |f: Fluid| [f.density, f.density * f.velocity, energy(f)];
-            for k in 0..3 {
-                let expected = 8.0 * (content(left)[k] + content(right)[k]) + flux(left)[k] - flux(right)[k];
-                close(found[k], expected, 1e-4);
+            let (contents, fluxes) = ([content(left), content(right)], [flux(left), flux(right)]);
+            for (k, found) in found.into_iter().enumerate() {
+                close(found, 8.0 * (contents[0][k] + contents[1][k]) + fluxes[0][k] - fluxes[1][k], 1e-4);
             }
         }
     }

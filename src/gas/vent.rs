@@ -3,9 +3,10 @@
 //! Wang and Nefske: G = C23 p / sqrt(R T / M) sqrt(2 gamma/(gamma-1) (Q^(2/gamma) - Q^((gamma+1)/gamma))),
 //! Q = max(pe/p, critical). A fabric: G = rho v(p - pe). What leaves takes the enthalpy of the gas inside with it.
 
+use super::Species;
 use super::curve::value_held;
 use super::discharge::isentropic;
-use crate::scene::{GAS_CONSTANT, Gas, Vent, VentFlow};
+use crate::scene::{GAS_CONSTANT, Vent, VentFlow};
 
 /// Beyond this share of p / sqrt(R T / M) a flux can no longer be modelled by a probability in proportion to the
 /// normal speed without clipping it (specification, section 4).
@@ -26,17 +27,18 @@ pub struct LocalGas {
 
 impl LocalGas {
     /// With `moles` mol/m3 of each gas; `None` without any.
-    pub fn new(gases: &[Gas], moles: &[f64], temperature: f64) -> Option<LocalGas> {
+    pub fn new(gases: &[Species], moles: &[f64], temperature: f64) -> Option<LocalGas> {
         let total: f64 = moles.iter().sum();
         if !(total > 0.0 && temperature > 0.0) {
             return None;
         }
-        let mean = |of: &dyn Fn(&Gas) -> f64| gases.iter().zip(moles).map(|(gas, n)| n * of(gas)).sum::<f64>() / total;
+        let mean =
+            |of: &dyn Fn(&Species) -> f64| gases.iter().zip(moles).map(|(gas, n)| n * of(gas)).sum::<f64>() / total;
         Some(LocalGas {
             pressure: total * GAS_CONSTANT * temperature,
             temperature,
             molar_mass: mean(&|gas| gas.molar_mass),
-            gamma: 1.0 + GAS_CONSTANT / mean(&|gas| gas.molar_cv),
+            gamma: 1.0 + GAS_CONSTANT / mean(&|gas| gas.molar_cv(temperature)),
         })
     }
 
@@ -82,7 +84,7 @@ mod tests {
     use crate::scene::Curve;
 
     fn air() -> LocalGas {
-        let gases = [Gas { name: "air".into(), molar_mass: 0.029, molar_cv: 2.5 * GAS_CONSTANT }];
+        let gases = [Species::constant(0.029, 2.5 * GAS_CONSTANT)];
         LocalGas::new(&gases, &[2e5 / (GAS_CONSTANT * 400.0)], 400.0).unwrap()
     }
 

@@ -2,22 +2,23 @@
 //!
 //! Per gas c cbar/4 moles of concentration c hit a square metre in a second and bring (2 + zeta/2) R T each; a share
 //! alpha of them leaves with (2 + zeta/2) R T_w. So alpha = 1 is the coefficient
-//! h1 = sum c cbar R (2 + zeta/2) / 4, and any coefficient h is the share alpha = h / h1.
+//! h1 = sum c cbar R (2 + zeta/2) / 4, and any coefficient h is the share alpha = h / h1. (zeta is constant: the plan
+//! refuses other gases beside such walls.)
 
-use super::kinetics;
-use crate::scene::{GAS_CONSTANT, Gas, HeatTransfer, WallHeat};
+use super::{Species, kinetics};
+use crate::scene::{GAS_CONSTANT, HeatTransfer, WallHeat};
 
 /// h1, W/(m2 K), of gas with `moles` mol/m3 of each gas at `temperature`, K.
-pub fn kinetic_coefficient(gases: &[Gas], moles: &[f64], temperature: f64) -> f64 {
-    let of_gas = |(gas, moles): (&Gas, &f64)| {
+pub fn kinetic_coefficient(gases: &[Species], moles: &[f64], temperature: f64) -> f64 {
+    let of_gas = |(gas, moles): (&Species, &f64)| {
         let speed = kinetics::mean_speed(kinetics::thermal_square(temperature, gas.molar_mass));
-        0.25 * moles * speed * GAS_CONSTANT * (2.0 + 0.5 * gas.spin_dof())
+        0.25 * moles * speed * GAS_CONSTANT * (2.0 + 0.5 * gas.spin_energy_dof(temperature))
     };
     gases.iter().zip(moles).map(of_gas).sum()
 }
 
 /// Heat from the gas to the wall, W/m2.
-pub fn heat_flux(heat: &WallHeat, gases: &[Gas], moles: &[f64], temperature: f64) -> f64 {
+pub fn heat_flux(heat: &WallHeat, gases: &[Species], moles: &[f64], temperature: f64) -> f64 {
     let most = kinetic_coefficient(gases, moles, temperature);
     let coefficient = match heat.transfer {
         HeatTransfer::Accommodation(share) => share * most,
@@ -27,7 +28,7 @@ pub fn heat_flux(heat: &WallHeat, gases: &[Gas], moles: &[f64], temperature: f64
 }
 
 /// The share of the hits that leave with the wall's temperature; a coefficient may ask for more than 1.
-pub fn accommodation(heat: &WallHeat, gases: &[Gas], moles: &[f64], temperature: f64) -> f64 {
+pub fn accommodation(heat: &WallHeat, gases: &[Species], moles: &[f64], temperature: f64) -> f64 {
     match heat.transfer {
         HeatTransfer::Accommodation(share) => share,
         HeatTransfer::Coefficient(0.0) => 0.0,
@@ -39,8 +40,8 @@ pub fn accommodation(heat: &WallHeat, gases: &[Gas], moles: &[f64], temperature:
 mod tests {
     use super::*;
 
-    fn nitrogen() -> Vec<Gas> {
-        vec![Gas { name: "nitrogen".into(), molar_mass: 0.0280134, molar_cv: 2.5 * GAS_CONSTANT }]
+    fn nitrogen() -> Vec<Species> {
+        vec![Species::constant(0.0280134, 2.5 * GAS_CONSTANT)]
     }
 
     /// Nitrogen at 1 bar and 300 K: c = 40.09 mol/m3, cbar = 476.2 m/s, so h1 = 40.09 x 476.2 x 8.314 x 3 / 4

@@ -126,8 +126,8 @@ impl Audit {
         if self.particles_outside > 0 {
             failures.push(format!("{} particles are outside the vessel", grouped(self.particles_outside)));
         }
-        // A run without any gas has nothing to balance.
-        if entered > 0 {
+        // A run without any gas has nothing to balance. (A control volume has gas without particles.)
+        if entered > 0 || self.mass_start + self.mass_injected > 0.0 {
             for (what, error, limit) in
                 [("mass", self.mass_error(), limits.mass_error), ("energy", self.energy_error(), limits.energy_error)]
             {
@@ -228,6 +228,7 @@ impl Audit {
         let overflows = if self.overflows.is_empty() { "none".to_owned() } else { self.overflows.join(", ") };
         let (to_walls, momentum_error) = match (self.momentum_to_walls, self.momentum_error()) {
             (Some(received), Some(error)) => (vector(received), format!("{error:.2e}")),
+            _ if entered == 0 => ("none: there are no particles".to_owned(), "unknown".to_owned()),
             _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
         };
         let mut facts = vec![

@@ -1,61 +1,50 @@
 //! The gas of the whole run in moles and joules, before it is cut into particles.
 
 use super::{Measured, PlanError};
-use crate::gas::{FlowIntegral, flow_times_temperature, moles_at, thermo};
-use crate::scene::{GAS_CONSTANT, Scene};
+use crate::gas::{FlowIntegral, Species, flow_times_of_temperature, flow_times_temperature, moles_at, thermo};
+use crate::scene::{GAS_CONSTANT, Mixture, Orifice, Scene};
 
 pub struct Amounts {
     /// mol by chamber, then gas.
     pub initial: Vec<Vec<f64>>,
     /// mol by gas, from time 0 to the end.
     pub injected: Vec<f64>,
-    /// K, U / (n cv) of all initial gas, and of all gas at the end of a closed adiabatic run.
+    /// K, that of the energy U of all initial gas, and of all gas at the end of a closed adiabatic run.
     pub initial_temperature: f64,
     pub final_temperature: f64,
 }
 
 impl Amounts {
-    pub fn of(scene: &Scene, measured: &Measured) -> Result<Self, PlanError> {
+    pub fn of(scene: &Scene, species: &[Species], measured: &Measured) -> Result<Self, PlanError> {
         let (volumes, chambers) = (measured.chamber_volumes.len(), scene.chambers.len());
         if volumes != chambers {
             return Err(PlanError::Volumes { volumes, chambers });
         }
         let mut initial = Vec::with_capacity(chambers);
-        let mut energy = 0.0;
-        let mut capacity = 0.0;
+        let mut heat = Heat::new(species);
         for (chamber, &volume) in scene.chambers.iter().zip(&measured.chamber_volumes) {
             if !(volume > 0.0 && volume.is_finite()) {
                 return Err(PlanError::NoVolume { chamber: chamber.name.clone(), volume });
             }
             let moles = moles_at(chamber.pressure, volume, chamber.temperature);
-            let own_capacity = moles * thermo::molar_cv(&chamber.mixture, &scene.gases);
-            capacity += own_capacity;
-            energy += own_capacity * chamber.temperature;
+            heat.add(moles, &chamber.mixture, chamber.temperature);
             let mut by_gas = vec![0.0; scene.gases.len()];
             for &(gas, fraction) in &chamber.mixture.0 {
                 by_gas[gas] += moles * fraction;
             }
             initial.push(by_gas);
         }
-        let initial_temperature = if capacity > 0.0 { energy / capacity } else { 0.0 };
+        let initial_temperature = heat.temperature();
         let mut injected = vec![0.0; scene.gases.len()];
         for orifice in &scene.orifices {
-            let molar_mass = thermo::molar_mass(&orifice.mixture, &scene.gases);
+            let molar_mass = thermo::molar_mass(&orifice.mixture, species);
             let moles = FlowIntegral::new(&orifice.mass_flow, scene.end_time).total() / molar_mass;
             for &(gas, fraction) in &orifice.mixture.0 {
                 injected[gas] += moles * fraction;
             }
-            let cv = thermo::molar_cv(&orifice.mixture, &scene.gases);
-            capacity += moles * cv;
-            energy += (cv + GAS_CONSTANT) / molar_mass
-                * flow_times_temperature(&orifice.mass_flow, &orifice.temperature, scene.end_time);
+            heat.inject(moles, orifice, molar_mass, scene.end_time);
         }
-        let amounts = Self {
-            initial,
-            injected,
-            initial_temperature,
-            final_temperature: energy / capacity.max(f64::MIN_POSITIVE),
-        };
+        let amounts = Self { initial, injected, initial_temperature, final_temperature: heat.temperature() };
         if amounts.total() > 0.0 { Ok(amounts) } else { Err(PlanError::NoGas) }
     }
 
@@ -91,26 +80,83 @@ impl Amounts {
     }
 }
 
+/// Energy and heat capacity of gas that is put together, and so its temperature.
+struct Heat<'a> {
+    species: &'a [Species],
+    /// mol by gas.
+    moles: Vec<f64>,
+    /// J.
+    energy: f64,
+    /// sum n cv where no heat capacity depends on the temperature, J/K.
+    capacity: f64,
+}
+
+impl<'a> Heat<'a> {
+    fn new(species: &'a [Species]) -> Heat<'a> {
+        Heat { species, moles: vec![0.0; species.len()], energy: 0.0, capacity: 0.0 }
+    }
+
+    fn count(&mut self, moles: f64, mixture: &Mixture) {
+        for &(gas, fraction) in &mixture.0 {
+            self.moles[gas] += moles * fraction;
+        }
+        if thermo::is_constant(mixture, self.species) {
+            self.capacity += moles * thermo::molar_cv(mixture, self.species, 0.0);
+        }
+    }
+
+    fn add(&mut self, moles: f64, mixture: &Mixture, temperature: f64) {
+        self.count(moles, mixture);
+        self.energy += if thermo::is_constant(mixture, self.species) {
+            moles * thermo::molar_cv(mixture, self.species, temperature) * temperature
+        } else {
+            moles * mixture.0.iter().map(|&(gas, x)| self.species[gas].energy(x, temperature)).sum::<f64>()
+        };
+    }
+
+    /// The enthalpy of an orifice's whole flow.
+    fn inject(&mut self, moles: f64, orifice: &Orifice, molar_mass: f64, end_time: f64) {
+        self.count(moles, &orifice.mixture);
+        let (flow, temperature) = (&orifice.mass_flow, &orifice.temperature);
+        self.energy += if thermo::is_constant(&orifice.mixture, self.species) {
+            let cv = thermo::molar_cv(&orifice.mixture, self.species, 0.0);
+            (cv + GAS_CONSTANT) / molar_mass * flow_times_temperature(flow, temperature, end_time)
+        } else {
+            let enthalpy = |t: f64| thermo::molar_enthalpy(&orifice.mixture, self.species, t) / molar_mass;
+            flow_times_of_temperature(flow, temperature, end_time, enthalpy)
+        };
+    }
+
+    /// K; 0 without gas.
+    fn temperature(&self) -> f64 {
+        if self.species.iter().all(Species::is_constant) {
+            return self.energy / self.capacity.max(f64::MIN_POSITIVE);
+        }
+        thermo::temperature(&self.moles, self.species, self.energy)
+    }
+}
+
 /// The highest temperature the scene can reach, K, and why: a chamber's own, that of a wall, or that of gas which flows
 /// into a chamber (an orifice, a neighbour of higher pressure) and is stopped there, gamma T0 at most.
 pub fn highest_temperature(scene: &Scene) -> (f64, String) {
-    let gamma = |mixture: &crate::scene::Mixture| {
-        let gammas = mixture.0.iter().map(|&(gas, _)| 1.0 + GAS_CONSTANT / scene.gases[gas].molar_cv);
-        gammas.fold(1.0, f64::max)
+    // A heat capacity that grows with the temperature makes it less hot than gamma(T0) T0.
+    let gamma = |mixture: &Mixture, temperature: f64| {
+        let cv = |gas: usize| scene.gases[gas].heat.molar_cv(temperature).max(1.5 * GAS_CONSTANT);
+        mixture.0.iter().map(|&(gas, _)| 1.0 + GAS_CONSTANT / cv(gas)).fold(1.0, f64::max)
     };
     let lowest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(f64::INFINITY, f64::min);
     let mut candidates = Vec::new();
     for chamber in &scene.chambers {
         candidates.push((chamber.temperature, format!("chamber `{}`", chamber.name)));
         if chamber.pressure > 1.001 * lowest {
-            let filled = gamma(&chamber.mixture) * chamber.temperature;
+            let filled = gamma(&chamber.mixture, chamber.temperature) * chamber.temperature;
             candidates.push((filled, format!("gamma T of chamber `{}`, which flows into thinner gas", chamber.name)));
         }
     }
     for orifice in &scene.orifices {
         let hottest = orifice.temperature.points.iter().map(|point| point[1]).fold(0.0, f64::max);
         let why = format!("gamma T0 of orifice `{}` (filling reaches gamma T0)", orifice.name);
-        candidates.push((gamma(&orifice.mixture) * hottest, why));
+        candidates.push((gamma(&orifice.mixture, hottest) * hottest, why));
     }
     for wall in &scene.walls {
         if let Some(heat) = &wall.heat {

@@ -1,21 +1,23 @@
 //! The decisions in order: amounts, particles, diameter, rounds, step, grid.
 
 use super::amounts::{Amounts, highest_temperature};
+use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
+use super::heat::species;
 use super::population::{Population, openings, wanted};
 use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
-use crate::gas::kinetics;
+use crate::gas::{Species, kinetics};
 use crate::geometry::Grid;
 use crate::scene::{Method, Scene};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
-const LADDER_LEVELS: u32 = 12;
-const STEPS_PER_INTERVAL: u32 = 32;
-const TALLY_EVERY: u32 = 8;
+pub const LADDER_LEVELS: u32 = 12;
+pub const STEPS_PER_INTERVAL: u32 = 32;
+pub const TALLY_EVERY: u32 = 8;
 /// Particles in a mean block of the coarse grid, at least.
 const PER_BLOCK: f64 = 64.0;
 
@@ -26,10 +28,15 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     }
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
-    let amounts = Amounts::of(scene, measured)?;
+    let species = species(scene, &mut reasons)?;
+    vents::check(scene, &species, method)?;
+    let amounts = Amounts::of(scene, &species, measured)?;
+    if method == Method::ControlVolume {
+        return control_volume::plan(scene, measured, &species, &amounts, reasons);
+    }
     let wanted_occupancy = scene.model.occupancy.unwrap_or_else(|| default_occupancy(method));
     let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
-    let population = Population::count(scene, &amounts, wanted)?;
+    let population = Population::count(scene, &species, &amounts, wanted)?;
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
     let particles = initial_particles + injected_particles;
 
@@ -43,7 +50,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let states = mean_states(scene, measured, &amounts, [initial_particles, particles]);
     let number_density = states[1].number_density;
     let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
-    let (collision_number, gases) = gases(scene, &population, &mut reasons)?;
+    let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
 
     let grid = Grid::around(measured.bounds_min, measured.bounds_max, resolution.cell)?;
     // Each axis may fit a position while all cells together do not fit a number.
@@ -62,8 +69,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
     let mut warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
-    let vents = vents::planned(scene, measured);
-    warnings.extend(vents::warnings(scene, &vents, measured));
+    let vents = vents::planned(scene, &species, measured);
+    warnings.extend(vents::warnings(scene, &species, &vents, measured));
     Ok(Plan {
         method,
         particles,
@@ -119,16 +126,25 @@ fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, particles:
 }
 
 /// Z, raised where nothing was asked and a gas cannot relax that fast, and each gas's exchange.
-fn gases(scene: &Scene, population: &Population, reasons: &mut Vec<Reason>) -> Result<(f64, Vec<GasPlan>), PlanError> {
-    let least = scene.gases.iter().map(|gas| kinetics::least_collision_number(gas.spin_dof())).fold(0.0, f64::max);
+/// A heat capacity that depends on the temperature counts as it is at `temperature`, K: the exchange probability is
+/// constant.
+fn gases(
+    scene: &Scene,
+    species: &[Species],
+    temperature: f64,
+    population: &Population,
+    reasons: &mut Vec<Reason>,
+) -> Result<(f64, Vec<GasPlan>), PlanError> {
+    let least = |gas: &Species| kinetics::least_collision_number(gas.spin_dof(temperature));
+    let least = species.iter().map(least).fold(0.0, f64::max);
     let (number, why) = match scene.model.collision_number {
         Some(number) => (number, "asked for"),
         None if least > DEFAULT_COLLISION_NUMBER => (least, "the fastest spin exchange of the gas with the most spin"),
         None => (DEFAULT_COLLISION_NUMBER, "rotation relaxes in about five collisions"),
     };
     reasons.push(Reason { quantity: "collision number".into(), value: significant(number), why: why.into() });
-    let gases = scene.gases.iter().enumerate().map(|(index, gas)| {
-        let spin_dof = gas.spin_dof();
+    let gases = scene.gases.iter().zip(species).enumerate().map(|(index, (gas, species))| {
+        let spin_dof = species.spin_dof(temperature);
         let exchange_probability = kinetics::exchange_probability(spin_dof, number).ok_or_else(|| {
             let least = kinetics::least_collision_number(spin_dof);
             PlanError::CollisionNumber { gas: gas.name.clone(), found: number, least }
@@ -139,6 +155,7 @@ fn gases(scene: &Scene, population: &Population, reasons: &mut Vec<Reason>) -> R
             spin_dof,
             exchange_probability,
             particles: population.of_gas(index),
+            species: species.clone(),
         })
     });
     Ok((number, gases.collect::<Result<_, PlanError>>()?))

@@ -1,5 +1,6 @@
 //! Why a scene cannot be planned.
 
+use super::render::significant;
 use crate::geometry::GridError;
 
 /// A particle's id and its gas share one 32-bit word on the device: 28 bits of id, 4 of gas.
@@ -28,6 +29,34 @@ pub enum PlanError {
     #[error("{found} gases are more than the {limit} that a particle can tell apart")]
     #[diagnostic(help("merge gases of like molar mass and heat capacity"))]
     TooManyGases { found: usize, limit: usize },
+    #[error(
+        "gas `{gas}`: no gas can have this cp(T): between {} and {} K, the temperatures of the scene, it falls to that of a \
+         gas without internal energy or below (cv {} J/(mol K) at the end where it is less)",
+        significant(range[0]), significant(range[1]), significant(*least)
+    )]
+    #[diagnostic(help(
+        "cp must be above 5/2 R = 20.79 J/(mol K) there: check the coefficients and their units; outside the \
+         temperatures it was made for a polynomial may run anywhere"
+    ))]
+    HeatCapacityLow { gas: String, range: [f64; 2], least: f64 },
+    #[error(
+        "gas `{gas}`: between {} and {} K, the temperatures of the scene, the nearest heat capacity that a gas of \
+         particles can have is off by {residual:.2} %; {limit} % is allowed",
+        significant(range[0]), significant(range[1])
+    )]
+    #[diagnostic(help(
+        "the internal energy of particles must be that of a partition function: a cp(T) that falls with the temperature \
+         is none; give a constant `cp`, or coefficients fitted to the temperatures of the scene"
+    ))]
+    HeatCapacity { gas: String, range: [f64; 2], residual: f64, limit: f64 },
+    #[error("{what}: the method control-volume does not know what leaves through vents and walls yet")]
+    #[diagnostic(help(
+        "choose a method of particles in [model]; its history has a control volume with these losses beside it"
+    ))]
+    LossesOfControlVolume { what: String },
+    #[error("{what} together with gas `{gas}`, whose heat capacity depends on the temperature: that is not there yet")]
+    #[diagnostic(help("give the gas a constant `cp`, that of the mean temperature"))]
+    LossesOfCurves { what: String, gas: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

@@ -14,14 +14,17 @@
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;
+mod control_volume;
 mod decide;
 mod error;
+mod heat;
 mod population;
 mod render;
 mod resolution;
 mod vents;
 mod warnings;
 
+use crate::gas::Species;
 use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
@@ -61,7 +64,7 @@ pub struct MeasuredVent {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     pub method: Method,
-    /// Initial and injected together.
+    /// Initial and injected together; none in a control volume, as are diameter, rounds and step.
     pub particles: u64,
     pub initial_particles: u64,
     pub injected_particles: u64,
@@ -88,7 +91,7 @@ pub struct Plan {
     pub tally_every: u32,
     /// A block of the coarse grid is 2^this cells along each axis.
     pub block_cells_log2: u32,
-    /// K, the mean at the end of the run: U / (n cv).
+    /// K, the mean at the end of the run: that of the energy of all gas.
     pub temperature_reference: f64,
     /// K, the highest the scene can reach.
     pub temperature_max: f64,
@@ -121,12 +124,21 @@ pub struct GasPlan {
     pub name: String,
     /// kg/mol.
     pub molar_mass: f64,
-    /// zeta.
+    /// zeta; of a heat capacity that depends on the temperature, that at `temperature_reference`.
     pub spin_dof: f64,
     /// P of specification section 3.
     pub exchange_probability: f64,
     /// Initial and injected.
     pub particles: u64,
+    #[serde(rename = "partition_function", skip_serializing_if = "Species::is_constant")]
+    pub species: Species,
+}
+
+impl Plan {
+    /// The gases as they are modelled, by index.
+    pub fn species(&self) -> Vec<Species> {
+        self.gases.iter().map(|gas| gas.species.clone()).collect()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,7 +4,7 @@ use super::amounts::Amounts;
 use super::error::MOST_PARTICLES;
 use super::render::{grouped, significant};
 use super::{Measured, PlanError, Reason};
-use crate::gas::{Inflow, kinetics};
+use crate::gas::{Inflow, Species, kinetics};
 use crate::scene::{Method, Scene};
 
 /// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
@@ -84,7 +84,7 @@ pub struct Population {
 
 impl Population {
     /// Equal moles per particle for all; chamber counts by rounding, injected ones by the inflow itself.
-    pub fn count(scene: &Scene, amounts: &Amounts, wanted: u64) -> Result<Self, PlanError> {
+    pub fn count(scene: &Scene, species: &[Species], amounts: &Amounts, wanted: u64) -> Result<Self, PlanError> {
         let limit = MOST_PARTICLES;
         if wanted > limit {
             return Err(PlanError::TooManyParticles { particles: wanted, limit });
@@ -100,7 +100,7 @@ impl Population {
                 return Err(PlanError::EmptyChamber { chamber, moles, moles_per_particle, needed });
             }
         }
-        let inflow = Inflow::new(&scene.orifices, &scene.gases, moles_per_particle, scene.seed, 0, scene.end_time);
+        let inflow = Inflow::new(&scene.orifices, species, moles_per_particle, scene.seed, 0, scene.end_time);
         let population = Self { moles_per_particle, initial, injected: inflow.total_by_gas() };
         let particles = population.initial_total() + population.injected_total();
         if particles > limit { Err(PlanError::TooManyParticles { particles, limit }) } else { Ok(population) }

@@ -1,6 +1,7 @@
 //! The plan as text: the table of `corpuscle plan`, and TOML.
 
 use super::{Plan, Reason};
+use crate::scene::Method;
 use std::fmt::Write;
 
 impl Plan {
@@ -12,35 +13,23 @@ impl Plan {
             .map(|Reason { quantity, value, why }| [quantity, value, why].map(String::clone))
             .collect();
         let mut row = |quantity: &str, value: String, why: &str| rows.push([quantity.into(), value, why.into()]);
-        let split =
-            format!("{} initial, {} injected", grouped(self.initial_particles), grouped(self.injected_particles));
-        row("particles counted", grouped(self.particles), &split);
-        row("moles per particle", format!("{:.4e} mol", self.moles_per_particle), "the same for every gas");
-        if self.diameter > 0.0 {
-            let value = format!("{} mm", significant(1e3 * self.mean_free_path));
-            row("mean free path", value, &format!("at occupancy {}", significant(self.occupancy)));
+        if self.method != Method::ControlVolume {
+            self.render_particles(&mut row);
         }
-        let [x, y, z] = self.grid.cells;
-        row("grid", format!("{x} x {y} x {z}"), &format!("{} cells", grouped(self.grid.cell_count() as u64)));
-        let steps = grouped(self.estimated_steps as u64);
-        row(
-            "steps",
-            steps,
-            &format!("for {} ms; more while dense gas needs shorter ones", significant(1e3 * self.end_time)),
-        );
         let reference = format!("{} K", significant(self.temperature_reference));
         row("final temperature", reference, "mean of all gas, no heat lost");
         let mut text = table(&rows);
 
+        let counted = |count: u64| if self.method == Method::ControlVolume { String::new() } else { grouped(count) };
         let mut chambers = vec![["chamber".to_string(), "volume".into(), "particles".into()]];
         chambers.extend(self.chambers.iter().map(|chamber| {
-            let count = grouped(chamber.particles.iter().sum());
+            let count = counted(chamber.particles.iter().sum());
             [chamber.name.clone(), format!("{} L", significant(1e3 * chamber.volume)), count]
         }));
         let mut gases = vec![["gas".to_string(), "particles".into(), "spin dof, exchange probability".into()]];
         gases.extend(self.gases.iter().map(|gas| {
             let spin = format!("{}, {}", significant(gas.spin_dof), significant(gas.exchange_probability));
-            [gas.name.clone(), grouped(gas.particles), spin]
+            [gas.name.clone(), counted(gas.particles), spin]
         }));
         let mut openings = vec![["opening".to_string(), "area".into(), "Knudsen number".into()]];
         openings.extend(self.openings.iter().map(|opening| {
@@ -64,6 +53,25 @@ impl Plan {
             text.push('\n');
         }
         text
+    }
+
+    fn render_particles(&self, row: &mut dyn FnMut(&str, String, &str)) {
+        let split =
+            format!("{} initial, {} injected", grouped(self.initial_particles), grouped(self.injected_particles));
+        row("particles counted", grouped(self.particles), &split);
+        row("moles per particle", format!("{:.4e} mol", self.moles_per_particle), "the same for every gas");
+        if self.diameter > 0.0 {
+            let value = format!("{} mm", significant(1e3 * self.mean_free_path));
+            row("mean free path", value, &format!("at occupancy {}", significant(self.occupancy)));
+        }
+        let [x, y, z] = self.grid.cells;
+        row("grid", format!("{x} x {y} x {z}"), &format!("{} cells", grouped(self.grid.cell_count() as u64)));
+        let steps = grouped(self.estimated_steps as u64);
+        row(
+            "steps",
+            steps,
+            &format!("for {} ms; more while dense gas needs shorter ones", significant(1e3 * self.end_time)),
+        );
     }
 
     /// The whole plan, `plan.toml` of a run.

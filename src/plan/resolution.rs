@@ -30,7 +30,7 @@ const SURELY_FAST: f64 = 4.4;
 pub fn default_occupancy(method: Method) -> f64 {
     match method {
         Method::HardSphere => RIGID_OCCUPANCY,
-        Method::ClosestApproach | Method::Cell | Method::None => DEFAULT_OCCUPANCY,
+        Method::ClosestApproach | Method::Cell | Method::None | Method::ControlVolume => DEFAULT_OCCUPANCY,
     }
 }
 
@@ -86,7 +86,10 @@ impl Resolution {
         reasons: &mut Vec<Reason>,
     ) -> Result<Self, PlanError> {
         match method {
-            Method::None => Ok(Self::free_flight(request, states[1], extreme, end_time, reasons)),
+            // Control volumes have no particles, and need no resolution.
+            Method::None | Method::ControlVolume => {
+                Ok(Self::free_flight(request, states[1], extreme, end_time, reasons))
+            }
             Method::Cell => Ok(Self::within_cells(request, states, extreme, end_time, reasons)),
             Method::ClosestApproach | Method::HardSphere => {
                 Self::in_rounds(method, request, states, extreme, end_time, reasons)

@@ -3,7 +3,7 @@ use crate::gas::kinetics;
 use crate::scene::*;
 
 fn gas(name: &str, molar_mass: f64, cv: f64) -> Gas {
-    Gas { name: name.into(), molar_mass, molar_cv: cv * GAS_CONSTANT }
+    Gas { name: name.into(), molar_mass, heat: HeatCapacity::Constant(cv * GAS_CONSTANT) }
 }
 
 fn chamber(name: &str) -> Chamber {
@@ -280,7 +280,7 @@ fn what_cannot_be_planned_is_refused() {
 /// A gas with much spin cannot relax in five collisions: Z is raised, not P clipped.
 #[test]
 fn the_collision_number_is_raised_where_it_must() {
-    let plan = planned(|scene, _| scene.gases[1].molar_cv = 9.0 * GAS_CONSTANT).unwrap();
+    let plan = planned(|scene, _| scene.gases[1].heat = HeatCapacity::Constant(9.0 * GAS_CONSTANT)).unwrap();
     assert!(plan.collision_number > 5.0 && near(plan.gases[1].exchange_probability, 1.0, 1e-6));
     assert!(planned(|_, _| ()).unwrap().collision_number == 5.0);
 }
@@ -301,4 +301,49 @@ fn equal_scenes_give_equal_text() {
     let free = planned(|scene, _| scene.model.method = Some(Method::None)).unwrap();
     assert!(free.to_toml().unwrap().contains("mean_free_path = inf"));
     assert_ne!(free.render(), text);
+}
+
+/// A heat capacity that grows becomes modes, with a reason that says how well; one that falls is refused with the figure.
+#[test]
+fn curves_of_the_heat_capacity_are_fitted_or_refused() {
+    let with = |cp: [f64; 3]| planned(|scene, _| scene.gases[1].heat = HeatCapacity::Curve(cp));
+    let plan = with([23.0, 5.6e-2, -2.2e-5]).unwrap();
+    let species = &plan.gases[1].species;
+    let residual = species.modes().unwrap().residual;
+    assert!(residual < 0.01);
+    // The tank has 293 K, the inflow 700 K.
+    for temperature in [293.0, 500.0, 700.0, 850.0] {
+        let asked = 23.0 + temperature * (5.6e-2 - 2.2e-5 * temperature);
+        assert!(near(species.molar_cp(temperature), asked, 1.01 * residual + 1e-12));
+    }
+    let reason = plan.reasons.iter().find(|reason| reason.quantity == "cp(T) of nitrogen").unwrap();
+    assert!(reason.why.contains("from 234.4 to 918.5 K"), "{}", reason.why);
+    assert!(plan.to_toml().unwrap().contains("[gases.partition_function]"));
+    assert!(!planned(|_, _| ()).unwrap().to_toml().unwrap().contains("partition_function"));
+    // Energy is kept: that of all gas at the end is that of the initial gas and the enthalpy that came in.
+    assert!(plan.temperature_reference > 400.0 && plan.temperature_reference < 700.0);
+    let falls = with([45.0, -0.02, 0.0]).unwrap_err();
+    assert!(matches!(&falls, PlanError::HeatCapacity { gas, residual, .. } if gas == "nitrogen" && *residual > 1.0));
+    assert!(matches!(with([20.0, 1e-4, 0.0]).unwrap_err(), PlanError::HeatCapacityLow { .. }));
+}
+
+/// Losses to walls are not there yet of a control volume, nor of a gas whose heat capacity depends on the temperature.
+#[test]
+fn losses_that_are_not_there_yet_are_refused() {
+    let cold = |scene: &mut Scene| {
+        let heat = WallHeat { temperature: 293.0, transfer: HeatTransfer::Accommodation(1.0) };
+        let shape = Shape::Box { min: [0.0; 3], max: [0.4; 3], thickness: None, holes: vec![] };
+        scene.walls = vec![Wall { name: "tank".into(), shape, gas: GasSide::Inside, heat: Some(heat) }];
+    };
+    assert!(planned(|scene, _| cold(scene)).is_ok());
+    let uniform = planned(|scene, _| {
+        cold(scene);
+        scene.model.method = Some(Method::ControlVolume);
+    });
+    assert_eq!(uniform.unwrap_err(), PlanError::LossesOfControlVolume { what: "wall `tank`".into() });
+    let curved = planned(|scene, _| {
+        cold(scene);
+        scene.gases[1].heat = HeatCapacity::Curve([23.0, 5.6e-2, -2.2e-5]);
+    });
+    assert!(matches!(curved.unwrap_err(), PlanError::LossesOfCurves { gas, .. } if gas == "nitrogen"));
 }

@@ -2,11 +2,11 @@
 //! passing can give it (specification, section 4 "Modelled vent, porosity, leak").
 
 use super::render::significant;
-use super::{Measured, MeasuredVent, VentPlan};
-use crate::gas::moles_at;
+use super::{Measured, MeasuredVent, PlanError, VentPlan};
 use crate::gas::vent::{LocalGas, UNCLIPPED, flux};
 use crate::gas::wall_heat::accommodation;
-use crate::scene::{Scene, VentFlow};
+use crate::gas::{Species, moles_at};
+use crate::scene::{Method, Scene, VentFlow};
 
 /// The most that a probability of one lets out over p / sqrt(R T / M): n cbar m / 4.
 const KINETIC: f64 = 0.398_942_280_4;
@@ -22,15 +22,15 @@ fn concentrations(scene: &Scene, chamber: usize) -> Vec<f64> {
     moles
 }
 
-fn gas_of(scene: &Scene, chamber: usize) -> Option<LocalGas> {
-    LocalGas::new(&scene.gases, &concentrations(scene, chamber), scene.chambers[chamber].temperature)
+fn gas_of(scene: &Scene, species: &[Species], chamber: usize) -> Option<LocalGas> {
+    LocalGas::new(species, &concentrations(scene, chamber), scene.chambers[chamber].temperature)
 }
 
 /// The largest flux that the vent can ask of this gas, over its place, in units of p / sqrt(R T / M): into vacuum at the
 /// largest of its coefficients, or at the largest leak velocity.
-fn largest_share(scene: &Scene, index: usize, place: &MeasuredVent) -> f64 {
+fn largest_share(scene: &Scene, species: &[Species], index: usize, place: &MeasuredVent) -> f64 {
     let vent = &scene.vents[index];
-    let Some(gas) = gas_of(scene, place.chamber) else { return 0.0 };
+    let Some(gas) = gas_of(scene, species, place.chamber) else { return 0.0 };
     let (VentFlow::Discharge(curve) | VentFlow::DischargeByPressure(curve) | VentFlow::LeakVelocity(curve)) =
         &vent.flow;
     let largest = curve.points.iter().map(|point| point[1]).fold(0.0, f64::max);
@@ -41,24 +41,42 @@ fn largest_share(scene: &Scene, index: usize, place: &MeasuredVent) -> f64 {
     flux / gas.unit_flux() * vent.area.unwrap_or(place.area) / place.area
 }
 
-pub fn planned(scene: &Scene, measured: &Measured) -> Vec<VentPlan> {
+pub fn planned(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<VentPlan> {
     let places = scene.vents.iter().zip(&measured.vents).enumerate();
     let plan = |(index, (vent, place)): (usize, (&crate::scene::Vent, &MeasuredVent))| {
         let area = vent.area.unwrap_or(place.area);
-        let initial = gas_of(scene, place.chamber).map_or(0.0, |gas| area * flux(vent, &gas, 0.0));
+        let initial = gas_of(scene, species, place.chamber).map_or(0.0, |gas| area * flux(vent, &gas, 0.0));
         VentPlan {
             name: vent.name.clone(),
             chamber: place.chamber,
             area,
             place: place.area,
             initial_mass_flow: if vent.opening_pressure > 0.0 { 0.0 } else { initial },
-            largest_flux: largest_share(scene, index, place),
+            largest_flux: largest_share(scene, species, index, place),
         }
     };
     places.map(plan).collect()
 }
 
-pub fn warnings(scene: &Scene, vents: &[VentPlan], measured: &Measured) -> Vec<String> {
+/// What is not there yet.
+///
+/// # Errors
+/// If there are vents or walls that keep a temperature, and the scene is a control volume or has a gas whose heat capacity
+/// depends on the temperature.
+pub fn check(scene: &Scene, species: &[Species], method: Method) -> Result<(), PlanError> {
+    let wall = scene.walls.iter().find(|wall| wall.heat.is_some()).map(|wall| format!("wall `{}`", wall.name));
+    let vent = scene.vents.first().map(|vent| format!("vent `{}`", vent.name));
+    let Some(what) = vent.or(wall) else { return Ok(()) };
+    if method == Method::ControlVolume {
+        return Err(PlanError::LossesOfControlVolume { what });
+    }
+    match species.iter().position(|gas| !gas.is_constant()) {
+        Some(index) => Err(PlanError::LossesOfCurves { what, gas: scene.gases[index].name.clone() }),
+        None => Ok(()),
+    }
+}
+
+pub fn warnings(scene: &Scene, species: &[Species], vents: &[VentPlan], measured: &Measured) -> Vec<String> {
     let mut warnings = Vec::new();
     for vent in vents {
         let what =
@@ -78,7 +96,7 @@ pub fn warnings(scene: &Scene, vents: &[VentPlan], measured: &Measured) -> Vec<S
     for &(wall, chamber) in &measured.heated {
         let Some(heat) = &scene.walls[wall].heat else { continue };
         let temperature = scene.chambers[chamber].temperature;
-        let share = accommodation(heat, &scene.gases, &concentrations(scene, chamber), temperature);
+        let share = accommodation(heat, species, &concentrations(scene, chamber), temperature);
         if share > 1.0 {
             warnings.push(format!(
                 "wall `{}`: its heat-transfer coefficient is {} times what all hits can carry at the start in chamber `{}`",

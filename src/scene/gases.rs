@@ -1,13 +1,14 @@
 //! Gases and their mixtures.
 //!
-//! cv = cp - R = R / (gamma - 1); the least is 3/2 R, of a gas without internal energy.
+//! cv = cp - R = R / (gamma - 1); the least is 3/2 R, of a gas without internal energy. A polynomial cp(T) is
+//! held against that by the plan, which knows the scene's temperatures.
 
 use super::errors::Problem;
 use super::names::Names;
-use super::numbers::{bounded, described, positive, show};
+use super::numbers::{bounded, described, number, positive, show};
 use super::raw::RawGas;
 use super::raw_values::{At, NumberOr, RawMixture};
-use super::types::{GAS_CONSTANT, Gas, Mixture, UnitSystem};
+use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Mixture, UnitSystem};
 use super::units::Quantity;
 
 /// Gas indices are packed into few bits on the device.
@@ -23,7 +24,30 @@ const FRACTION_TOLERANCE: f64 = 1e-9;
 pub(super) fn gas(raw: &At<RawGas>, units: UnitSystem) -> Result<Gas, Problem> {
     let raw_gas = &raw.value;
     let molar_mass = positive(&raw_gas.molar_mass, Quantity::MolarMass, units)?;
-    Ok(Gas { name: raw_gas.name.value.clone(), molar_mass, molar_cv: molar_cv(raw, units)? })
+    let heat = match curve(raw_gas, units)? {
+        Some(curve) => HeatCapacity::Curve(curve),
+        None => HeatCapacity::Constant(molar_cv(raw, units)?),
+    };
+    Ok(Gas { name: raw_gas.name.value.clone(), molar_mass, heat })
+}
+
+/// The coefficients of a `cp` that depends on temperature, SI.
+fn curve(raw: &RawGas, units: UnitSystem) -> Result<Option<[f64; 3]>, Problem> {
+    let (Some(cp), None, None) = (&raw.cp, &raw.cv, &raw.gamma) else { return Ok(None) };
+    let NumberOr::Array(given) = &cp.value else { return Ok(None) };
+    if given.is_empty() || given.len() > 3 {
+        return Err(Problem::value(
+            &cp.span,
+            format!("an array of {} coefficients", given.len()),
+            "one number, or up to three coefficients [a, b, c] of cp = a + b T + c T^2",
+        ));
+    }
+    let mut coefficients = [0.0; 3];
+    for (own, given) in coefficients.iter_mut().zip(given) {
+        *own = number(given, Quantity::MolarHeat, units)?;
+    }
+    let constant = coefficients[1..] == [0.0; 2];
+    Ok((!constant).then_some(coefficients))
 }
 
 /// J/(mol K), from whichever of the three keys is given.
@@ -32,7 +56,7 @@ fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
     let (cv, span, found) = match (&raw.value.cp, &raw.value.cv, &raw.value.gamma) {
         (None, None, None) => return Err(Problem::value(&raw.span, "none of `cp`, `cv`, `gamma`", KEYS)),
         (Some(cp), None, None) => {
-            let at = At { value: single_heat_capacity(cp)?, span: cp.span.clone() };
+            let at = At { value: constant_of(&cp.value), span: cp.span.clone() };
             (positive(&at, Quantity::MolarHeat, units)? - GAS_CONSTANT, &cp.span, at.value)
         }
         (None, Some(cv), None) => (positive(cv, Quantity::MolarHeat, units)?, &cv.span, cv.value),
@@ -72,22 +96,17 @@ fn least_heat_capacity(name: &str, si: f64, units: UnitSystem) -> String {
     described(&format!("at least {name} = {least:.4}"), Quantity::MolarHeat, units)
 }
 
-fn single_heat_capacity(cp: &At<NumberOr<f64>>) -> Result<f64, Problem> {
-    match &cp.value {
-        NumberOr::Number(value) => Ok(*value),
-        NumberOr::Array(coefficients) => Err(Problem::value(
-            &cp.span,
-            format!("an array of {} coefficients", coefficients.len()),
-            "one number: heat capacities that depend on temperature are not supported yet",
-        )
-        .hint("give the heat capacity at a typical temperature of the run")),
+/// The number, or the first coefficient: those of higher powers are zero here.
+fn constant_of(cp: &NumberOr<f64>) -> f64 {
+    match cp {
+        NumberOr::Number(value) => *value,
+        NumberOr::Array(coefficients) => coefficients.first().map_or(0.0, |first| first.value),
     }
 }
 
 /// Least rotational collision number with which the exchange probability of specification section 3
 /// exists: (1 + zeta/4) / (1 - a/2), a = zeta / (zeta + 4).
-pub(super) fn least_collision_number(gas: &Gas) -> f64 {
-    let zeta = gas.spin_dof();
+pub(super) fn least_collision_number(zeta: f64) -> f64 {
     (1.0 + zeta / 4.0) / (1.0 - 0.5 * zeta / (zeta + 4.0))
 }
 

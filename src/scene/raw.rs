@@ -78,8 +78,8 @@ pub struct RawGas {
     pub name: At<String>,
     /// Mass per mole (SI: kg/mol).
     pub molar_mass: At<f64>,
-    /// Molar heat capacity at constant pressure (SI: J/(mol K)), at least 5/2 R.
-    #[schemars(with = "Option<f64>")]
+    /// Molar heat capacity at constant pressure (SI: J/(mol K)), at least 5/2 R: a number, or the coefficients
+    /// [a, b, c] of a + b T + c T^2, T in K.
     pub cp: Option<At<NumberOr<f64>>>,
     /// Molar heat capacity at constant volume (SI: J/(mol K)), at least 3/2 R.
     pub cv: Option<At<f64>>,

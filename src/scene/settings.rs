@@ -5,7 +5,7 @@ use super::gases::least_collision_number;
 use super::numbers::{bounded, positive, show, small_count};
 use super::raw::{RawGas, RawModel, RawOutput};
 use super::raw_values::At;
-use super::types::{Gas, Method, ModelRequest, OutputRequest, UnitSystem};
+use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, UnitSystem};
 use super::units::Quantity;
 
 /// Particle ids share a word with flags.
@@ -52,17 +52,19 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
 /// Z must be large enough for every gas that has internal energy (specification, section 3).
 pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<RawGas>]) -> Result<(), Problem> {
     for (gas, raw_gas) in gases.iter().zip(raw_gases) {
-        let least = least_collision_number(gas);
-        if gas.spin_dof() == 0.0 {
+        // That of a curve follows from the temperatures of the scene: the plan sees to it.
+        let HeatCapacity::Constant(cv) = gas.heat else { continue };
+        let zeta = 2.0 * cv / GAS_CONSTANT - 3.0;
+        if zeta <= 0.0 {
             continue;
         }
-        let allowed =
-            format!("at least {least:.4} for the {:.3} internal degrees of freedom of {:?}", gas.spin_dof(), gas.name);
+        let least = least_collision_number(zeta);
+        let allowed = format!("at least {least:.4} for the {zeta:.3} internal degrees of freedom of {:?}", gas.name);
         match &raw.collision_number {
             Some(z) if z.value < least => {
                 return Err(Problem::value(&z.span, show(z.value), allowed));
             }
-            None if COLLISION_NUMBER < least && raw.method != Some(Method::None) => {
+            None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
                 return Err(Problem::value(&raw_gas.span, found, allowed).hint("give `collision_number` in `[model]`"));
             }

@@ -73,7 +73,8 @@ fn the_box_gets_a_quarter_of_a_million_wall_hits() {
     let speed = (8.0 * GAS_CONSTANT * scene.chambers[0].temperature / (std::f64::consts::PI * gas.molar_mass)).sqrt();
     let hits = density * speed * 6.0 * edge * edge / 4.0 * scene.end_time;
     assert!((hits / 2.5e5 - 1.0).abs() < 0.02, "{hits}");
-    assert!((gas.spin_dof() - 2.0).abs() < 1e-12);
+    let HeatCapacity::Constant(cv) = gas.heat else { panic!() };
+    assert!((cv / GAS_CONSTANT - 2.5).abs() < 1e-12);
 }
 
 #[test]
@@ -322,7 +323,7 @@ fn what_is_left_out_gets_its_default() {
     assert_eq!(scene.output, OutputRequest { rows: 200, snapshots: 10 });
     assert_eq!(scene.model, ModelRequest::default());
     // A rounded 5/3 is a gas without internal energy.
-    assert_eq!(scene.gases[0].spin_dof(), 0.0);
+    assert_eq!(scene.gases[0].heat, HeatCapacity::Constant(1.5 * GAS_CONSTANT));
     assert!(matches!(scene.walls[0].shape, Shape::Sphere { subdivisions: 3, .. }));
 }
 

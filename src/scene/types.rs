@@ -45,19 +45,25 @@ pub struct Gas {
     pub name: String,
     /// kg/mol.
     pub molar_mass: f64,
-    /// Molar heat capacity at constant volume, J/(mol K), at least 3/2 R.
-    pub molar_cv: f64,
+    pub heat: HeatCapacity,
 }
 
-impl Gas {
-    /// Internal degrees of freedom zeta = 2 cv/R - 3.
-    pub fn spin_dof(&self) -> f64 {
-        (2.0 * self.molar_cv / GAS_CONSTANT - 3.0).max(0.0)
-    }
+/// Molar heat capacity of a gas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeatCapacity {
+    /// At constant volume, J/(mol K), at least 3/2 R.
+    Constant(f64),
+    /// At constant pressure, cp = a + b T + c T^2: a in J/(mol K), b in J/(mol K2), c in J/(mol K3).
+    Curve([f64; 3]),
+}
 
-    /// Molar heat capacity at constant pressure, J/(mol K).
-    pub fn molar_cp(&self) -> f64 {
-        self.molar_cv + GAS_CONSTANT
+impl HeatCapacity {
+    /// At constant volume at a temperature (K), J/(mol K): as asked for, whether or not a gas can have it.
+    pub fn molar_cv(&self, temperature: f64) -> f64 {
+        match self {
+            HeatCapacity::Constant(cv) => *cv,
+            HeatCapacity::Curve([a, b, c]) => a + temperature * (b + temperature * c) - GAS_CONSTANT,
+        }
     }
 }
 
@@ -294,6 +300,8 @@ pub enum Method {
     Cell,
     /// Free flight without collisions.
     None,
+    /// No particles: each chamber is uniform, gas flows between them through their openings.
+    ControlVolume,
 }
 
 impl Method {
@@ -304,6 +312,7 @@ impl Method {
             Method::HardSphere => "hard-sphere",
             Method::Cell => "cell",
             Method::None => "none",
+            Method::ControlVolume => "control-volume",
         }
     }
 
@@ -311,7 +320,7 @@ impl Method {
     pub fn has_rounds(self) -> bool {
         match self {
             Method::ClosestApproach | Method::HardSphere => true,
-            Method::Cell | Method::None => false,
+            Method::Cell | Method::None | Method::ControlVolume => false,
         }
     }
 }

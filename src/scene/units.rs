@@ -19,7 +19,7 @@ pub(super) enum Quantity {
     Pressure,
     MassFlow,
     MolarMass,
-    /// Heat capacity per mole.
+    /// Heat capacity per mole; of a polynomial each coefficient, since all systems have K.
     MolarHeat,
     /// Heat per area, time and temperature.
     HeatTransfer,

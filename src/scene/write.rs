@@ -16,7 +16,10 @@ pub fn to_toml(scene: &Scene) -> String {
         out.header("[[gas]]");
         out.text("name", &gas.name);
         out.number("molar_mass", gas.molar_mass);
-        out.number("cv", gas.molar_cv);
+        match &gas.heat {
+            HeatCapacity::Constant(cv) => out.number("cv", *cv),
+            HeatCapacity::Curve(cp) => out.numbers("cp", cp),
+        }
     }
     for wall in &scene.walls {
         write_wall(&mut out, wall);

@@ -8,6 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer};
@@ -62,6 +63,7 @@ pub struct Wanted {
 
 pub struct Conditions<'a> {
     model: &'a Model,
+    species: Vec<Species>,
     scales: Scales,
     state: ConditionsState,
 }
@@ -71,6 +73,7 @@ impl<'a> Conditions<'a> {
         let most_asked = vec![0.0; model.coats.coats.len()];
         Conditions {
             model,
+            species: model.plan.species(),
             scales: Scales::new(&model.plan),
             state: ConditionsState { most_asked, ..ConditionsState::default() },
         }
@@ -173,7 +176,7 @@ impl<'a> Conditions<'a> {
 
     fn local(&self, seen: &Seen, chamber: usize) -> Option<LocalGas> {
         let gas = seen.chambers.get(chamber)?;
-        LocalGas::new(&self.model.scene.gases, &gas.moles, gas.temperature)
+        LocalGas::new(&self.species, &gas.moles, gas.temperature)
     }
 
     /// Mass that has left through a vent, kg.
@@ -204,7 +207,7 @@ impl<'a> Conditions<'a> {
             if let Some(heat) = &model.scene.walls[coat.wall].heat {
                 thermal = GAS_CONSTANT * heat.temperature / heaviest;
                 share = match self.state.current.chambers.get(coat.chamber) {
-                    Some(gas) => accommodation(heat, &model.scene.gases, &gas.moles, gas.temperature),
+                    Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
                     None => 0.0,
                 };
                 // In an empty chamber any coefficient is too large, and nothing hits the wall.

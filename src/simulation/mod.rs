@@ -25,6 +25,7 @@ mod schedule;
 mod setup;
 mod step;
 mod tuning;
+mod uniform;
 
 pub use crate::subdomain::Ghosts;
 pub use audit::{AccountState, audit_limits};
@@ -46,6 +47,7 @@ pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;
 pub use tuning::HaloOptions;
+pub use uniform::run_uniform;
 
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
@@ -76,6 +78,12 @@ pub enum SimulationError {
     Message { rank: usize, found: String, expected: String },
     #[error(transparent)]
     Resume(#[from] RunStateError),
+    #[error("{what}, ({:.4}, {:.4}, {:.4}) m, is in no chamber: a control volume knows nothing there", point[0], point[1], point[2])]
+    #[diagnostic(help("move it into the gas, or leave it out"))]
+    NoChamber { what: String, point: [f64; 3] },
+    #[error("the method `control-volume` has no particles to share out or to send to a device")]
+    #[diagnostic(help("`corpuscle run` does the run; for particles ask for another `method` in [model]"))]
+    NoParticles,
     #[error("at {time:.6} s: {source}")]
     Ladder { time: f64, source: LadderError },
     #[error("at {time:.6} s: {what}")]

@@ -1,13 +1,18 @@
-//! The control-volume reference of a run: the same chambers, openings and curves without space.
+//! The control volume of a run: the same chambers, openings and curves without space. The reference of runs of
+//! particles, and the method `control-volume` itself.
 
-use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State};
-use crate::plan::Plan;
+use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
+use crate::plan::{OpeningPlan, Plan};
 use crate::scene::{Method, Opening, Scene};
 
 use super::model::{Model, chamber_of};
 
 /// The reference states of the chambers at `times` (s, ascending); outer index time.
 pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
+    volume(model).solve(&initial(&model.scene, &model.plan), times)
+}
+
+fn volume(model: &Model) -> ControlVolume {
     let Model { scene, plan, .. } = model;
     let sources = scene.orifices.iter().filter_map(|orifice| {
         // Just off the wall that an orifice may lie on.
@@ -16,17 +21,19 @@ pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
         let chamber = chamber_of(scene, &model.vessel, point)?;
         Some(Source { chamber, orifice: orifice.clone() })
     });
-    let volume = ControlVolume {
-        gases: scene.gases.clone(),
+    ControlVolume {
+        gases: plan.species(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).collect(),
         sources: sources.collect(),
         openings: plan.openings.iter().map(opening).collect(),
         walls: walls(model),
         vents: vents(model),
-        collisions: (plan.method != Method::None)
-            .then_some(Collisions { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle }),
-    };
-    volume.solve(&initial(scene, plan), times)
+        collisions: match plan.method {
+            Method::None => Collisions::None,
+            Method::ControlVolume => Collisions::Continuum,
+            _ => Collisions::Particles { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle },
+        },
+    }
 }
 
 fn walls(model: &Model) -> Vec<HeatedWall> {
@@ -48,20 +55,27 @@ fn vents(model: &Model) -> Vec<OpenVent> {
     open.collect()
 }
 
-fn opening(planned: &crate::plan::OpeningPlan) -> Opening {
+fn opening(planned: &OpeningPlan) -> Opening {
     Opening { name: planned.name.clone(), between: planned.between, area: planned.area, length: planned.length }
 }
 
-/// What the chambers hold at the start: the particles that are there, so that the rounding of their number
-/// is not taken for an error of the method.
-fn initial(scene: &Scene, plan: &Plan) -> Vec<Reservoir> {
-    scene
-        .chambers
-        .iter()
-        .zip(&plan.chambers)
-        .map(|(asked, planned)| Reservoir {
-            moles: planned.particles.iter().map(|&n| n as f64 * plan.moles_per_particle).collect(),
-            temperature: asked.temperature,
+/// What the chambers hold at the start. Of a run of particles those that are there, so that the rounding of their
+/// number is not taken for an error of the method.
+pub(super) fn initial(scene: &Scene, plan: &Plan) -> Vec<Reservoir> {
+    let chambers = scene.chambers.iter().zip(&plan.chambers);
+    chambers
+        .map(|(asked, planned)| {
+            let moles = if plan.method == Method::ControlVolume {
+                let all = moles_at(asked.pressure, planned.volume, asked.temperature);
+                let mut by_gas = vec![0.0; plan.gases.len()];
+                for &(gas, fraction) in &asked.mixture.0 {
+                    by_gas[gas] += all * fraction;
+                }
+                by_gas
+            } else {
+                planned.particles.iter().map(|&n| n as f64 * plan.moles_per_particle).collect()
+            };
+            Reservoir { moles, temperature: asked.temperature }
         })
         .collect()
 }

@@ -144,7 +144,7 @@ impl<'a> Simulation<'a> {
         let first_id = plan.initial_particles as u32;
         let scene = &model.scene;
         let inflow =
-            Inflow::new(&scene.orifices, &scene.gases, plan.moles_per_particle, plan.seed, first_id, plan.end_time);
+            Inflow::new(&scene.orifices, &plan.species(), plan.moles_per_particle, plan.seed, first_id, plan.end_time);
         Ok(Simulation {
             subdomain,
             exchange: match ranks {

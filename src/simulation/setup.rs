@@ -58,6 +58,9 @@ impl Setup {
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
+        if plan.method == Method::ControlVolume {
+            return Err(SimulationError::NoParticles);
+        }
         let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {
@@ -183,7 +186,7 @@ pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationEr
         })
         .collect();
     let is_gas = |point| vessel.is_gas(point);
-    let particles = fill(&fillings, &scene.gases, &is_gas, plan.moles_per_particle, plan.seed)?;
+    let particles = fill(&fillings, &plan.species(), &is_gas, plan.moles_per_particle, plan.seed)?;
     let scales = Scales::new(plan);
     let on_device = particles.iter().map(|particle| GpuParticle::from_host(particle, &plan.grid, &scales));
     Ok(on_device.collect::<Result<_, _>>()?)

@@ -28,6 +28,7 @@ pub const FIRST_LIST: u64 = 16;
 /// What all subdomains of a device share: the gases, the walls and the zones.
 pub struct DomainBuffers {
     pub gases: wgpu::Buffer,
+    pub modes: wgpu::Buffer,
     pub wall_start: wgpu::Buffer,
     pub wall_list: wgpu::Buffer,
     pub triangles: wgpu::Buffer,
@@ -45,13 +46,17 @@ impl DomainBuffers {
         cells: &CellTable,
         zones: &[GpuZone],
         gases: &[GpuGas],
+        modes: &[[f32; 4]],
     ) -> Result<DomainBuffers, GpuError> {
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(gases);
         let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
         device.write(&gas_buffer, 0, &table);
+        let mode_buffer = device.uniform("modes", size_of_val(modes) as u64)?;
+        device.write(&mode_buffer, 0, modes);
         Ok(DomainBuffers {
             gases: gas_buffer,
+            modes: mode_buffer,
             wall_start: device.storage_of("wall_start", &walls.start)?,
             wall_list: device.storage_of("wall_list", &walls.list)?,
             triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
@@ -317,6 +322,7 @@ impl<'a> Buffers<'a> {
             ("weigh", "sums") => &exchange.histogram,
             (_, "step") => &fixed.step,
             (_, "gases") => &domain.gases,
+            (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
             (_, "cell_count") => &cell.cell_count,
             (_, "chunk_sums") => &cell.chunk_sums,

@@ -2,7 +2,7 @@
 //! once, here, from the plan.
 
 use crate::plan::Plan;
-use crate::scene::Method;
+use crate::scene::{GAS_CONSTANT, Method};
 
 use super::buffers::{CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
@@ -25,6 +25,8 @@ pub struct Features {
     /// Walls part the gas of some cell.
     pub parted: bool,
     pub spin: bool,
+    /// A heat capacity depends on the temperature.
+    pub curves: bool,
     pub orifices: bool,
     pub surfaces: bool,
     /// Walls that exchange heat with the gas, or let it out.
@@ -60,7 +62,8 @@ impl Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
             parted,
-            spin: plan.gases.iter().any(|gas| gas.spin_dof > 0.0 && gas.particles > 0),
+            spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
+            curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
             orifices: plan.injected_particles > 0,
             surfaces: patches.surfaces > 0,
             coats: patches.coats > 0,
@@ -105,6 +108,12 @@ pub fn constants(
         ("COLLISIONS", flag(features.collisions)),
         ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
+        ("CURVES", flag(features.curves)),
+        ("MODES", most_modes(plan) as f64),
+        (
+            "INVERSE_THERMAL",
+            scales.reference_mass / (plan.moles_per_particle * GAS_CONSTANT * plan.temperature_reference),
+        ),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),
         ("COATS", flag(features.coats)),
@@ -124,6 +133,12 @@ pub fn constants(
         ("LEVELS", f64::from(plan.ladder_levels)),
         ("BLOCK_ENERGY_SCALE", scales.block_energy),
     ]
+}
+
+/// Of a gas, at least one.
+fn most_modes(plan: &Plan) -> usize {
+    let modes = plan.gases.iter().map(|gas| gas.species.modes().map_or(1, |modes| modes.modes.len()));
+    modes.max().unwrap_or(1)
 }
 
 /// Coarse blocks per axis.

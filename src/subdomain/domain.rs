@@ -9,7 +9,7 @@ use super::constants::{Features, Patches, block_counts, constants};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
-use super::state::gas_table;
+use super::state::{gas_table, mode_table};
 use super::walls::Walls;
 
 /// What a domain is made from.
@@ -61,7 +61,14 @@ impl Domain {
                 features,
                 &constants(plan, features, input.patches, input.walls, &Scales::new(plan)),
             )?,
-            buffers: DomainBuffers::new(device, input.walls, input.cells, input.zones, &gas_table(plan))?,
+            buffers: DomainBuffers::new(
+                device,
+                input.walls,
+                input.cells,
+                input.zones,
+                &gas_table(plan),
+                &mode_table(plan),
+            )?,
             words,
             patches: input.patches,
             vent_entries: input.vent_entries,

@@ -1,6 +1,6 @@
 //! Particles, gases and regions between the host's SI and the device's units.
 
-use crate::gas::Particle;
+use crate::gas::{MOST_MODES, Particle};
 use crate::geometry::Grid;
 use crate::plan::Plan;
 use crate::scene::Region;
@@ -62,15 +62,39 @@ pub fn gas_table(plan: &Plan) -> Vec<GpuGas> {
         .iter()
         .map(|gas| {
             let beta = 0.5 * gas.spin_dof;
-            let has_spin = beta > 0.0;
+            let has_spin = gas.species.has_spin();
             GpuGas {
                 mass: (gas.molar_mass / heaviest) as f32,
                 exchange: if has_spin { gas.exchange_probability as f32 } else { 0.0 },
-                inverse_beta: if has_spin { (1.0 / beta) as f32 } else { 0.0 },
+                inverse_beta: if has_spin { inverse(beta) } else { 0.0 },
                 inverse_beta1: (1.0 / (beta + 1.0)) as f32,
             }
         })
         .collect()
+}
+
+/// 1/beta; finite for a mode without internal energy, whose share it still makes zero.
+fn inverse(beta: f64) -> f32 {
+    (1.0 / beta.max(1e-9)) as f32
+}
+
+/// The device's table of modes (`shaders/shared/modes.wgsl`), [`MOST_MODES`] for each of 16 gases.
+pub fn mode_table(plan: &Plan) -> Vec<[f32; 4]> {
+    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 16 * MOST_MODES];
+    for (gas, rows) in plan.gases.iter().zip(table.chunks_exact_mut(MOST_MODES)) {
+        let Some(modes) = gas.species.modes() else {
+            let beta = 0.5 * gas.spin_dof;
+            rows[0] = [0.0, 0.0, inverse(beta), (1.0 / (beta + 1.0)) as f32];
+            continue;
+        };
+        let ln_warmer = libm::log(plan.temperature_reference / modes.scale);
+        for (row, mode) in rows.iter_mut().zip(&modes.modes) {
+            let beta = modes.nu0 + mode.power;
+            let ln_weight = mode.ln_weight + mode.power * ln_warmer - libm::lgamma(beta + 2.0);
+            *row = [ln_weight as f32, mode.power as f32, inverse(beta), (1.0 / (beta + 1.0)) as f32];
+        }
+    }
+    table
 }
 
 /// A region as `shaders/tally.wgsl` tests it; `None` is everywhere.

@@ -334,3 +334,44 @@ fn several_ranks_leave_their_records_besides() {
     assert_eq!((timing["steps"].as_u64(), timing["ranks"].as_array().unwrap().len()), (Some(64), 2));
     assert!(timing["stepping_seconds"].as_f64().unwrap() > 0.0);
 }
+
+/// The method `control-volume` runs on no device (the one asked for here is none), by the same columns; resumed, the run
+/// has ended; there are no particles to share out.
+#[test]
+fn a_control_volume_leaves_a_history_without_a_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_with(&folder, "particles = 8000", "method = \"control-volume\"");
+    let (scene, out) = (scene.to_str().unwrap(), folder.path().join("out"));
+    let (code, text, err) = outcome(&["run", scene, "--gpu", "no such", "--out", out.to_str().unwrap()]);
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(text.lines().last(), out.to_str());
+    assert!(text.contains("energy, J"), "{text}");
+    let files = [
+        ".corpuscle-run",
+        "audit.txt",
+        "environment.json",
+        "history.csv",
+        "plan.toml",
+        "pressure.svg",
+        "scene.toml",
+        "timing.json",
+    ];
+    assert_eq!(names_below(&out), files);
+    let history = fs::read_to_string(out.join("history.csv")).unwrap();
+    assert_eq!(history.lines().next(), Some(HEADER));
+    let rows: Vec<Vec<f64>> =
+        history.lines().skip(1).map(|line| line.split(',').map(|value| value.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 44);
+    for row in &rows {
+        assert!((row[4] / 101_325.0 - 1.0).abs() < 1e-9 && (row[4] / row[5] - 1.0).abs() < 1e-9, "{row:?}");
+        // The wall is pressed by the gas; all of it is counted.
+        assert!((row[13] / 101_325.0 - 1.0).abs() < 1e-9 && (row[12] - 1e6).abs() < 1e-3, "{row:?}");
+    }
+    let (code, text, _) = outcome(&["resume", out.to_str().unwrap()]);
+    assert!(code == 0 && text.contains("reached its end"), "{text}");
+    let plan = printed(&["plan", scene]);
+    assert!(plan.contains("control-volume  asked for") && !plan.contains("steps"), "{plan}");
+    let (code, _, err) =
+        outcome(&["sweep", scene, "--devices", "1,2", "--out", folder.path().join("s").to_str().unwrap()]);
+    assert!(code == 2 && err.contains("no particles"), "{code} {err}");
+}

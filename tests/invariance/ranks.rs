@@ -8,7 +8,9 @@ use corpuscle::simulation::{Ghosts, Model, Options};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely};
+use crate::scenes::{
+    burst, by, cold_walls, curves, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely,
+};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -104,6 +106,17 @@ fn vents_have_the_same_bits_on_any_number_of_ranks() {
     assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
     same(&venting_freely(), &[Way::new(3, Off, 1)]);
     same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1)]);
+}
+
+/// Heat capacities that depend on the temperature, and mixtures at rest and flowing in.
+#[test]
+fn mixtures_with_modes_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(5, Dynamic, 1)];
+    let runs = same(&curves(), &ways);
+    assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
+    let in_cells =
+        same(&by(Method::Cell, curves()), &[Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, None) }]);
+    assert!(in_cells[0].outcome.collisions > 1000);
 }
 
 /// Free flight is shared out by ids.

@@ -19,7 +19,7 @@ const SEED: [u32; 2] = [0x1234_5678, 0x9abc_de04];
 fn gases() -> [Gas; 2] {
     [
         Gas { exchange: f64::from(0.6f32), ..Gas::with_collision_number(1.0, 2.0, 5.0) },
-        Gas { mass: f64::from(1.0f32 / 7.0), exchange: f64::from(0.8f32), degrees: 3.0 },
+        Gas { mass: f64::from(1.0f32 / 7.0), exchange: f64::from(0.8f32), degrees: 3.0, modes: &[] },
     ]
 }
 
@@ -56,7 +56,35 @@ fn meetings(cloud: &Cloud) -> Vec<(usize, usize, f32)> {
     pairs
 }
 
+/// kT_ref over the reference mass of the gases with modes, (m/s)^2: energies of the cloud are of this order.
+const THERMAL: f64 = 160_000.0;
+
+/// The first of the gases with a heat capacity that grows with the temperature, the second as it is.
+fn curved() -> [Gas; 2] {
+    let [first, second] = gases();
+    [Gas { modes: &[[0.5, 0.0, 1.0], [0.25, 1.0, 2.0], [0.03125, 3.0, 4.0], [0.001953125, 7.0, 8.0]], ..first }, second]
+}
+
+/// The device's table of modes.
+fn mode_rows() -> Vec<[f32; 4]> {
+    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 512];
+    for (gas, rows) in curved().iter().zip(table.chunks_exact_mut(32)) {
+        let row =
+            |[weight, power, beta]: [f64; 3]| [weight.ln(), power, 1.0 / beta, 1.0 / (beta + 1.0)].map(|x| x as f32);
+        let beta = 0.5 * gas.degrees;
+        let modes = if gas.modes.is_empty() { vec![[1.0, 0.0, beta]] } else { gas.modes.to_vec() };
+        for (own, mode) in rows.iter_mut().zip(modes) {
+            *own = row(mode);
+        }
+    }
+    table
+}
+
 fn settle(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool) -> Rig {
+    settle_with(cloud, pairs, spin, false)
+}
+
+fn settle_with(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bool) -> Rig {
     let mut rig = cloud.rig();
     let mut choices = vec![[NOBODY, 0u32]; cloud.particles.len()];
     for &(i, j, time) in pairs {
@@ -67,6 +95,12 @@ fn settle(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool) -> Rig {
     rig.constant("SEED_LOW", f64::from(SEED[0]));
     rig.constant("SEED_HIGH", f64::from(SEED[1]));
     rig.gases(&table());
+    if curves {
+        rig.constant("CURVES", 1.0);
+        rig.constant("MODES", 4.0);
+        rig.constant("INVERSE_THERMAL", 1.0 / THERMAL);
+        rig.uniform("modes", &mode_rows());
+    }
     rig.put("choices", &choices);
     rig.put("pairs", &pairs.iter().map(|&(i, j, _)| [i as u32, j as u32]).collect::<Vec<_>>());
     rig.set_counter(ROUND as usize, pairs.len() as u32);
@@ -84,6 +118,17 @@ fn deviation(
     spin: bool,
 ) -> f64 {
     let gases = gases().map(|gas| if spin { gas } else { Gas { degrees: 0.0, ..gas } });
+    deviation_of(cloud, &(s, t, time), after, key, gases)
+}
+
+fn deviation_of(
+    cloud: &Cloud,
+    &(s, t, time): &(usize, usize, f32),
+    after: &[GpuParticle],
+    key: [u32; 2],
+    gases: [Gas; 2],
+) -> f64 {
+    let spin = gases[0].degrees > 0.0;
     let (mut i, mut j) = (cloud.body(s), cloud.body(t));
     let (_, miss) = closest_approach(&i, &j, [0.0; 3]).unwrap();
     let (r, g) = (minus(j.x0, i.x0), minus(j.v, i.v));
@@ -159,6 +204,28 @@ fn collisions_are_those_of_f64_and_conserve() {
         // The check can fail: another seed gives other sides to half the pairs, and other exchanges.
         assert!(other_key > pairs.len() / 3, "{other_key} of {}", pairs.len());
     }
+}
+
+/// With modes a collision is that of f64 with the same random numbers, but for pairs whose draw falls between two modes
+/// within rounding; they differ from those of a constant heat capacity.
+#[test]
+fn exchanges_with_modes_are_those_of_f64() {
+    let mut stream = Stream::new(35);
+    let cloud = Cloud::new(&mut stream, World::plain(), 1600, 0.9);
+    let pairs = meetings(&cloud);
+    let scaled = |gas: Gas| {
+        // The oracle takes energies over kT_ref: the weights take up the rest.
+        let modes: Vec<[f64; 3]> =
+            gas.modes.iter().map(|[weight, power, beta]| [weight * THERMAL.powf(-power), *power, *beta]).collect();
+        Gas { modes: modes.leak(), ..gas }
+    };
+    let gases = curved().map(scaled);
+    let rig = settle_with(&cloud, &pairs, true, true);
+    let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
+    let off = pairs.iter().filter(|pair| deviation_of(&cloud, pair, &after, SEED, gases) >= 1.0).count();
+    assert!(off <= 1, "{off} of {} pairs", pairs.len());
+    let constant = pairs.iter().filter(|pair| deviation(&cloud, pair, &after, SEED, true) >= 1.0).count();
+    assert!(constant > pairs.len() / 5, "{constant} of {}", pairs.len());
 }
 
 /// After a collision both flights start at the meeting, name each other, and all their neighbours choose

@@ -11,6 +11,9 @@ pub struct Gas {
     pub degrees: f64,
     /// P of section 3.
     pub exchange: f64,
+    /// Of a heat capacity that depends on the temperature (else none): (weight h_K / Gamma(nu0 + K + 2), K, nu0 + K)
+    /// for energies in units of kT_ref.
+    pub modes: &'static [[f64; 3]],
 }
 
 impl Gas {
@@ -19,7 +22,7 @@ impl Gas {
         let a = degrees / (degrees + 4.0);
         let p0 = (1.0 + degrees / 4.0) / z;
         let exchange = if degrees > 0.0 { (1.0 - (1.0 - 2.0 * a * p0).sqrt()) / a } else { 0.0 };
-        Gas { mass, degrees, exchange }
+        Gas { mass, degrees, exchange, modes: &[] }
     }
 }
 
@@ -43,6 +46,8 @@ pub struct Body {
 pub struct Draws {
     /// Of the lower id, then of the higher: whether it exchanges, U1, U2.
     pub exchange: [[f64; 3]; 2],
+    /// Which mode, of both.
+    pub pick: [f64; 2],
     /// s = -1.
     pub left: bool,
 }
@@ -57,6 +62,7 @@ impl Draws {
                 [first[0], first[1], first[2]].map(unit_interval),
                 [first[3], second[0], second[1]].map(unit_interval),
             ],
+            pick: [second[3], second[2] << 1].map(unit_interval),
             left: second[2] >> 31 == 1,
         }
     }
@@ -88,6 +94,19 @@ pub fn exchanged(energy: f64, degrees: f64, u: [f64; 2]) -> f64 {
     energy * u[0].powf(1.0 / beta) * u[1].powf(1.0 / (beta + 1.0))
 }
 
+/// nu0 + K of the mode that a draw picks at the energy E over kT_ref: weights h_K E^K / Gamma(nu0 + K + 2).
+pub fn picked(energy: f64, modes: &[[f64; 3]], draw: f64) -> f64 {
+    let weight = |[weight, power, _]: &[f64; 3]| weight * energy.powf(*power);
+    let mut left = draw * modes.iter().map(weight).sum::<f64>();
+    for mode in modes {
+        left -= weight(mode);
+        if left < 0.0 {
+            return mode[2];
+        }
+    }
+    modes[modes.len() - 1][2]
+}
+
 /// Rules 5 and 6: i (lower id) and j after their collision at `time`. Returns the virial r . (g' - g) over
 /// |r| |g|, which the method makes zero.
 pub fn collide(
@@ -105,11 +124,12 @@ pub fn collide(
     let reduced = mass_i * mass_j / (mass_i + mass_j);
     let before = 0.5 * reduced * dot(g, g);
     let mut relative = before;
-    for (body, [choice, u1, u2]) in [&mut *i, &mut *j].into_iter().zip(draws.exchange) {
+    for ((body, [choice, u1, u2]), pick) in [&mut *i, &mut *j].into_iter().zip(draws.exchange).zip(draws.pick) {
         let gas = gases[body.gas];
         if gas.degrees > 0.0 && choice < gas.exchange {
             let sum = relative + body.spin;
-            body.spin = exchanged(sum, gas.degrees, [u1, u2]);
+            let degrees = if gas.modes.is_empty() { gas.degrees } else { 2.0 * picked(sum, gas.modes, pick) };
+            body.spin = exchanged(sum, degrees, [u1, u2]);
             relative = sum - body.spin;
         }
     }

@@ -91,7 +91,7 @@ fn the_exchanged_share_has_the_mean_of_its_beta_distribution() {
 
 /// Periodic box of 1500, f = .1: the collision rate over n pi sigma^2 gbar, and its standard error.
 fn periodic_rate(x: f64, rounds: u32, steps: u32) -> (f64, f64, Simulation) {
-    let gas = Gas { mass: 1.0, degrees: 0.0, exchange: 0.0 };
+    let gas = Gas { mass: 1.0, degrees: 0.0, exchange: 0.0, modes: &[] };
     let mut simulation = Simulation::new(&[1500], &[gas], [1.0; 3], Boundary::Periodic, 5);
     simulation.collide_at(0.1, x, rounds);
     let theory = simulation.rate_theory();

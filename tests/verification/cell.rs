@@ -5,22 +5,19 @@
 use std::f64::consts::PI;
 
 use corpuscle::simulation::Options;
+use corpuscle::study::verify::collisions::virial_error_of_cells;
+use corpuscle::study::verify::equilibrium::{collision_number, mixture, ratios};
 
 use crate::equilibrium_box::{EDGE, EquilibriumBox, TEMPERATURE};
-use crate::equipartition::{collision_number_by, mixture_by, ratios};
 use crate::wall_pressure::pressure_ratio;
-use crate::whole_run::{model, run};
+use crate::whole_run::{device, model, run};
 
-/// A collision changes the virial by that of a random vector of a cell's length: over the s collisions of each of N
-/// particles some .16 h / (c0 tau) / sqrt(N s) of the pressure.
 #[test]
 fn the_pressure_is_that_of_the_ideal_gas() {
     for (occupancy, step_over_tau, steps) in [(0.1, 0.2, 1500), (0.3, 2.0, 600)] {
         let (ratio, error, _) = pressure_ratio("cell", occupancy, step_over_tau, steps);
-        let collisions = step_over_tau * f64::from(steps);
-        let gas = EquilibriumBox { occupancy, ..EquilibriumBox::default() };
-        let cell = (6.0 / gas.number_density()).cbrt();
-        let random = 0.16 * cell / (gas.thermal_speed() * gas.collision_time()) / (1000.0 * collisions).sqrt();
+        let gas = EquilibriumBox { occupancy, step_over_tau, steps, ..EquilibriumBox::default() };
+        let random = virial_error_of_cells(&gas);
         let error = error.hypot(random);
         println!("f {occupancy}, x {step_over_tau}: {ratio:.5} +- {error:.5}");
         assert!(error < 0.005 / 2.0, "the run is too short: {error:.5}");
@@ -101,7 +98,7 @@ fn the_rate_beside_a_thin_plate_is_that_of_kinetic_theory() {
 
 #[test]
 fn spin_and_both_gases_come_to_one_temperature() {
-    let run = mixture_by("cell", 0, 0.5, 1200);
+    let run = mixture(&device(), "cell", 0, 0.5, 1200).expect("a run");
     let [spin, gases] = ratios(&run);
     println!("T_int/T_tr {:.4} +- {:.4}, T1/T2 {:.4} +- {:.4}", spin.0, spin.1, gases.0, gases.1);
     for (name, (ratio, error)) in [("T_int/T_tr", spin), ("T1/T2", gases)] {
@@ -113,7 +110,7 @@ fn spin_and_both_gases_come_to_one_temperature() {
 #[test]
 fn spin_relaxes_in_the_collision_number_asked_for() {
     let asked = 5.0;
-    let (found, error) = collision_number_by("cell", asked, 0.1, 0.25);
+    let (found, error) = collision_number(&device(), "cell", asked, 0.1, 0.25).expect("a run");
     println!("Z {asked}: {found:.3} +- {error:.3}");
     assert!(error <= 0.01 * asked);
     assert!((found - asked).abs() < 0.05 * asked, "Z = {found:.3} +- {error:.3}");

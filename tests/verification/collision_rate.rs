@@ -8,54 +8,18 @@
 //! Statistics: C collisions have two ends each and are nearly independent: the rate is known to
 //! 1 / sqrt(C). The ideal-gas measure is stationary, so n is (N - 1) / V wherever one looks.
 
-use std::f64::consts::PI;
-
 use corpuscle::gpu::Device;
-use corpuscle::simulation::{Options, Outcome, Simulation};
+use corpuscle::study::verify::collisions::{self, Rate};
 
-use crate::equilibrium_box::{EDGE, EquilibriumBox};
-use crate::whole_run::{Witness, device, model};
-
-struct Rate {
-    /// Over n pi sigma^2 gbar.
-    core: f64,
-    error: f64,
-    /// As `core`, of the layer along the walls that `core` leaves out.
-    layer: f64,
-    outcome: Outcome,
-}
+use crate::equilibrium_box::EquilibriumBox;
+use crate::whole_run::device;
 
 fn collision_rate(device: &Device, occupancy: f64, rounds: u32, step_over_tau: f64, steps: u32) -> Rate {
     let gas = EquilibriumBox { particles: 8000, occupancy, rounds, step_over_tau, steps, ..EquilibriumBox::default() };
-    let mut model = model(&gas.toml());
-    // Intervals of one step, so that every step's flights can be read, and no finer steps.
-    model.plan.steps_per_interval = 1;
-    model.plan.tally_every = 1;
-    model.plan.collision_limit = 1.0;
-    let margin = 2.0 * gas.diameter() + gas.mean_free_path();
-    let mut witness = Witness::default();
-    let mut simulation = Simulation::new(&model, device, Options::default()).expect("a simulation");
-    simulation.begin(&mut witness).expect("a start");
-    let (mut visits, mut ends) = ([0u64; 2], [0u64; 2]);
-    while simulation.advance(&mut witness).expect("a step") {
-        let places = simulation.particles().expect("the particles");
-        for (particle, (id, flight)) in places.iter().zip(simulation.flights().expect("the flights")) {
-            assert_eq!(particle.id(), id);
-            let place = model.plan.grid.to_metres(particle.position);
-            let layer = usize::from(place.iter().any(|x| *x < margin || *x > EDGE - margin));
-            visits[layer] += 1;
-            ends[layer] += u64::from(flight.collisions);
-        }
-    }
-    let outcome = simulation.finish(&mut witness).expect("an end");
-    let temperature = witness.rows[0].chambers[0].temperature / crate::equilibrium_box::TEMPERATURE;
-    let gbar = (16.0 / PI * temperature).sqrt() * gas.thermal_speed();
-    let density = (gas.particles - 1) as f64 / EDGE.powi(3);
-    let expected = density * PI * model.plan.diameter.powi(2) * gbar * gas.time_step();
-    assert_eq!(2 * outcome.collisions, ends[0] + ends[1], "the count is that of the flights");
-    let ratio = |k: usize| ends[k] as f64 / visits[k] as f64 / expected;
-    assert_eq!(outcome.steps, u64::from(steps), "every step is as long as asked");
-    Rate { core: ratio(0), error: (2.0 / ends[0] as f64).sqrt(), layer: ratio(1), outcome }
+    let rate = collisions::collision_rate(device, &gas).expect("a run");
+    assert_eq!(rate.outcome.collisions, rate.flown, "the count is that of the flights");
+    assert_eq!(rate.outcome.steps, u64::from(steps), "every step is as long as asked");
+    rate
 }
 
 #[test]

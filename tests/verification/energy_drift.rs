@@ -7,32 +7,15 @@
 //! better than the limits here.
 
 use corpuscle::simulation::Options;
+use corpuscle::study::verify::equilibrium::{HELIUM, energy_drift};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::equilibrium_box::{EquilibriumBox, NITROGEN};
-use crate::whole_run::{model, run};
-
-const HELIUM: &str = "[[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n";
+use crate::whole_run::{device, model, run};
 
 /// Relative change of the energy, and the collisions per particle.
 fn drift(method: &str, gases: &str, particles: u64, steps: u32) -> (f64, f64) {
-    let (mixture, molar_mass) = if gases == HELIUM { ("\"helium\"", 0.004) } else { ("\"nitrogen\"", 0.028) };
-    let gas = EquilibriumBox {
-        method,
-        particles,
-        steps,
-        step_over_tau: 0.15,
-        gases,
-        mixture,
-        molar_mass,
-        ..EquilibriumBox::default()
-    };
-    let mut model = model(&gas.toml());
-    // Noise of few particles in a block must not shorten the steps.
-    model.plan.collision_limit = model.plan.collision_limit.max(1.0);
-    let run = run(&model, Options::default());
-    assert!(run.outcome.steps >= u64::from(steps));
-    (run.outcome.audit.energy_error(), 2.0 * run.outcome.collisions as f64 / particles as f64)
+    energy_drift(&device(), method, gases, particles, steps).expect("a run")
 }
 
 #[test]

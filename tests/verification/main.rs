@@ -11,6 +11,8 @@ mod equilibrium_box;
 mod equipartition;
 mod filling;
 mod hard_sphere;
+mod heat_curve;
+mod mixing;
 mod orifice;
 mod statistics;
 mod two_chambers;

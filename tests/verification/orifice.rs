@@ -8,69 +8,13 @@
 //! Over a window d ln N / dt = -Cd A / V .685 sqrt(R T / M). Statistics: the n particles that leave are known to
 //! sqrt(n), and gas that expands in a run of 1.2 ms is uniform to a few per cent.
 
-use corpuscle::simulation::Options;
+use corpuscle::study::verify::holes;
 
-use crate::whole_run::{model, run};
-
-const CHAMBER: u64 = 12_000;
-/// m3: the inner box.
-const VOLUME: f64 = 0.16 * 0.12 * 0.12;
-/// m, half the side of the hole, which is the radius 2 area / perimeter of a square one.
-const RADIUS: f64 = 0.02;
+use crate::whole_run::device;
 
 /// Cd over the run and its standard error, with a mean free path of `knudsen` hole radii at the start.
 fn discharge(knudsen: f64) -> (f64, f64) {
-    let mean_free_path = knudsen * RADIUS;
-    let density = CHAMBER as f64 / VOLUME;
-    let diameter = (1.0 / (2f64.sqrt() * std::f64::consts::PI * density * mean_free_path)).sqrt();
-    let text = format!(
-        r#"
-        end_time = 1.2e-3
-        gas = [{{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }}]
-        model = {{ particles = {CHAMBER}, diameter = {diameter:e} }}
-        output = {{ rows = 12, snapshots = 0 }}
-        [[wall]]
-        name = "tank"
-        shape = "box"
-        min = [-0.02, -0.08, -0.08]
-        max = [0.36, 0.08, 0.08]
-        gas = "inside"
-        [[wall]]
-        name = "inner"
-        shape = "box"
-        min = [0.0, -0.06, -0.06]
-        max = [0.16, 0.06, 0.06]
-        thickness = 0.002
-        hole = [{{ name = "vent", face = "+x", center = [0.0, 0.0], size = [0.04, 0.04] }}]
-        [[chamber]]
-        name = "inner"
-        region = {{ box = {{ min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] }} }}
-        pressure = 1.0e6
-        temperature = 700.0
-        gas = "nitrogen"
-        [[chamber]]
-        name = "tank"
-        pressure = 200.0
-        temperature = 700.0
-        gas = "nitrogen"
-        "#
-    );
-    let model = model(&text);
-    assert!((model.plan.openings[0].length - RADIUS).abs() < 1e-9);
-    let rows = run(&model, Options::default()).rows;
-    // The first two rows see the flow start.
-    let window = &rows[2..];
-    let number = |k: usize| window[k].chambers[0].particles[0];
-    let choked = (1.4f64).sqrt() * (2.0 / 2.4f64).powi(3) * (4.0 * RADIUS * RADIUS) / VOLUME;
-    let passed: f64 = window
-        .windows(2)
-        .map(|pair| {
-            let temperature = 0.5 * (pair[0].chambers[0].temperature + pair[1].chambers[0].temperature);
-            (pair[1].time - pair[0].time) * choked * (8.314462618 / 0.028 * temperature).sqrt()
-        })
-        .sum();
-    let (first, last) = (number(0), number(window.len() - 1));
-    ((first / last).ln() / passed, (first / last).ln() / passed / (first - last).sqrt())
+    holes::discharge(&device(), 12_000, knudsen).expect("a run")
 }
 
 #[test]

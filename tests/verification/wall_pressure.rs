@@ -7,26 +7,18 @@
 //! terms over the window, sqrt(2/N) / 6 x edge / (c0 T_w) of the pressure. So the test is one of the
 //! collisions' virial, which for rigid spheres is the whole excess of the Carnahan-Starling pressure.
 
-use corpuscle::simulation::Options;
+use corpuscle::study::verify::collisions;
 
-use crate::equilibrium_box::{EDGE, EquilibriumBox, GAS_CONSTANT};
-use crate::whole_run::{model, run};
+use crate::equilibrium_box::EquilibriumBox;
+use crate::whole_run::device;
 
 const TOLERANCE: f64 = 0.005;
 
 /// Wall pressure over n k T of one run, its standard error, and that of as many independent hits.
 pub fn pressure_ratio(method: &str, occupancy: f64, step_over_tau: f64, steps: u32) -> (f64, f64, f64) {
     let gas = EquilibriumBox { method, occupancy, step_over_tau, steps, rounds: 4, ..EquilibriumBox::default() };
-    let mut model = model(&gas.toml());
-    // The temperature of every step: it moves as translation and spin exchange energy.
-    model.plan.tally_every = 1;
-    let run = run(&model, Options::default());
-    let [row] = &run.rows[..] else { panic!("one row was asked for") };
-    let moles = model.plan.particles as f64 * model.plan.moles_per_particle;
-    let ideal = moles * GAS_CONSTANT * row.chambers[0].temperature / EDGE.powi(3);
-    let window = row.window[1] - row.window[0];
-    let error = (2.0 / gas.particles as f64).sqrt() / 6.0 * EDGE / (gas.thermal_speed() * window);
-    (row.surfaces[0].pressure / ideal, error, 1.13 / (row.surfaces[0].hits as f64).sqrt())
+    let found = collisions::pressure_ratio(&device(), &gas).expect("a run");
+    (found.ratio, found.error, found.of_hits)
 }
 
 #[test]

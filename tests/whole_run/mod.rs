@@ -6,6 +6,7 @@ use corpuscle::gpu::Device;
 use corpuscle::scene;
 use corpuscle::simulation::{Model, Options};
 use corpuscle::study::verify;
+#[allow(unused_imports, reason = "not every test needs both")]
 pub use corpuscle::study::verify::{Run, Witness};
 
 pub fn device() -> Device {

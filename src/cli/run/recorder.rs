@@ -53,6 +53,12 @@ impl<'a> Recorder<'a> {
         Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
     }
 
+    /// Of a run that has no particles, and so no snapshots.
+    pub fn without_particles(model: &'a Model, reference: Reference, dir: &Path) -> Result<Recorder<'a>, OutputError> {
+        let history = HistoryWriter::create(dir, &columns(&model.scene))?;
+        Ok(Recorder { model, reference, history, snapshots: None, progress: None, checkpoints: None, among: None })
+    }
+
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
     /// they end as those of a run without interruption. `totals` are those of the checkpoint.
     ///

@@ -33,7 +33,7 @@ impl ControlVolume {
             for (index, own) in side.moles.iter().enumerate() {
                 let flow = moles * own / total;
                 rate[open.chamber * stride + index] -= flow;
-                rate[(open.chamber + 1) * stride - 1] -= flow * self.gases[index].molar_cp() * side.temperature;
+                rate[(open.chamber + 1) * stride - 1] -= flow * self.gases[index].enthalpy(1.0, side.temperature);
             }
         }
     }

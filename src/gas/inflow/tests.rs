@@ -1,13 +1,14 @@
 use super::*;
+use std::sync::LazyLock;
+
+use crate::gas::{Modes, fit};
 use crate::scene::{Curve, Mixture};
 
-fn gases() -> Vec<Gas> {
-    let gas = |name: &str, molar_mass, spin: f64| Gas {
-        name: name.into(),
-        molar_mass,
-        molar_cv: 0.5 * (3.0 + spin) * GAS_CONSTANT,
-    };
-    vec![gas("N2", 0.028, 2.0), gas("He", 0.004, 0.0), gas("CO2", 0.044, 4.2)]
+/// Like nitrogen, helium and carbon dioxide, the last with a heat capacity that grows.
+fn gases() -> Vec<Species> {
+    let gas = |molar_mass, spin: f64| Species::constant(molar_mass, 0.5 * (3.0 + spin) * GAS_CONSTANT);
+    static CURVE: LazyLock<Modes> = LazyLock::new(|| fit([23.0, 5.6e-2, -2.2e-5], [400.0, 1200.0]).unwrap());
+    vec![gas(0.028, 2.0), gas(0.004, 0.0), Species::with_modes(0.044, CURVE.clone())]
 }
 
 fn orifice(mixture: Vec<(usize, f64)>, jet: Option<Jet>) -> Orifice {
@@ -36,7 +37,7 @@ fn energy(newborn: &Newborn) -> f64 {
 
 fn enthalpy(newborn: &Newborn) -> f64 {
     let temperature = value_held(&orifice(vec![], None).temperature, newborn.time);
-    NU * gases()[usize::from(newborn.particle.gas)].molar_cp() * temperature
+    gases()[usize::from(newborn.particle.gas)].enthalpy(NU, temperature)
 }
 
 /// Mass: within half a particle per gas and orifice of the curve's integral, at every moment.

@@ -35,7 +35,8 @@ prop_compose! {
         );
         for (index, (mass, internal)) in masses.iter().enumerate() {
             let cv = GAS_CONSTANT * (1.5 + internal / 2.0);
-            text += &format!("[[gas]]\nname = 'gas {index}'\nmolar_mass = {mass:?}\ncv = {cv:?}\n");
+            let heat = if index == 2 { format!("cp = [{cv:?}, {mass:?}]") } else { format!("cv = {cv:?}") };
+            text += &format!("[[gas]]\nname = 'gas {index}'\nmolar_mass = {mass:?}\n{heat}\n");
         }
         let max: Vec<f64> = corner.iter().zip(edge).map(|(c, e)| c + e).collect();
         let side = match thickness {

@@ -1,11 +1,12 @@
-//! How children move: Maxwellian about the mean velocity of their group at its temperature, spin Gamma(zeta/2) at its
-//! internal temperature; then shifted and scaled so that the group keeps its momentum and energies.
+//! How children move: Maxwellian about the mean velocity of their group at its temperature, spin as in equilibrium
+//! at its internal temperature; then shifted and scaled so that the group keeps its momentum and energies.
 //!
 //! All per unit of mass of the heaviest gas, as the device stores spin: so nothing depends on how many moles a particle is, and
 //! what is kept is momentum and energy per unit of mass (in all, where each parent has as many children as the others).
 
-use crate::gas::{Draws, Purpose};
+use crate::gas::{Draws, Purpose, Species, thermo};
 use crate::plan::Plan;
+use crate::scene::GAS_CONSTANT;
 use crate::simulation::refine::RefineReport;
 use crate::simulation::refine::lineage::Lineage;
 use crate::simulation::refine::places::Places;
@@ -13,6 +14,8 @@ use crate::subdomain::GpuParticle;
 
 /// Parents of a gas in a group, at least, for a state of its own: fewer take that of all.
 const LEAST_OF_GAS: usize = 8;
+/// That a particle's tag can tell apart.
+const MOST_GASES: usize = 16;
 
 /// What particles have together, in masses of the heaviest gas.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,6 +27,8 @@ struct Sums {
     thermal: f64,
     spin: f64,
     spin_dof: f64,
+    /// By gas.
+    numbers: [f64; MOST_GASES],
 }
 
 /// Mean velocity, m/s, and kT over the mass of the heaviest gas, (m/s)^2, of translation and of spin.
@@ -49,6 +54,9 @@ pub struct Split<'a> {
     lineage: &'a Lineage,
     /// Mass over that of the heaviest, and zeta, by gas.
     gases: Vec<(f64, f64)>,
+    species: Vec<Species>,
+    /// K per (m/s)^2 of kT over the heaviest mass.
+    kelvin: f64,
 }
 
 impl<'a> Split<'a> {
@@ -56,7 +64,7 @@ impl<'a> Split<'a> {
     pub fn new(plan: &'a Plan, places: &'a Places<'a>, lineage: &'a Lineage) -> Split<'a> {
         let heaviest = plan.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
         let gases = plan.gases.iter().map(|gas| (gas.molar_mass / heaviest, gas.spin_dof)).collect();
-        Split { plan, places, lineage, gases }
+        Split { plan, places, lineage, gases, species: plan.species(), kelvin: heaviest / GAS_CONSTANT }
     }
 
     /// Puts the children of a group of parents where their ids are in `into`.
@@ -88,6 +96,7 @@ impl<'a> Split<'a> {
             sums.momentum = std::array::from_fn(|axis| sums.momentum[axis] + mass * velocity[axis]);
             sums.spin += spin;
             sums.spin_dof += spin_dof;
+            sums.numbers[usize::from(gas)] += 1.0;
         }
         let mean = sums.velocity();
         for (gas, velocity, _) in particles {
@@ -101,12 +110,38 @@ impl<'a> Split<'a> {
     fn state_of(&self, gas: usize, group: &[&GpuParticle], all: &Sums) -> LocalState {
         let of_gas = group.iter().filter(|parent| usize::from(parent.gas()) == gas).map(|parent| motion(parent));
         let own = self.sums(of_gas);
-        if own.number >= LEAST_OF_GAS as f64 { own.state() } else { all.state() }
+        self.state(if own.number >= LEAST_OF_GAS as f64 { &own } else { all })
+    }
+
+    /// A mean of N takes three of the 3 N degrees of freedom.
+    fn state(&self, sums: &Sums) -> LocalState {
+        let per = |energy: f64, dof: f64| if dof > 0.0 { 2.0 * energy / dof } else { 0.0 };
+        let thermal = per(sums.thermal, 3.0 * (sums.number - 1.0));
+        let internal = if self.species.iter().all(Species::is_constant) {
+            per(sums.spin, sums.spin_dof)
+        } else {
+            self.internal(sums)
+        };
+        LocalState { velocity: sums.velocity(), thermal, internal }
+    }
+
+    /// kT over the heaviest mass at which particles of these gases have this spin energy.
+    fn internal(&self, sums: &Sums) -> f64 {
+        let wanted = sums.spin * self.kelvin;
+        let present = || self.species.iter().zip(&sums.numbers);
+        let excess = |t: f64| present().map(|(gas, n)| 0.5 * n * gas.spin_energy_dof(t) * t).sum::<f64>() - wanted;
+        let slope = |t: f64| present().map(|(gas, n)| 0.5 * n * gas.spin_dof(t)).sum::<f64>();
+        let mut highest = 1.0;
+        // Above all that a gas can be; none of them may have internal energy.
+        while excess(highest) < 0.0 && highest < 1e9 {
+            highest *= 2.0;
+        }
+        if wanted > 0.0 && highest < 1e9 { thermo::root(excess, slope, highest) / self.kelvin } else { 0.0 }
     }
 
     fn child(&self, parent: &GpuParticle, id: u32, local: &LocalState, report: &mut RefineReport) -> Child {
         let gas = parent.gas();
-        let (mass, spin_dof) = self.gases[usize::from(gas)];
+        let (mass, species) = (self.gases[usize::from(gas)].0, &self.species[usize::from(gas)]);
         let grid = &self.plan.grid;
         let drawn = self.places.draw(parent, self.plan.seed, id).and_then(|place| grid.to_fixed(place));
         let position = drawn.unwrap_or_else(|| {
@@ -117,7 +152,13 @@ impl<'a> Split<'a> {
         let mut draws = Draws::new(self.plan.seed, Purpose::RefinedState, id);
         let speed = (local.thermal / mass).sqrt();
         let velocity = local.velocity.map(|mean| mean + speed * draws.normal());
-        Child { gas, id, position, velocity, spin: local.internal * draws.gamma(0.5 * spin_dof) }
+        Child {
+            gas,
+            id,
+            position,
+            velocity,
+            spin: species.draw_spin(local.internal, local.internal * self.kelvin, &mut draws),
+        }
     }
 
     /// Gives children the momentum, kinetic and spin energy per mass of their parents.
@@ -137,16 +178,6 @@ impl<'a> Split<'a> {
 impl Sums {
     fn velocity(&self) -> [f64; 3] {
         self.momentum.map(|momentum| if self.mass > 0.0 { momentum / self.mass } else { 0.0 })
-    }
-
-    /// A mean of N takes three of the 3 N degrees of freedom.
-    fn state(&self) -> LocalState {
-        let per = |energy: f64, dof: f64| if dof > 0.0 { 2.0 * energy / dof } else { 0.0 };
-        LocalState {
-            velocity: self.velocity(),
-            thermal: per(self.thermal, 3.0 * (self.number - 1.0)),
-            internal: per(self.spin, self.spin_dof),
-        }
     }
 
     fn energy(&self) -> f64 {

@@ -139,7 +139,7 @@ pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times
 fn inflow_of(model: &Model) -> Inflow {
     let Model { scene, plan, .. } = model;
     let first_id = plan.initial_particles as u32;
-    Inflow::new(&scene.orifices, &scene.gases, plan.moles_per_particle, plan.seed, first_id, plan.end_time)
+    Inflow::new(&scene.orifices, &plan.species(), plan.moles_per_particle, plan.seed, first_id, plan.end_time)
 }
 
 /// The share of the simulated time that is done, if state and particles are of one moment of this model.
@@ -185,7 +185,7 @@ fn shares(model: &Model) -> u64 {
     let chambers = scene.chambers.iter().zip(&plan.chambers);
     let initial = chambers.map(|(asked, own)| moles_at(asked.pressure, own.volume, asked.temperature));
     let injected = scene.orifices.iter().map(|orifice| {
-        let molar_mass = thermo::molar_mass(&orifice.mixture, &scene.gases);
+        let molar_mass = thermo::molar_mass(&orifice.mixture, &plan.species());
         FlowIntegral::new(&orifice.mass_flow, scene.end_time).total() / molar_mass
     });
     (initial.chain(injected).sum::<f64>() / plan.moles_per_particle).round() as u64

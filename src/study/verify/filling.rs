@@ -2,6 +2,7 @@
 //! within 1e-4; the mass injected is within half a particle per gas of the curve's integral.
 
 use crate::gpu::Device;
+use crate::scene::Method;
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 
@@ -34,8 +35,9 @@ pub fn energy_error(run: &Run, enthalpy: f64) -> f64 {
 ///
 /// # Errors
 /// If the run fails.
-pub fn filled(device: &Device, particles: u64) -> Result<(Model, Run), StudyError> {
+pub fn filled(device: &Device, method: Method, particles: u64) -> Result<(Model, Run), StudyError> {
     let mut scene = scene_of("filling", include_str!("../../../scenes/tank.toml"))?;
+    scene.model.method = Some(method);
     scene.model.particles = Some(particles);
     // Moles per particle follow from the gas that is in at the end of the run.
     scene.end_time = DURATION;
@@ -53,7 +55,7 @@ pub fn enthalpy(model: &Model) -> f64 {
 }
 
 pub(super) fn balances(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let (model, run) = filled(device, if effort == Effort::Quick { 1500 } else { 6000 })?;
+    let (model, run) = filled(device, Method::ClosestApproach, if effort == Effort::Quick { 1500 } else { 6000 })?;
     let orifice = &model.scene.orifices[0];
     let gas = &model.scene.gases[orifice.mixture.0[0].0];
     let mass = integral(&orifice.mass_flow.points, DURATION);

@@ -15,16 +15,20 @@ pub const TEMPERATURE: f64 = 300.0;
 
 /// One gas or several in a cube of [`EDGE`]; all that a case may want to vary.
 pub struct EquilibriumBox<'a> {
+    pub method: &'a str,
     pub particles: u64,
     pub occupancy: f64,
     /// x = dt/tau.
     pub step_over_tau: f64,
+    /// Not of the method `cell`.
     pub rounds: u32,
     pub steps: u32,
     /// Molar mass of the (mean) gas, kg/mol.
     pub molar_mass: f64,
     /// `[[gas]]` tables.
     pub gases: &'a str,
+    /// More `[[wall]]` tables.
+    pub walls: &'a str,
     /// Gas or mixture, in TOML.
     pub mixture: &'a str,
     pub rows: u32,
@@ -37,6 +41,8 @@ pub const NITROGEN: &str = "[[gas]]\nname = \"nitrogen\"\nmolar_mass = 0.028\nga
 impl Default for EquilibriumBox<'_> {
     fn default() -> Self {
         EquilibriumBox {
+            method: "closest-approach",
+            walls: "",
             particles: 1000,
             occupancy: 0.1,
             step_over_tau: 0.1,
@@ -90,13 +96,15 @@ impl EquilibriumBox<'_> {
 
     pub fn toml(&self) -> String {
         let time_step = self.time_step();
+        let rounds = if self.method == "cell" { String::new() } else { format!("rounds = {}\n", self.rounds) };
         format!(
             "end_time = {end:e}\nseed = 7\n{gases}\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\n\
-             gas = \"inside\"\n\
+             gas = \"inside\"\n{walls}\
              [[chamber]]\nname = \"all\"\npressure = 101325.0\ntemperature = {TEMPERATURE}\ngas = {mixture}\n\
              [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-             [model]\nparticles = {particles}\noccupancy = {occupancy}\ntime_step = {time_step:e}\nrounds = {rounds}\n\
+             [model]\nmethod = \"{method}\"\nparticles = {particles}\noccupancy = {occupancy}\n\
+             time_step = {time_step:e}\n{rounds}\
              collision_number = {collision_number}\n\
              [output]\nrows = {rows}\nsnapshots = {snapshots}\n",
             end = time_step * f64::from(self.steps),
@@ -104,7 +112,8 @@ impl EquilibriumBox<'_> {
             mixture = self.mixture,
             particles = self.particles,
             occupancy = self.occupancy,
-            rounds = self.rounds,
+            method = self.method,
+            walls = self.walls,
             collision_number = self.collision_number,
             rows = self.rows,
             snapshots = self.snapshots,

@@ -114,7 +114,9 @@ pub fn discharge(device: &Device, particles: u64, knudsen: f64) -> Result<(f64, 
         gas = "nitrogen"
         "#
     );
-    let rows = run(device, &model_of("orifice", &text)?, Options::default())?.rows;
+    let model = model_of("orifice", &text)?;
+    debug_assert!((model.plan.openings[0].length - RADIUS).abs() < 1e-9);
+    let rows = run(device, &model, Options::default())?.rows;
     // The first two rows see the flow start.
     let window = &rows[2..];
     let number = |k: usize| window[k].chambers[0].particles[0];

@@ -1,0 +1,45 @@
+// Gases with a heat capacity that depends on the temperature (specification, section 3 "cp(T)"): at an exchange of the
+// energy E a mode is drawn with weight h_K x^K / Gamma(nu0+K+2), x = E / k T_ref, and its beta is nu0 + K.
+
+// Whether a gas has more than one mode. Else not a line more is compiled than constant heat capacities need.
+override CURVES: bool = false;
+// Modes of a gas, at most.
+override MODES: u32 = 1;
+// 1 / (k T_ref) for energies over the reference mass.
+override INVERSE_THERMAL: f32 = 1.0;
+
+// Of each gas, 32 apart: ln(h_K T_ref^K / Gamma(nu0+K+2)), K, 1/beta, 1/(beta+1). Modes that are not there have no weight.
+@group(0) @binding(60) var<uniform> modes: array<vec4<f32>, 512>;
+
+// The mode that the uniform `draw` picks at the energy `sum`.
+fn mode_at(gas: u32, sum: f32, draw: f32) -> vec4<f32> {
+    let ln = log(max(sum * INVERSE_THERMAL, 1e-30));
+    let first = gas * 32u;
+    var most = -1e30;
+    for (var k = 0u; k < MODES; k++) {
+        most = max(most, modes[first + k].x + modes[first + k].y * ln);
+    }
+    var total = 0.0;
+    for (var k = 0u; k < MODES; k++) {
+        total += exp(modes[first + k].x + modes[first + k].y * ln - most);
+    }
+    var left = draw * total;
+    var found = modes[first];
+    for (var k = 0u; k < MODES; k++) {
+        let weight = exp(modes[first + k].x + modes[first + k].y * ln - most);
+        if (weight > 0.0 && left >= 0.0) {
+            found = modes[first + k];
+        }
+        left -= weight;
+    }
+    return found;
+}
+
+// 1/beta and 1/(beta + 1) with which a particle of a gas exchanges the energy `sum`: its own, `constant`, or those of
+// the mode that `pick` draws.
+fn inverse_betas(gas: u32, constant: vec2<f32>, sum: f32, pick: u32) -> vec2<f32> {
+    if (CURVES) {
+        return mode_at(gas, sum, unit_interval(pick)).zw;
+    }
+    return constant;
+}

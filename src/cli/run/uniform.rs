@@ -1,0 +1,46 @@
+//! A run by the method `control-volume`: the files of any run but snapshots and checkpoints, in a moment and on no device.
+
+use std::time::Instant;
+
+use crate::cli::CliError;
+use crate::cli::settings::RunSettings;
+use crate::cli::terminal::say;
+use crate::output::{AdapterRecord, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, Timing};
+use crate::scene::to_toml;
+use crate::simulation::{audit_limits, run_uniform};
+
+use super::chart;
+use super::command;
+use super::recorder::Recorder;
+use super::reference::Reference;
+
+pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), CliError> {
+    let RunSettings { model, folder, force, execution } = settings;
+    if execution.stop_after_steps.is_some() || execution.checkpoints.every.is_some() {
+        tracing::warn!("a control volume takes no steps: it is not stopped after some, and writes no checkpoints");
+    }
+    let folder = OutputFolder::create(folder, *force)?;
+    folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
+    folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
+    let none = AdapterRecord { name: "none: a control volume".to_owned(), ..AdapterRecord::default() };
+    Environment::of_this_host(command(), none).write(folder.path())?;
+    let mut recorder = Recorder::without_particles(model, Reference::new(model), folder.path())?;
+    let set_up = started.elapsed();
+    let begun = Instant::now();
+    let audit = run_uniform(model, &mut recorder)?;
+    chart::draw(&folder.path().join(PRESSURE_CHART_FILE), &model.scene, recorder.history())?;
+    let timing = Timing {
+        stepping_seconds: begun.elapsed().as_secs_f64(),
+        set_up_seconds: set_up.as_secs_f64(),
+        ..Timing::default()
+    };
+    timing.write(folder.path())?;
+    folder.end(&format!("{}\n{:.4} ms as a control volume\n", audit.render(), 1e3 * model.plan.end_time))?;
+    if !quiet {
+        say(&format!("{}: control volume\n\n{}\n", model.scene.title, audit.render()))?;
+        say(&format!("wall time {:.3} s\n", started.elapsed().as_secs_f64()))?;
+    }
+    say(&format!("{}\n", folder.path().display()))?;
+    let failures = audit.verdict(&audit_limits(&model.plan));
+    if failures.is_empty() { Ok(()) } else { Err(CliError::Audit { failures }) }
+}

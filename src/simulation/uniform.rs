@@ -1,0 +1,303 @@
+//! The method `control-volume`: a run without particles (specification, section 6: right where pressures are uniform).
+//!
+//! Each chamber is uniform; `reference` has its equations. A row has the state in the middle of its window, and what
+//! surfaces received in it by Simpson's rule. A probe shows the chamber that its middle lies in; a surface is pressed
+//! by the chambers that its parts face. No device, no ranks, no random numbers: a run takes milliseconds.
+
+use glam::DVec3;
+
+use crate::gas::{FlowIntegral, State, flow_times_of_temperature, flow_times_temperature, thermo};
+use crate::geometry::region_bounds;
+use crate::output::Audit;
+use crate::scene::Surface;
+
+use super::SimulationError;
+use super::averages::{Row, SurfaceState, ZoneState};
+use super::model::{Model, chamber_of};
+use super::observer::Observer;
+use super::reference::{initial, reference};
+
+/// Parts along each edge into which a triangle is cut to find what chambers it faces.
+const PARTS: u32 = 8;
+
+/// Emits the rows of the whole run and closes its account.
+///
+/// # Errors
+/// If a probe or a surface lies in no chamber, or the observer stops the run.
+pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, SimulationError> {
+    let Model { scene, plan, .. } = model;
+    let rows = scene.output.rows.max(1);
+    // Ends and middles of the windows.
+    let time = |half: u32| plan.end_time * f64::from(half) / f64::from(2 * rows);
+    let times: Vec<f64> = (0..=2 * rows).map(time).collect();
+    let states = reference(model, &times);
+    let probes = probes(model)?;
+    let surfaces = scene.surfaces.iter().map(|surface| facing(model, surface)).collect::<Result<Vec<_>, _>>()?;
+    let mut received = vec![[0.0; 3]; surfaces.len()];
+    for row in 0..rows as usize {
+        let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k]);
+        let window = [times[2 * row], times[2 * row + 2]];
+        let zones: Vec<ZoneState> = (0..plan.chambers.len()).map(|index| zone(model, index, &middle[index])).collect();
+        let pressed = |chamber: usize| {
+            (before[chamber].pressure + 4.0 * middle[chamber].pressure + after[chamber].pressure) / 6.0
+        };
+        let on_surfaces = surfaces.iter().zip(&mut received).map(|(faces, received)| {
+            let mut force = DVec3::ZERO;
+            let (mut sum, mut area) = (0.0, 0.0);
+            for face in faces {
+                let pressure = pressed(face.chamber);
+                force += pressure * face.outward;
+                sum += pressure * face.area;
+                area += face.area;
+            }
+            for (total, own) in received.iter_mut().zip((force * (window[1] - window[0])).to_array()) {
+                *total += own;
+            }
+            SurfaceState { pressure: sum / area, impulse: *received, hits: 0 }
+        });
+        let on_surfaces = on_surfaces.collect();
+        observer.row(&Row {
+            time: times[2 * row + 1],
+            window,
+            step: window[1] - window[0],
+            particles: 0,
+            probes: probes.iter().map(|&chamber| zones[chamber].clone()).collect(),
+            chambers: zones,
+            surfaces: on_surfaces,
+            walls: Vec::new(),
+            vents: Vec::new(),
+        })?;
+        observer.progress(window[1], row as u64 + 1, 0);
+    }
+    Ok(audit(model, &states[states.len() - 1]))
+}
+
+fn zone(model: &Model, chamber: usize, state: &State) -> ZoneState {
+    let plan = &model.plan;
+    let mass: f64 = state.moles.iter().zip(&plan.gases).map(|(n, gas)| n * gas.molar_mass).sum();
+    ZoneState {
+        pressure: state.pressure,
+        temperature: state.temperature,
+        density: mass / plan.chambers[chamber].volume,
+        velocity: [0.0; 3],
+        particles: state.moles.iter().map(|n| n / plan.moles_per_particle).collect(),
+    }
+}
+
+/// The chamber of each.
+fn probes(model: &Model) -> Result<Vec<usize>, SimulationError> {
+    let chamber = |probe: &crate::scene::Probe| {
+        let (low, high) = region_bounds(&probe.region);
+        let middle = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
+        chamber_of(&model.scene, &model.vessel, middle).ok_or_else(|| SimulationError::NoChamber {
+            what: format!("the middle of probe \"{}\"", probe.name),
+            point: middle,
+        })
+    };
+    model.scene.probes.iter().map(chamber).collect()
+}
+
+/// A part of a surface and the chamber whose gas presses it.
+struct Face {
+    chamber: usize,
+    /// m2.
+    area: f64,
+    /// Area times the unit normal away from the gas.
+    outward: DVec3,
+}
+
+fn facing(model: &Model, surface: &Surface) -> Result<Vec<Face>, SimulationError> {
+    let Model { scene, vessel, .. } = model;
+    let mut faces: Vec<Face> = Vec::new();
+    let vertex = |index: u32| DVec3::from(vessel.vertices[index as usize]);
+    let own = vessel.triangles.iter().filter(|triangle| {
+        triangle.wall as usize == surface.wall && (surface.face.is_none() || triangle.face == surface.face)
+    });
+    for triangle in own {
+        let [a, b, c] = triangle.vertices.map(vertex);
+        // Twice the area, towards the gas.
+        let cross = (b - a).cross(c - a);
+        let share = 1.0 / f64::from(PARTS * PARTS);
+        let lift = 1e-4 * cross.length().sqrt() * cross.normalize();
+        for (u, v) in parts() {
+            let point = (a + u * (b - a) + v * (c - a) + lift).to_array();
+            // Where walls meet, a part may lie within another's solid: it is not pressed.
+            let Some(chamber) = chamber_of(scene, vessel, point) else { continue };
+            let (area, outward) = (0.5 * share * cross.length(), -0.5 * share * cross);
+            match faces.iter_mut().find(|face| face.chamber == chamber) {
+                Some(face) => {
+                    face.area += area;
+                    face.outward += outward;
+                }
+                None => faces.push(Face { chamber, area, outward }),
+            }
+        }
+    }
+    if faces.is_empty() {
+        let point = vessel.bounds.0;
+        return Err(SimulationError::NoChamber { what: format!("the gas before surface \"{}\"", surface.name), point });
+    }
+    Ok(faces)
+}
+
+/// The middles of the equal parts of a triangle, along two of its edges.
+fn parts() -> impl Iterator<Item = (f64, f64)> {
+    let place = |k: u32, third: f64| (f64::from(k) + third) / f64::from(PARTS);
+    (0..PARTS).flat_map(move |i| {
+        (0..PARTS - i).flat_map(move |j| {
+            let upright = Some((place(i, 1.0 / 3.0), place(j, 1.0 / 3.0)));
+            let turned = (i + j + 2 <= PARTS).then(|| (place(i, 2.0 / 3.0), place(j, 2.0 / 3.0)));
+            upright.into_iter().chain(turned)
+        })
+    })
+}
+
+fn audit(model: &Model, end: &[State]) -> Audit {
+    let Model { scene, plan, .. } = model;
+    let species = plan.species();
+    let mass = |moles: &[f64]| moles.iter().zip(&species).map(|(n, gas)| n * gas.molar_mass).sum::<f64>();
+    let start = initial(scene, plan);
+    let (mut injected, mut enthalpy) = (0.0, 0.0);
+    // By the curves themselves, not by the integration that this is to check.
+    for orifice in &scene.orifices {
+        let molar_mass = thermo::molar_mass(&orifice.mixture, &species);
+        let (flow, temperature) = (&orifice.mass_flow, &orifice.temperature);
+        injected += FlowIntegral::new(flow, plan.end_time).total();
+        enthalpy += if thermo::is_constant(&orifice.mixture, &species) {
+            let specific = thermo::molar_enthalpy(&orifice.mixture, &species, 1.0) / molar_mass;
+            specific * flow_times_temperature(flow, temperature, plan.end_time)
+        } else {
+            let specific = |t: f64| thermo::molar_enthalpy(&orifice.mixture, &species, t) / molar_mass;
+            flow_times_of_temperature(flow, temperature, plan.end_time, specific)
+        };
+    }
+    Audit {
+        mass_start: start.iter().map(|chamber| mass(&chamber.moles)).sum(),
+        mass_injected: injected,
+        mass_end: end.iter().map(|state| mass(&state.moles)).sum(),
+        energy_start: start.iter().map(|own| thermo::energy(&own.moles, &species, own.temperature)).sum(),
+        enthalpy_injected: enthalpy,
+        energy_end: end.iter().map(|state| state.energy).sum(),
+        ..Audit::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Method, parse};
+
+    #[derive(Default)]
+    struct Rows(Vec<Row>);
+
+    impl Observer for Rows {
+        fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
+            self.0.push(row.clone());
+            Ok(())
+        }
+    }
+
+    fn run(text: &str) -> (Model, Vec<Row>, Audit) {
+        let mut scene = parse(text, "test.toml", std::path::Path::new("")).unwrap();
+        scene.model.method = Some(Method::ControlVolume);
+        let model = Model::new(scene).unwrap();
+        let mut rows = Rows::default();
+        let audit = run_uniform(&model, &mut rows).unwrap();
+        (model, rows.0, audit)
+    }
+
+    #[test]
+    fn the_parts_of_a_triangle_are_equal_and_fill_it() {
+        let found: Vec<(f64, f64)> = parts().collect();
+        assert_eq!(found.len(), (PARTS * PARTS) as usize);
+        let mean = found.iter().fold([0.0; 2], |[a, b], (u, v)| [a + u, b + v]).map(|sum| sum / found.len() as f64);
+        assert!(mean.iter().all(|mean| (mean - 1.0 / 3.0).abs() < 1e-12), "{mean:?}");
+        assert!(found.iter().all(|(u, v)| *u > 0.0 && *v > 0.0 && u + v < 1.0));
+    }
+
+    /// The tank: mass and energy are those of the curves, and at the end one pressure is in both chambers, that of all
+    /// gas with all its energy. The wall that it presses is in the tank, the probe too.
+    #[test]
+    fn a_filled_tank_has_the_gas_and_the_energy_that_came_in() {
+        let (model, rows, audit) = run(include_str!("../../scenes/tank.toml"));
+        assert!(audit.mass_error().abs() < 1e-12 && audit.energy_error().abs() < 1e-9, "{audit:?}");
+        assert!(audit.verdict(&crate::output::AuditLimits::default()).is_empty());
+        // The check can fail, though no particle is counted.
+        let lost = Audit { energy_end: 0.999 * audit.energy_end, ..audit.clone() };
+        assert_eq!(lost.verdict(&crate::output::AuditLimits::default()).len(), 1);
+        assert_eq!(rows.len(), 100);
+        let end = &rows[99];
+        let [inner, tank] = [0, 1].map(|k| end.chambers[k].pressure);
+        // p V = (gamma - 1) U, gamma 1.4 of both gases.
+        let volume: f64 = model.plan.chambers.iter().map(|chamber| chamber.volume).sum();
+        let expected = 0.4 * audit.energy_end / volume;
+        assert!(
+            (inner / expected - 1.0).abs() < 1e-3 && (tank / expected - 1.0).abs() < 1e-3,
+            "{inner} {tank} {expected}"
+        );
+        let rising = &rows[8];
+        assert!(rising.chambers[0].pressure > 1.02 * rising.chambers[1].pressure);
+        assert!((rising.surfaces[0].pressure / rising.chambers[1].pressure - 1.0).abs() < 1e-3);
+        assert_eq!(rising.probes[0], rising.chambers[1]);
+        // Nitrogen in moles, counted in parts of all gas: as many as flowed in.
+        let unit = model.plan.moles_per_particle;
+        let nitrogen = end.chambers.iter().map(|chamber| chamber.particles[1]).sum::<f64>() * unit * 0.0280134;
+        assert!((nitrogen / audit.mass_injected - 1.0).abs() < 1e-9);
+        // The wall has received the pressure's time integral along its outward normal, +x.
+        let [x, y, z] = end.surfaces[0].impulse;
+        let received: f64 =
+            rows.iter().map(|row| row.surfaces[0].pressure * (row.window[1] - row.window[0]) * 0.4 * 0.3785).sum();
+        assert!((x / received - 1.0).abs() < 1e-3 && y.abs() < 1e-9 * x && z.abs() < 1e-9 * x);
+    }
+
+    const TWO: &str = "end_time = 0.02\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\ngas = \"inside\"\n\
+         [[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [-0.1, -0.1, -0.1]\nmax = [0.1, 0.1, 0.1]\nthickness = 0.005\n\
+         [[wall.hole]]\nname = \"hole\"\nface = \"+x\"\ncenter = [0.0, 0.0]\ndiameter = 0.02\n\
+         [[chamber]]\nname = \"inner\"\nregion = { box = { min = [-0.1, -0.1, -0.1], max = [0.1, 0.1, 0.1] } }\n\
+         pressure = 4e5\ntemperature = 500.0\ngas = \"air\"\n\
+         [[chamber]]\nname = \"outer\"\npressure = 1e3\ntemperature = 300.0\ngas = \"air\"\n\
+         [output]\nrows = 20\nsnapshots = 0\n";
+
+    /// Gas that is left behind by a choked flow has expanded isentropically, T ~ n^(gamma - 1), and its pressure falls as
+    /// p/p0 = (1 + (gamma - 1)/2 k t)^(-2 gamma/(gamma - 1)), k = .84 A c0 / V ((gamma + 1)/2)^(-(gamma + 1)/2(gamma - 1)).
+    #[test]
+    fn a_chamber_that_blows_down_does_so_isentropically() {
+        let (_, rows, audit) = run(TWO);
+        assert!(audit.verdict(&crate::output::AuditLimits::default()).is_empty());
+        let sound = (1.4 * 8.314462618 * 500.0 / 0.029f64).sqrt();
+        // A circle stands as a polygon of its area.
+        let area = std::f64::consts::PI * 1e-4;
+        let rate =
+            |gamma: f64| 0.84 * area * sound / 0.008 * (0.5 * (gamma + 1.0)).powf(-0.5 * (gamma + 1.0) / (gamma - 1.0));
+        let pressure = |t: f64| 4e5 * (1.0 + 0.2 * rate(1.4) * t).powf(-7.0);
+        for row in &rows {
+            let inner = &row.chambers[0];
+            let isentropic = 500.0 * (inner.pressure / 4e5).powf(0.4 / 1.4);
+            assert!((inner.temperature / isentropic - 1.0).abs() < 1e-6, "{inner:?}");
+            // The volume is measured by lines.
+            assert!(
+                (inner.pressure / pressure(row.time) - 1.0).abs() < 2e-3,
+                "{} {}",
+                inner.pressure,
+                pressure(row.time)
+            );
+        }
+        let last = &rows[19].chambers[0];
+        assert!(last.pressure < 3.3e5, "enough has flowed out: {}", last.pressure);
+        // The check can fail: isothermal gas would be at 500 K.
+        assert!(last.temperature < 475.0);
+    }
+
+    #[test]
+    fn a_probe_in_a_wall_is_refused() {
+        let text = format!(
+            "{TWO}[[probe]]\nname = \"in the shell\"\nregion = {{ sphere = {{ center = [0.1025, 0.05, 0.05], radius = 0.02 }} }}\n"
+        );
+        let mut scene = parse(&text, "test.toml", std::path::Path::new("")).unwrap();
+        scene.model.method = Some(Method::ControlVolume);
+        let model = Model::new(scene).unwrap();
+        let error = run_uniform(&model, &mut ()).unwrap_err().to_string();
+        assert!(error.contains("in the shell") && error.contains("no chamber"), "{error}");
+    }
+}
