@@ -8,6 +8,7 @@
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
 override ORIFICES: bool = true;
+override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
@@ -32,6 +33,9 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         particle = sorted[s];
     } else {
         particle = particles[s];
+        if (VENTS && particle.tag == NOBODY) {
+            return;
+        }
     }
     if (ROUNDS_OF_PAIRS) {
         meets_wall = flights[s].wall < step.dt;

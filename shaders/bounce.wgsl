@@ -1,22 +1,38 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl
-// Flies the particles that meet walls to the end of the step, off every wall on the way (specular).
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl coats.wgsl
+// Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
+// as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent.
 //
-// Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`) and the walls;
-// writes `particles` and, where the scene has surfaces, the integer tally `sums`. One thread per entry of
-// `bouncing`, which writes its own particle; sums of integers do not depend on order.
+// Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the walls,
+// `coats` and `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces,
+// the coats and the vents that the scene has. One thread per entry of `bouncing`, which writes its own particle;
+// random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
 
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
 override ORIFICES: bool = true;
 override SPIN: bool = true;
 override SURFACES: bool = true;
+override COATS: bool = true;
+override VENTS: bool = true;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;
 
+// Energy over reference mass to tally units.
+override ENERGY_SCALE: f32 = 1.0;
+// Where the tallies of coats and vents start in `sums`.
+override COATS_AT: u32 = 0;
+override VENTS_AT: u32 = 0;
+
 // Words of a surface's tally, two each: three impulse components, normal impulse, hits.
 const SURFACE_WORDS: u32 = 10;
+// Of a coat's: energy that it took, and that energy times the tallies of the zones that followed.
+const COAT_WORDS: u32 = 4;
+// Of a vent's: energy that left, and times the tallies, as above; hits; hits whose probability was clipped to one;
+// then, one word each, the particles of each gas that left.
+const VENT_WORDS: u32 = 24;
+const ENERGY_RANGE: f32 = 4.29e9;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
@@ -38,6 +54,54 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
         add64(surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
     add64(surface * SURFACE_WORDS + 8u, 1u, 0u);
+}
+
+// Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
+fn tally_energy(slot: u32, energy: f32) {
+    let scaled = round(energy * ENERGY_SCALE);
+    if (!(abs(scaled) < ENERGY_RANGE)) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    let size = u32(abs(scaled));
+    if (size == 0u) {
+        return;
+    }
+    var once = vec2<u32>(size, 0u);
+    var left = vec2<u32>(size * step.tallies_left, multiply_high(size, step.tallies_left));
+    if (scaled < 0.0) {
+        once = negated(once);
+        left = negated(left);
+    }
+    add64(slot, once.x, once.y);
+    if (step.tallies_left > 0u) {
+        add64(slot + 2u, left.x, left.y);
+    }
+}
+
+// Of a number that is not zero.
+fn negated(number: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(~number.x + 1u, ~number.y + select(0u, 1u, number.x == 0u));
+}
+
+fn energy_of(particle: Particle, mass: f32) -> f32 {
+    return 0.5 * mass * dot(particle.velocity, particle.velocity) + particle.spin;
+}
+
+// Whether a particle that hits vent `v` leaves through it, which is tallied.
+fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
+    let slot = VENTS_AT + vents[v].index * VENT_WORDS;
+    let probability = vents[v].beta * mass * speed;
+    add64(slot + 4u, 1u, 0u);
+    if (probability > 1.0) {
+        add64(slot + 6u, 1u, 0u);
+    }
+    if (unit_interval(word) >= probability) {
+        return false;
+    }
+    tally_energy(slot, energy_of(particle, mass));
+    atomicAdd(&sums[slot + 8u + gas_of(particle.tag)], 1u);
+    return true;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -79,7 +143,33 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         let old = particle.velocity;
         var turned = old - 2.0 * dot(old, triangle.normal) * triangle.normal;
         turned *= sqrt(dot(old, old) / dot(turned, turned));
-        if (SPIN && gas.exchange > 0.0) {
+        var mirrored = true;
+        if (COATS && triangle.coat != NOBODY) {
+            let coat = coats[triangle.coat];
+            let draw = wall_draw(particle.tag, bounces, 0u);
+            if (VENTS) {
+                let v = vent_at(coat, shifted(particle.position, old * hit.time));
+                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
+                    if (SURFACES && triangle.surface != NOBODY) {
+                        tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
+                    }
+                    particle.tag = NOBODY;
+                    break;
+                }
+            }
+            if (unit_interval(draw.y) < coat.accommodation) {
+                mirrored = false;
+                turned = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
+                var spin = 0.0;
+                if (SPIN && gas.exchange > 0.0) {
+                    spin = coat.thermal * gamma_variate(1.0 / gas.inverse_beta, particle.tag, bounces);
+                }
+                let kinetic = 0.5 * gas.mass * dot(old - turned, old + turned);
+                tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));
+                particle.spin = spin;
+            }
+        }
+        if (SPIN && mirrored && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
             particle.spin = max(particle.spin - 0.5 * gas.mass * dot(turned - old, turned + old), 0.0);
         }
@@ -94,6 +184,10 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     atomicAdd(&counters[BOUNCES], bounces);
     if (overshoot > 0.0) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
+    }
+    if (VENTS && particle.tag == NOBODY) {
+        particles[s].tag = NOBODY;
+        return;
     }
     particle.position = shifted(particle.position, particle.velocity * end);
     let cell = particle.position >> vec3<u32>(CELL_BITS);

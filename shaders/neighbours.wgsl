@@ -8,6 +8,8 @@
 // particle, or per ghost that was asked (asked.wgsl), which writes its own list. Where a list is too short, the longest one wanted is kept, and the
 // host runs the interval again with longer lists.
 
+override VENTS: bool = true;
+
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
@@ -29,8 +31,9 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     } else if (s >= step.total) {
         return;
     }
-    // The outermost ghosts have no neighbours beyond them here, and choose nobody.
-    if (step.depth > 0u && ((layers[s] & LAYER) >= step.depth || waits(layers[s] & LAYER))) {
+    // The outermost ghosts have no neighbours beyond them here, and choose nobody; nor do slots without particle.
+    let layer = layers[s] & LAYER;
+    if ((VENTS || step.depth > 0u) && (layer >= max(step.depth, 1u) || waits(layer))) {
         neighbour_count[s] = 0u;
         return;
     }

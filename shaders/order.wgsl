@@ -23,6 +23,7 @@
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 override ORIFICES: bool = true;
+override VENTS: bool = true;
 // Pairs are chosen from neighbour lists, in rounds.
 override ROUNDS_OF_PAIRS: bool = true;
 
@@ -30,6 +31,11 @@ override ROUNDS_OF_PAIRS: bool = true;
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
     if (s >= step.total) {
+        return;
+    }
+    if (VENTS && s >= cell_start[step.bins]) {
+        // On a device alone, whose host learns late how many have left: slots that hold no particle.
+        layers[s] = LAYER;
         return;
     }
     let slot = slots[s];

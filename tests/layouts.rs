@@ -6,7 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -51,13 +52,17 @@ fn twins() -> Vec<Twin> {
             peers,
             near_peers,
             list,
-            stride
+            stride,
+            // The tail padding is not named in the shader.
+            tallies_left
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
-        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, pad, normal, pad2),
+        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, pad2),
+        twin!("Coat", GpuCoat, thermal, accommodation, first_vent, end_vent),
+        twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
         twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),

@@ -45,6 +45,8 @@ struct Step {
     list: u32,
     // Distance of the ids of two newborns.
     stride: u32,
+    // Tallies of the zones in this interval at the end of this step or later.
+    tallies_left: u32,
 }
 
 override WORKGROUP: u32 = 64;

@@ -17,7 +17,8 @@ struct Triangle {
     // Surface tally of this triangle, or NOBODY.
     surface: u32,
     c: vec3<u32>,
-    pad: u32,
+    // What it does to a particle that hits it (`coats`), or NOBODY: a mirror.
+    coat: u32,
     // Unit normal into the gas.
     normal: vec3<f32>,
     pad2: u32,

@@ -14,7 +14,7 @@
 use super::curve::{value_held, value_inside};
 use super::discharge::{Side, exchange};
 use super::{Species, kinetics, thermo};
-use crate::scene::{GAS_CONSTANT, Opening, Orifice};
+use crate::scene::{GAS_CONSTANT, Opening, Orifice, Vent, VentFlow, WallHeat};
 
 /// Error of a step over the chamber's moles or energy.
 const TOLERANCE: f64 = 1e-10;
@@ -30,6 +30,8 @@ pub struct ControlVolume {
     pub volumes: Vec<f64>,
     pub sources: Vec<Source>,
     pub openings: Vec<Opening>,
+    pub walls: Vec<HeatedWall>,
+    pub vents: Vec<OpenVent>,
     pub collisions: Collisions,
 }
 
@@ -49,6 +51,23 @@ pub enum Collisions {
     Particles { diameter: f64, moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
+}
+
+/// The part of a wall in one chamber that exchanges heat.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatedWall {
+    pub chamber: usize,
+    /// m2.
+    pub area: f64,
+    pub heat: WallHeat,
+}
+
+/// A vent, the chamber that it empties, and its area, m2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenVent {
+    pub chamber: usize,
+    pub area: f64,
+    pub vent: Vent,
 }
 
 /// Contents of a chamber at the start.
@@ -89,10 +108,11 @@ impl ControlVolume {
         let mut kinks = kinks.into_iter().filter(|&t| t > 0.0).peekable();
         let mut now = 0.0;
         let mut step = f64::INFINITY;
+        let mut open = vec![false; self.vents.len()];
         let mut states = Vec::with_capacity(times.len());
         for &time in times {
             while let Some(end) = kinks.next_if(|&kink| kink <= time) {
-                self.advance(&mut contents, now, end, &mut step);
+                self.advance(&mut contents, now, end, &mut step, &mut open);
                 now = end;
             }
             states.push((0..self.volumes.len()).map(|chamber| self.state(&contents, chamber)).collect());
@@ -108,7 +128,11 @@ impl ControlVolume {
     /// Positive times at which a curve bends or ends.
     fn kinks(&self) -> Vec<f64> {
         let curves = self.sources.iter().flat_map(|s| [&s.orifice.mass_flow, &s.orifice.temperature]);
-        curves.flat_map(|curve| &curve.points).map(|point| point[0]).collect()
+        let vents = self.vents.iter().filter_map(|open| match &open.vent.flow {
+            VentFlow::Discharge(curve) => Some(curve),
+            VentFlow::DischargeByPressure(_) | VentFlow::LeakVelocity(_) => None,
+        });
+        curves.chain(vents).flat_map(|curve| &curve.points).map(|point| point[0]).collect()
     }
 
     fn side<'a>(&self, contents: &'a [f64], chamber: usize) -> Side<'a> {
@@ -125,7 +149,8 @@ impl ControlVolume {
     }
 
     /// Integrates over a stretch without kinks; `step` is the step to try, kept from stretch to stretch.
-    fn advance(&self, contents: &mut Vec<f64>, start: f64, end: f64, step: &mut f64) {
+    /// A vent opens between two steps: at most one step late.
+    fn advance(&self, contents: &mut Vec<f64>, start: f64, end: f64, step: &mut f64, open: &mut [bool]) {
         let flowing: Vec<bool> = self
             .sources
             .iter()
@@ -136,7 +161,8 @@ impl ControlVolume {
         while now < end {
             let last = *step >= end - now;
             let tried = if last { end - now } else { *step };
-            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing);
+            self.open_vents(contents, open);
+            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing, open);
             let whole = runge_kutta(contents, now, tried, &rate);
             let half = runge_kutta(contents, now, 0.5 * tried, &rate);
             let halves = runge_kutta(&half, now + 0.5 * tried, 0.5 * tried, &rate);
@@ -176,7 +202,7 @@ impl ControlVolume {
     }
 
     /// Time derivative of the unknowns.
-    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool]) -> Vec<f64> {
+    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool], open: &[bool]) -> Vec<f64> {
         let stride = self.stride();
         let mut rate = vec![0.0; contents.len()];
         for (Source { chamber, orifice }, _) in self.sources.iter().zip(flowing).filter(|(_, flowing)| **flowing) {
@@ -199,6 +225,7 @@ impl ControlVolume {
                 rate[b * stride + gas] += opening.area * flow;
             }
         }
+        self.lose(time, contents, open, &mut rate);
         rate
     }
 
@@ -231,5 +258,6 @@ pub fn moles_at(pressure: f64, volume: f64, temperature: f64) -> f64 {
     pressure * volume / (GAS_CONSTANT * temperature)
 }
 
+mod losses;
 #[cfg(test)]
 mod tests;

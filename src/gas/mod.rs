@@ -15,8 +15,10 @@ mod random;
 mod riemann;
 mod species;
 pub mod thermo;
+pub mod vent;
+pub mod wall_heat;
 
-pub use control_volume::{Collisions, ControlVolume, Reservoir, Source, State, moles_at};
+pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
 pub use curve::{FlowIntegral, flow_times_of_temperature, flow_times_temperature, value_held, value_inside};
 pub use discharge::{Side, exchange};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};

@@ -12,6 +12,7 @@
 //! | `CellCollision`   | `[step, cell, 4 candidate + block, part]`           | device   |
 //! | `RefinedPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `RefinedState`    | `[particle id, block, 0, 0]`                       | host     |
+//! | `Wall`            | `[step, 32 hit + block, particle id, 0]`           | device   |
 //!
 //! `step` counts from the start of the run (32 bits). `block` counts the blocks of four words that one particle
 //! or pair uses up, so the number of draws that a rejection method takes never shifts the draws of another.
@@ -34,6 +35,9 @@ pub enum Purpose {
     /// Of the particles that a coarser state is split into; ids are those of the refined run.
     RefinedPosition = 5,
     RefinedState = 6,
+    /// Drawn on the device only: whether a hit on a wall lets the particle out, and how it leaves the wall. `hit`
+    /// counts those of the particle in the step, from 1.
+    Wall = 7,
     /// Drawn on the device only: candidate pairs of a cell, and their collisions.
     CellCollision = 9,
 }
@@ -130,13 +134,14 @@ mod tests {
     use super::*;
 
     const COUNT: u32 = 200_000;
-    const PURPOSES: [Purpose; 7] = [
+    const PURPOSES: [Purpose; 8] = [
         Purpose::InitialPosition,
         Purpose::InitialState,
         Purpose::Inflow,
         Purpose::Collision,
         Purpose::RefinedPosition,
         Purpose::RefinedState,
+        Purpose::Wall,
         Purpose::CellCollision,
     ];
 

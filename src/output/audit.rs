@@ -2,8 +2,7 @@
 //!
 //! - particles: initial + injected = inside + outside + vented, with none outside the vessel;
 //! - mass: start + injected = end + vented;
-//! - energy: U0 + integral of h dm in = U + integral of h dm out (specification, section 4), for rigid walls
-//!   that take no heat.
+//! - energy: U0 + integral of h dm in = U + integral of h dm out + heat to the walls (specification, section 4).
 //!
 //! - momentum, where the scene names surfaces and so what the walls received is tallied: start + injected =
 //!   end + to the walls, within a share of M sqrt(2 U / M), the momentum of all gas flying one way at its
@@ -40,6 +39,8 @@ pub struct Audit {
     pub enthalpy_injected: f64,
     /// J.
     pub enthalpy_vented: f64,
+    /// J; `None` where no wall exchanges heat.
+    pub heat_to_walls: Option<f64>,
     pub energy_end: f64,
     /// Pairs still mutually eligible after the last round, over all that should have collided; `None`
     /// where the method has no collisions.
@@ -48,6 +49,10 @@ pub struct Audit {
     pub wall_overshoot: f64,
     /// Flights that used up their bounces in a step and were cut short.
     pub truncated_flights: u64,
+    /// Of each vent its name, and the hits whose probability of passing was clipped to one, over those that passed.
+    pub clipped_vents: Vec<(String, f64)>,
+    /// Walls whose heat-transfer coefficient asked for more than all hits, and how many times as much at most.
+    pub clipped_walls: Vec<(String, f64)>,
     /// Names of the buffers or tallies that overflowed.
     pub overflows: Vec<String>,
 }
@@ -65,6 +70,8 @@ pub struct AuditLimits {
     pub truncated_flights: u64,
     /// Above it a warning (specification, section 2: 3 %).
     pub lost_collision_fraction: f64,
+    /// Above it a warning.
+    pub clipped_fraction: f64,
 }
 
 impl Default for AuditLimits {
@@ -76,14 +83,19 @@ impl Default for AuditLimits {
             wall_overshoot: 1e-6,
             truncated_flights: 0,
             lost_collision_fraction: 0.03,
+            clipped_fraction: 0.01,
         }
     }
 }
 
 impl Audit {
-    /// (U + vented - U0 - injected) / (U0 + injected); NaN where there was no energy at all.
+    /// (U + vented + heat - U0 - injected) / (U0 + injected); NaN where there was no energy at all.
     pub fn energy_error(&self) -> f64 {
-        relative(self.energy_end + self.enthalpy_vented, self.energy_start + self.enthalpy_injected)
+        relative(self.energy_end + self.energy_out(), self.energy_start + self.enthalpy_injected)
+    }
+
+    fn energy_out(&self) -> f64 {
+        self.enthalpy_vented + self.heat_to_walls.unwrap_or(0.0)
     }
 
     /// As [`Audit::energy_error`], of the mass.
@@ -153,14 +165,32 @@ impl Audit {
 
     /// What makes the run less accurate than planned without making its account wrong.
     pub fn warnings(&self, limits: &AuditLimits) -> Vec<String> {
-        match self.lost_collision_fraction {
-            Some(lost) if !within(lost, limits.lost_collision_fraction) => vec![format!(
+        let mut warnings = Vec::new();
+        if let Some(lost) = self.lost_collision_fraction
+            && !within(lost, limits.lost_collision_fraction)
+        {
+            warnings.push(format!(
                 "{:.1} % of the collisions were lost (more than {:.0} %): use a smaller time step or more rounds",
                 100.0 * lost,
                 100.0 * limits.lost_collision_fraction
-            )],
-            _ => Vec::new(),
+            ));
         }
+        for (vent, share) in &self.clipped_vents {
+            if !within(*share, limits.clipped_fraction) {
+                warnings.push(format!(
+                    "vent `{vent}`: {:.0} % of what left had a probability above one (more than {:.0} %): it passes too \
+                     little, or with less than its enthalpy; give it a larger place, or resolve the hole",
+                    100.0 * share,
+                    100.0 * limits.clipped_fraction
+                ));
+            }
+        }
+        for (wall, times) in &self.clipped_walls {
+            warnings.push(format!(
+                "wall `{wall}`: its heat-transfer coefficient was up to {times:.2} times what all hits on it can carry"
+            ));
+        }
+        warnings
     }
 
     /// The table for the end of the run and the report.
@@ -183,7 +213,7 @@ impl Audit {
             (i128::from(found) - i128::from(entered)).to_string(),
         ];
         let mass = [self.mass_start, self.mass_injected, self.mass_vented, self.mass_end];
-        let energy = [self.energy_start, self.enthalpy_injected, self.enthalpy_vented, self.energy_end];
+        let energy = [self.energy_start, self.enthalpy_injected, self.energy_out(), self.energy_end];
         let accounts = aligned(&[
             row("Audit", &head),
             row("particles", &particles),
@@ -201,7 +231,7 @@ impl Audit {
             _ if entered == 0 => ("none: there are no particles".to_owned(), "unknown".to_owned()),
             _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
         };
-        let facts = [
+        let mut facts = vec![
             ("outside the vessel", grouped(self.particles_outside)),
             ("lost collisions", lost),
             ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
@@ -213,6 +243,9 @@ impl Audit {
             ("  end", vector(self.momentum_end)),
             ("  error", momentum_error),
         ];
+        if let Some(heat) = self.heat_to_walls {
+            facts.insert(0, ("out of energy: heat to the walls, J", format!("{heat:.6e}")));
+        }
         let widest = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
         facts.iter().fold(accounts, |text, (name, fact)| text + &format!("{name:<widest$}  {fact}\n"))
     }
@@ -249,6 +282,9 @@ mod tests {
             energy_start: 15_000.0,
             enthalpy_injected: 57_000.0,
             enthalpy_vented: 2_000.0,
+            heat_to_walls: None,
+            clipped_vents: Vec::new(),
+            clipped_walls: Vec::new(),
             energy_end: 70_000.5,
             lost_collision_fraction: Some(0.012),
             wall_overshoot: 1e-9,

@@ -136,7 +136,7 @@ impl<'a> Heat<'a> {
     }
 }
 
-/// The highest temperature the scene can reach, K, and why: a chamber's own, or that of gas which flows
+/// The highest temperature the scene can reach, K, and why: a chamber's own, that of a wall, or that of gas which flows
 /// into a chamber (an orifice, a neighbour of higher pressure) and is stopped there, gamma T0 at most.
 pub fn highest_temperature(scene: &Scene) -> (f64, String) {
     // A heat capacity that grows with the temperature makes it less hot than gamma(T0) T0.
@@ -157,6 +157,11 @@ pub fn highest_temperature(scene: &Scene) -> (f64, String) {
         let hottest = orifice.temperature.points.iter().map(|point| point[1]).fold(0.0, f64::max);
         let why = format!("gamma T0 of orifice `{}` (filling reaches gamma T0)", orifice.name);
         candidates.push((gamma(&orifice.mixture, hottest) * hottest, why));
+    }
+    for wall in &scene.walls {
+        if let Some(heat) = &wall.heat {
+            candidates.push((heat.temperature, format!("wall `{}`", wall.name)));
+        }
     }
     candidates.into_iter().fold((0.0, String::new()), |best, next| if next.0 > best.0 { next } else { best })
 }

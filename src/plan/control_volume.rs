@@ -87,6 +87,7 @@ pub fn plan(
         gases: gases.collect(),
         warnings: warnings(scene, &openings),
         openings,
+        vents: Vec::new(),
         reasons,
     })
 }

@@ -7,6 +7,7 @@ use super::heat::species;
 use super::population::{Population, openings, wanted};
 use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
+use super::vents;
 use super::warnings::warnings;
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::{Species, kinetics};
@@ -28,6 +29,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
     let species = species(scene, &mut reasons)?;
+    vents::check(scene, &species, method)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
@@ -66,7 +68,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
+    let mut warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
+    let vents = vents::planned(scene, &species, measured);
+    warnings.extend(vents::warnings(scene, &species, &vents, measured));
     Ok(Plan {
         method,
         particles,
@@ -93,6 +97,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: chambers(scene, measured, population.initial),
         gases,
         openings,
+        vents,
         reasons,
         warnings,
     })

@@ -49,6 +49,14 @@ pub enum PlanError {
          is none; give a constant `cp`, or coefficients fitted to the temperatures of the scene"
     ))]
     HeatCapacity { gas: String, range: [f64; 2], residual: f64, limit: f64 },
+    #[error("{what}: the method control-volume does not know what leaves through vents and walls yet")]
+    #[diagnostic(help(
+        "choose a method of particles in [model]; its history has a control volume with these losses beside it"
+    ))]
+    LossesOfControlVolume { what: String },
+    #[error("{what} together with gas `{gas}`, whose heat capacity depends on the temperature: that is not there yet")]
+    #[diagnostic(help("give the gas a constant `cp`, that of the mean temperature"))]
+    LossesOfCurves { what: String, gas: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

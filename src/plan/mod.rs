@@ -21,6 +21,7 @@ mod heat;
 mod population;
 mod render;
 mod resolution;
+mod vents;
 mod warnings;
 
 use crate::gas::Species;
@@ -45,6 +46,18 @@ pub struct Measured {
     pub openings: Vec<Opening>,
     /// The narrowest passage of the gas, m, where it is known.
     pub smallest_gap: Option<f64>,
+    /// Of each vent of the scene.
+    pub vents: Vec<MeasuredVent>,
+    /// Indices of a wall that exchanges heat and of a chamber that it borders on.
+    pub heated: Vec<(usize, usize)>,
+}
+
+/// Where a vent is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredVent {
+    pub chamber: usize,
+    /// m2 of wall.
+    pub area: f64,
 }
 
 /// What will be modelled; all SI.
@@ -91,6 +104,8 @@ pub struct Plan {
     pub chambers: Vec<ChamberPlan>,
     pub gases: Vec<GasPlan>,
     pub openings: Vec<OpeningPlan>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub vents: Vec<VentPlan>,
     pub reasons: Vec<Reason>,
     pub warnings: Vec<String>,
 }
@@ -137,6 +152,20 @@ pub struct OpeningPlan {
     pub length: f64,
     /// Mean free path over length at the mean density at the end.
     pub knudsen: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VentPlan {
+    pub name: String,
+    /// Index of the chamber that it empties.
+    pub chamber: usize,
+    /// m2 that the gas flows through, and m2 of wall over which that is spread.
+    pub area: f64,
+    pub place: f64,
+    /// kg/s at the start.
+    pub initial_mass_flow: f64,
+    /// The largest flux over its place, in units of p / sqrt(R T / M).
+    pub largest_flux: f64,
 }
 
 /// Why a quantity has its value.

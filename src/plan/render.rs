@@ -36,7 +36,12 @@ impl Plan {
             let area = format!("{} cm2", significant(1e4 * opening.area));
             [opening.name.clone(), area, significant(opening.knudsen)]
         }));
-        for part in [chambers, gases, openings].iter().filter(|part| part.len() > 1) {
+        let mut vents = vec![["vent".to_string(), "area, place".into(), "mass flow at the start".into()]];
+        vents.extend(self.vents.iter().map(|vent| {
+            let areas = format!("{} of {} cm2", significant(1e4 * vent.area), significant(1e4 * vent.place));
+            [vent.name.clone(), areas, format!("{} g/s", significant(1e3 * vent.initial_mass_flow))]
+        }));
+        for part in [chambers, gases, openings, vents].iter().filter(|part| part.len() > 1) {
             text.push('\n');
             text.push_str(&table(part));
         }

@@ -32,7 +32,9 @@ pub(super) fn orifice(raw: &At<RawOrifice>, gases: &Names, units: UnitSystem) ->
                     "a temperature (K), or at least one point [time, K]",
                 ));
             }
-            NumberOr::Array(points) => curve(points, units, |at| positive(at, Quantity::Temperature, units))?,
+            NumberOr::Array(points) => {
+                curve(points, Quantity::Time, units, |at| positive(at, Quantity::Temperature, units))?
+            }
         },
         mixture: mixture(&orifice.gas, gases)?,
         jet: orifice.jet.as_ref().map(|jet| self::jet(&jet.value)).transpose()?,
@@ -48,12 +50,13 @@ fn mass_flow(raw: &At<Vec<At<Numbers<2>>>>, units: UnitSystem) -> Result<Curve, 
         return Err(Problem::value(&raw.span, found, "at least two points [time, mass flow]")
             .hint("the flow is linear between the points and zero before the first and after the last"));
     }
-    curve(&raw.value, units, |at| not_negative(at, Quantity::MassFlow, units))
+    curve(&raw.value, Quantity::Time, units, |at| not_negative(at, Quantity::MassFlow, units))
 }
 
-/// Points in order of time, the second number of each read by `ordinate`.
-fn curve(
+/// Points in order of time (or of another quantity), the second number of each read by `ordinate`.
+pub(super) fn curve(
     raw: &[At<Numbers<2>>],
+    abscissa: Quantity,
     units: UnitSystem,
     ordinate: impl Fn(&At<f64>) -> Result<f64, Problem>,
 ) -> Result<Curve, Problem> {
@@ -61,16 +64,17 @@ fn curve(
     let mut earlier: Option<&At<f64>> = None;
     for point in raw {
         let [time_at, value_at] = &point.value.0;
-        let time = not_negative(time_at, Quantity::Time, units)?;
+        let time = not_negative(time_at, abscissa, units)?;
         if let (Some(last), Some(previous)) = (points.last(), earlier)
             && time <= last[0]
         {
+            let (noun, beyond) = if abscissa == Quantity::Time { ("time", "after") } else { ("pressure", "above") };
             let allowed = format!(
-                "a time after that of the point before, {} {}",
+                "a {noun} {beyond} that of the point before, {} {}",
                 show(previous.value),
-                units.symbol(Quantity::Time)
+                units.symbol(abscissa)
             );
-            return Err(Problem::value(&time_at.span, format!("the time {}", show(time_at.value)), allowed));
+            return Err(Problem::value(&time_at.span, format!("the {noun} {}", show(time_at.value)), allowed));
         }
         points.push([time, ordinate(value_at)?]);
         earlier = Some(time_at);

@@ -20,6 +20,7 @@ mod tests;
 mod types;
 mod units;
 mod validate;
+mod vents;
 mod walls;
 mod write;
 

@@ -45,6 +45,9 @@ pub struct RawScene {
     /// Walls or faces on which pressure and impulse are measured.
     #[serde(default)]
     pub surface: Vec<At<RawSurface>>,
+    /// Where walls let gas out.
+    #[serde(default)]
+    pub vent: Vec<At<RawVent>>,
     /// What the plan otherwise decides.
     #[serde(default)]
     pub model: RawModel,
@@ -124,6 +127,13 @@ pub struct RawWall {
     pub file: Option<At<String>>,
     /// mesh: length units of the scene per unit of the mesh file; 1 unless given.
     pub scale: Option<At<f64>>,
+    /// Temperature of a wall that exchanges heat with the gas, K; without it the wall is smooth and adiabatic.
+    pub temperature: Option<At<f64>>,
+    /// Share of the hits that leave diffusely with the wall's temperature, 0 to 1; with `temperature`, 1 unless it or
+    /// `heat_transfer` is given.
+    pub accommodation: Option<At<f64>>,
+    /// Heat-transfer coefficient (SI: W/(m2 K)), instead of `accommodation`.
+    pub heat_transfer: Option<At<f64>>,
     /// box with `thickness`, plane: holes through the wall.
     #[serde(default)]
     pub hole: Vec<At<RawHole>>,
@@ -310,6 +320,36 @@ pub struct RawSurface {
     pub wall: At<String>,
     /// One face, of a wall that is a box; all of the wall unless given.
     pub face: Option<At<RawFace>>,
+}
+
+/// A part of a wall that lets gas out of the scene; exactly one of `discharge`, `discharge_by_pressure`, `leak_velocity`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawVent {
+    /// Unique among the vents.
+    pub name: At<String>,
+    /// The name of a wall.
+    pub wall: At<String>,
+    /// One face, of a wall that is a box; all of the wall unless given.
+    pub face: Option<At<RawFace>>,
+    /// The chamber that it empties; needed where its place borders on several.
+    pub chamber: Option<At<String>>,
+    /// Centre of a disc on the wall or face, its place; with `diameter`.
+    pub position: Option<At<Numbers<3>>>,
+    /// Diameter of that disc.
+    pub diameter: Option<At<f64>>,
+    /// Area that the gas flows through (SI: m2), spread over its place; the area of the place unless given.
+    pub area: Option<At<f64>>,
+    /// Vent coefficient C23 of the Wang-Nefske formula: a number, or points [time, C23], constant beyond the ends.
+    pub discharge: Option<At<NumberOr<Numbers<2>>>>,
+    /// C23 as points [pressure above the external one, C23], constant beyond the ends.
+    pub discharge_by_pressure: Option<At<Vec<At<Numbers<2>>>>>,
+    /// Leakage of a fabric: points [pressure above the external one, velocity of the gas] (SI: Pa, m/s).
+    pub leak_velocity: Option<At<Vec<At<Numbers<2>>>>>,
+    /// Pressure above the external one at which it opens, for good (SI: Pa); 0 unless given.
+    pub opening_pressure: Option<At<f64>>,
+    /// External pressure (SI: Pa); 101325 Pa unless given.
+    pub external_pressure: Option<At<f64>>,
 }
 
 /// What the plan otherwise decides.

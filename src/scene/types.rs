@@ -25,6 +25,7 @@ pub struct Scene {
     pub orifices: Vec<Orifice>,
     pub probes: Vec<Probe>,
     pub surfaces: Vec<Surface>,
+    pub vents: Vec<Vent>,
     pub model: ModelRequest,
     pub output: OutputRequest,
 }
@@ -76,6 +77,24 @@ pub struct Wall {
     pub shape: Shape,
     /// On which side of the surface the gas is. A shape with a thickness is a solid with gas on both sides.
     pub gas: GasSide,
+    /// `None`: smooth and adiabatic, a mirror.
+    pub heat: Option<WallHeat>,
+}
+
+/// A wall that keeps its temperature and takes heat from the gas, or gives it (specification, section 4 "Rigid wall").
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallHeat {
+    /// K.
+    pub temperature: f64,
+    pub transfer: HeatTransfer,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeatTransfer {
+    /// The share of the hits that leave with the temperature of the wall, 0 to 1.
+    Accommodation(f64),
+    /// W/(m2 K).
+    Coefficient(f64),
 }
 
 impl Wall {
@@ -229,6 +248,45 @@ pub struct Surface {
     pub wall: usize,
     /// One face of a box, or all of the wall.
     pub face: Option<Face>,
+}
+
+/// Where a wall lets gas out: a vent or a leaking fabric, modelled (specification, section 4). What leaves is gone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vent {
+    pub name: String,
+    /// Wall index.
+    pub wall: usize,
+    /// One face of a box, or all of the wall.
+    pub face: Option<Face>,
+    /// Index of the chamber that it empties; `None`: the only one at its place.
+    pub chamber: Option<usize>,
+    /// Its place, if not all of the wall or face.
+    pub disc: Option<Disc>,
+    /// m2; `None`: that of its place.
+    pub area: Option<f64>,
+    pub flow: VentFlow,
+    /// Pa above the external pressure, at which it opens; from then on it is open.
+    pub opening_pressure: f64,
+    /// Pa.
+    pub external_pressure: f64,
+}
+
+/// What of a wall lies within half a diameter of a point, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    pub center: [f64; 3],
+    pub diameter: f64,
+}
+
+/// How much flows; curves are constant beyond their ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VentFlow {
+    /// Coefficient C23 against time, s.
+    Discharge(Curve),
+    /// C23 against the pressure above the external one, Pa.
+    DischargeByPressure(Curve),
+    /// Velocity, m/s, of the gas as it is inside, against the pressure above the external one.
+    LeakVelocity(Curve),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]

@@ -14,12 +14,15 @@ pub(super) enum Quantity {
     Length,
     Area,
     Time,
+    Velocity,
     Temperature,
     Pressure,
     MassFlow,
     MolarMass,
     /// Heat capacity per mole; of a polynomial each coefficient, since all systems have K.
     MolarHeat,
+    /// Heat per area, time and temperature.
+    HeatTransfer,
 }
 
 impl UnitSystem {
@@ -32,6 +35,8 @@ impl UnitSystem {
             (KgMmMs | TMmS, Length) => 1e-3,
             (KgMmMs | TMmS, Area) => 1e-6,
             (KgMmMs, Time) => 1e-3,
+            (KgMmMs, Velocity) => 1.0,
+            (TMmS, Velocity) => 1e-3,
             (KgMmMs, Pressure) => 1e9,
             (KgMmMs, MassFlow) => 1e3,
             (KgMmMs, MolarMass | MolarHeat) => 1.0,
@@ -39,6 +44,8 @@ impl UnitSystem {
             (TMmS, Pressure) => 1e6,
             (TMmS, MassFlow | MolarMass) => 1e3,
             (TMmS, MolarHeat) => 1e-3,
+            (KgMmMs, HeatTransfer) => 1e9,
+            (TMmS, HeatTransfer) => 1e3,
         }
     }
 
@@ -52,6 +59,9 @@ impl UnitSystem {
             (Si, Length) => "m",
             (Si, Area) => "m2",
             (Si | TMmS, Time) => "s",
+            (Si, Velocity) => "m/s",
+            (KgMmMs, Velocity) => "mm/ms",
+            (TMmS, Velocity) => "mm/s",
             (Si, Pressure) => "Pa",
             (Si, MassFlow) => "kg/s",
             (Si | KgMmMs, MolarMass) => "kg/mol",
@@ -65,6 +75,9 @@ impl UnitSystem {
             (TMmS, MassFlow) => "t/s",
             (TMmS, MolarMass) => "t/mol",
             (TMmS, MolarHeat) => "mJ/(mol K)",
+            (Si, HeatTransfer) => "W/(m2 K)",
+            (KgMmMs, HeatTransfer) => "J/(ms mm2 K)",
+            (TMmS, HeatTransfer) => "mJ/(s mm2 K)",
         }
     }
 }
@@ -88,6 +101,8 @@ mod tests {
             near(Quantity::Time, time);
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);
+            near(Quantity::Velocity, length / time);
+            near(Quantity::HeatTransfer, mass / time.powi(3));
             near(Quantity::MolarMass, mass);
             near(Quantity::MolarHeat, mass * length * length / (time * time));
         }

@@ -9,7 +9,7 @@ use super::raw::{RawScene, RawUnits};
 use super::raw_values::At;
 use super::types::{Scene, UnitSystem};
 use super::units::Quantity;
-use super::{flows, gases, places, settings, walls};
+use super::{flows, gases, places, settings, vents, walls};
 
 /// At most 56 bits of the seed are used.
 const LARGEST_SEED: i64 = (1 << 56) - 1;
@@ -32,6 +32,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     Names::collect("hole or opening", holes.chain(raw.opening.iter().map(|o| &o.value.name)), &mut problems);
     Names::collect("orifice", raw.orifice.iter().map(|o| &o.value.name), &mut problems);
     Names::collect("probe", raw.probe.iter().map(|p| &p.value.name), &mut problems);
+    Names::collect("vent", raw.vent.iter().map(|v| &v.value.name), &mut problems);
     Names::collect("surface", raw.surface.iter().map(|s| &s.value.name), &mut problems);
 
     let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
@@ -45,6 +46,8 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let orifices = each(&raw.orifice, &mut problems, |orifice, _| flows::orifice(orifice, &gas_names, units));
     let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
     let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &raw.wall));
+    let vents =
+        each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &raw.wall, units));
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
@@ -64,6 +67,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
             orifices,
             probes,
             surfaces,
+            vents,
             model,
             output,
         }),

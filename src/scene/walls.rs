@@ -5,10 +5,10 @@ use std::path::Path;
 
 use super::errors::{Problem, list, quote};
 use super::holes::holes;
-use super::numbers::{corners, direction, normalised, point, positive, sides, small_count};
+use super::numbers::{bounded, corners, direction, normalised, not_negative, point, positive, sides, small_count};
 use super::raw::{RawShape, RawSide, RawWall};
 use super::raw_values::{At, Numbers};
-use super::types::{GasSide, Shape, UnitSystem, Wall};
+use super::types::{GasSide, HeatTransfer, Shape, UnitSystem, Wall, WallHeat};
 use super::units::Quantity;
 
 const CYLINDER_SEGMENTS: u32 = 48;
@@ -27,7 +27,39 @@ pub(super) fn wall(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Res
         RawShape::Plane => plane(raw, units)?,
         RawShape::Mesh => mesh(raw, units, base_dir)?,
     };
-    Ok(Wall { name: raw.value.name.value.clone(), shape, gas })
+    Ok(Wall { name: raw.value.name.value.clone(), shape, gas, heat: heat(raw, units)? })
+}
+
+fn heat(raw: &At<RawWall>, units: UnitSystem) -> Result<Option<WallHeat>, Problem> {
+    let wall = &raw.value;
+    let Some(temperature) = &wall.temperature else {
+        let given = [("accommodation", &wall.accommodation), ("heat_transfer", &wall.heat_transfer)];
+        return match given.into_iter().find_map(|(key, at)| at.as_ref().map(|at| (key, at))) {
+            None => Ok(None),
+            Some((key, at)) => Err(Problem::value(
+                &at.span,
+                format!("`{key}` of a wall without `temperature`"),
+                format!("`{key}` together with `temperature`"),
+            )),
+        };
+    };
+    let transfer = match (&wall.accommodation, &wall.heat_transfer) {
+        (Some(_), Some(at)) => {
+            return Err(Problem::value(
+                &at.span,
+                "both `accommodation` and `heat_transfer`",
+                "at most one of them: each follows from the other and the state of the gas",
+            ));
+        }
+        (None, None) => HeatTransfer::Accommodation(1.0),
+        (Some(at), None) => {
+            let share =
+                bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
+            HeatTransfer::Accommodation(share?)
+        }
+        (None, Some(at)) => HeatTransfer::Coefficient(not_negative(at, Quantity::HeatTransfer, units)?),
+    };
+    Ok(Some(WallHeat { temperature: positive(temperature, Quantity::Temperature, units)?, transfer }))
 }
 
 fn keys_of(shape: RawShape) -> &'static [&'static str] {
@@ -82,7 +114,12 @@ fn refuse_foreign_keys(raw: &At<RawWall>) -> Result<(), Problem> {
             let allowed = format!(
                 "of a {}: {}",
                 name_of(shape),
-                list(["name", "shape", "gas"].iter().chain(keys_of(shape)).copied())
+                list(
+                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer"]
+                        .iter()
+                        .chain(keys_of(shape))
+                        .copied()
+                )
             );
             return Err(Problem::value(&span, format!("`{key}` of a {}", name_of(shape)), allowed));
         }

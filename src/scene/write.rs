@@ -69,6 +69,9 @@ pub fn to_toml(scene: &Scene) -> String {
             out.face(face);
         }
     }
+    for vent in &scene.vents {
+        write_vent(&mut out, vent, scene);
+    }
     write_settings(&mut out, scene);
     out.0
 }
@@ -123,6 +126,13 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
         GasSide::Outside => out.text("gas", "outside"),
         GasSide::Both => {}
     }
+    if let Some(heat) = &wall.heat {
+        out.number("temperature", heat.temperature);
+        match heat.transfer {
+            HeatTransfer::Accommodation(share) => out.number("accommodation", share),
+            HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
+        }
+    }
     for hole in holes {
         out.header("[[wall.hole]]");
         out.text("name", &hole.name);
@@ -136,6 +146,32 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
             }
         }
     }
+}
+
+fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
+    out.header("[[vent]]");
+    out.text("name", &vent.name);
+    out.text("wall", &scene.walls[vent.wall].name);
+    if let Some(face) = vent.face {
+        out.face(face);
+    }
+    if let Some(chamber) = vent.chamber {
+        out.text("chamber", &scene.chambers[chamber].name);
+    }
+    if let Some(disc) = &vent.disc {
+        out.numbers("position", &disc.center);
+        out.number("diameter", disc.diameter);
+    }
+    if let Some(area) = vent.area {
+        out.number("area", area);
+    }
+    match &vent.flow {
+        VentFlow::Discharge(curve) => out.curve("discharge", curve),
+        VentFlow::DischargeByPressure(curve) => out.curve("discharge_by_pressure", curve),
+        VentFlow::LeakVelocity(curve) => out.curve("leak_velocity", curve),
+    }
+    out.number("opening_pressure", vent.opening_pressure);
+    out.number("external_pressure", vent.external_pressure);
 }
 
 fn write_settings(out: &mut Lines, scene: &Scene) {

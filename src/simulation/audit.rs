@@ -13,6 +13,7 @@ use crate::scene::Method;
 use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
 
 use super::averages::Averages;
+use super::conditions::Conditions;
 use super::interval::Interval;
 use super::model::Model;
 use super::run_state::StateError;
@@ -63,8 +64,20 @@ pub struct AccountState {
     sampled: u64,
     truncated: u64,
     overshoot: u32,
+    /// What walls took and vents let out in the intervals read, J and particles.
+    energy_lost: f64,
+    left: u64,
+    /// Of each vent: hits that let a particle out, and hits whose probability was clipped.
+    clipped: Vec<[u64; 2]>,
     /// Phase, seconds, dispatch groups.
     phases: Vec<(String, f64, u64)>,
+}
+
+impl AccountState {
+    /// Particles that have left by the end of the last interval read.
+    pub fn left(&self) -> u64 {
+        self.left
+    }
 }
 
 impl Account {
@@ -84,6 +97,9 @@ impl Account {
             sampled: 0,
             truncated: 0,
             overshoot: 0,
+            energy_lost: 0.0,
+            left: 0,
+            clipped: Vec::new(),
             phases: Vec::new(),
         };
         Account {
@@ -144,12 +160,25 @@ impl Account {
         }
     }
 
+    /// The energy that walls took and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
+    /// over them.
+    fn lost(&self, tallies: &Tallies) -> (f64, f64) {
+        let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
+        let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
+        let (energy, tallied) = coats
+            .chain(vents)
+            .fold((0i128, 0i128), |(energy, tallied), (e, t)| (energy + i128::from(e), tallied + i128::from(t)));
+        let unit = self.scales.reference_mass / self.scales.energy;
+        (energy as f64 * unit, tallied as f64 * unit)
+    }
+
     /// What must hold after every interval, of all ranks together.
     pub fn check(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval) -> Result<(), String> {
         let counters = &tallies.counters;
         let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
-        if counters.capacity_failed > 0 || found != interval.particles {
-            return Err(format!("{found} particles are there, {} should be", interval.particles));
+        let expected = i128::from(interval.particles) - i128::from(self.counted.left + left(tallies));
+        if counters.capacity_failed > 0 || i128::from(found) != expected {
+            return Err(format!("{found} particles are there, {expected} should be"));
         }
         if counters.missing > 0 {
             return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
@@ -162,10 +191,14 @@ impl Account {
         }
         let (since, brought) = interval.energy_tallied(plan);
         let samples = f64::from(interval.samples(plan));
-        let expected = samples * (self.counted.start.energy + self.counted.energy_entered) + since;
+        let had = samples * (self.counted.start.energy + self.counted.energy_entered) + since;
+        let (lost, missed) = self.lost(tallies);
+        let expected = had - samples * self.counted.energy_lost - missed;
         self.counted.energy_entered += brought;
+        self.counted.energy_lost += lost;
         let energy = self.totals(tallies).energy;
-        if (energy - expected).abs() > ENERGY_ERROR * expected {
+        // Of all that there ever was, since little may be left.
+        if (energy - expected).abs() > ENERGY_ERROR * had.max(expected) {
             return Err(format!(
                 "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
             ));
@@ -183,12 +216,19 @@ impl Account {
     ) {
         let counters = &tallies.counters;
         let steps = u64::from(interval.steps);
-        let mut present = interval.particles - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
+        let mut present =
+            interval.particles - self.counted.left - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
         for born in &interval.entering {
             present += u64::from(*born);
             self.counted.particle_steps += present;
         }
-        self.counted.particles = interval.particles;
+        self.counted.left += left(tallies);
+        self.counted.particles = interval.particles - self.counted.left;
+        self.counted.clipped.resize(tallies.vents.len(), [0; 2]);
+        for (counted, vent) in self.counted.clipped.iter_mut().zip(&tallies.vents) {
+            counted[0] += vent.left.iter().sum::<i64>().unsigned_abs();
+            counted[1] += vent.clipped.unsigned_abs();
+        }
         self.counted.steps += steps;
         // A pair that a wall parted was settled without a collision.
         self.counted.collisions += counters.collisions - u64::from(counters.blocked);
@@ -248,21 +288,31 @@ impl Account {
     }
 
     /// The account at the end; `outside` particles were found in no gas.
-    pub fn close(&self, model: &Model, inflow: &Inflow, tallies: &Tallies, outside: u64, averages: &Averages) -> Audit {
+    pub fn close(
+        &self,
+        model: &Model,
+        inflow: &Inflow,
+        tallies: &Tallies,
+        outside: u64,
+        averages: &Averages,
+        conditions: &Conditions<'_>,
+    ) -> Audit {
         let end = self.totals(tallies);
         let plan = &model.plan;
         let (entered, before) = (self.entered(inflow), self.counted.before);
         let surfaces = !model.scene.surfaces.is_empty();
+        let (particles_vented, mass_vented, enthalpy_vented) = averages.total_vented();
+        let clipped = model.scene.vents.iter().zip(&self.counted.clipped);
         let events = (self.counted.lost + self.counted.sampled) as f64;
         Audit {
             particles_initial: self.counted.start.number,
             particles_injected: entered.number - before.number,
-            particles_vented: 0,
+            particles_vented,
             particles_inside: end.number - outside,
             particles_outside: outside,
             mass_start: self.counted.start.mass,
             mass_injected: entered.mass - before.mass,
-            mass_vented: 0.0,
+            mass_vented,
             mass_end: end.mass,
             momentum_start: self.counted.start.momentum,
             momentum_injected: self.counted.injected_momentum,
@@ -270,7 +320,12 @@ impl Account {
             momentum_end: end.momentum,
             energy_start: self.counted.start.energy,
             enthalpy_injected: entered.energy - before.energy,
-            enthalpy_vented: 0.0,
+            enthalpy_vented,
+            heat_to_walls: model.scene.walls.iter().any(|wall| wall.heat.is_some()).then(|| averages.total_heat()),
+            clipped_vents: clipped
+                .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
+                .collect(),
+            clipped_walls: conditions.beyond(),
             energy_end: end.energy,
             lost_collision_fraction: (plan.method != Method::None && events > 0.0)
                 .then(|| self.counted.lost as f64 / events),
@@ -279,6 +334,11 @@ impl Account {
             overflows: Vec::new(),
         }
     }
+}
+
+/// Particles that left in an interval.
+fn left(tallies: &Tallies) -> u64 {
+    tallies.vents.iter().flat_map(|vent| vent.left).sum::<i64>().unsigned_abs()
 }
 
 /// What an audit of a run of this plan lets pass. Walls let a particle be behind them by their tolerance, which

@@ -6,10 +6,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::conditions::Wanted;
 use super::run_state::StateError;
 use crate::plan::Plan;
 use crate::scene::GAS_CONSTANT;
-use crate::subdomain::{Scales, SurfaceSum, Tallies, ZoneSum};
+use crate::subdomain::{Scales, SurfaceSum, Tallies, VentSum, ZoneSum};
 
 /// Mean state of a zone over a window.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,6 +38,29 @@ pub struct SurfaceState {
     pub hits: u64,
 }
 
+/// What a wall that exchanges heat took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WallState {
+    /// J since the start of the run; negative if the wall gave more.
+    pub heat: f64,
+    /// W/m2 in the window.
+    pub heat_flux: f64,
+}
+
+/// What left through a vent.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VentState {
+    /// kg/s in the window, and what the vent should have passed for the gas before it.
+    pub mass_flow: f64,
+    pub wanted_mass_flow: f64,
+    /// The two over the isentropic flow through its area; zero where that is.
+    pub discharge: f64,
+    pub wanted_discharge: f64,
+    /// kg and J since the start of the run.
+    pub mass: f64,
+    pub enthalpy: f64,
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// s, the middle of the window.
@@ -50,16 +74,43 @@ pub struct Row {
     pub chambers: Vec<ZoneState>,
     pub probes: Vec<ZoneState>,
     pub surfaces: Vec<SurfaceState>,
+    /// Those that exchange heat.
+    pub walls: Vec<WallState>,
+    pub vents: Vec<VentState>,
 }
 
 /// The scene's side of the averages.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Layout {
     /// m3, chambers then probes.
     pub volumes: Vec<f64>,
     pub chambers: usize,
     /// Patches of each surface, and its area, m2.
     pub surfaces: Vec<(Vec<usize>, f64)>,
+    /// Coats of each wall that exchanges heat, and its area, m2.
+    pub walls: Vec<(Vec<usize>, f64)>,
+    pub coats: usize,
+    pub vents: usize,
+}
+
+/// What a vent has passed in a window, or since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Passed {
+    left: [i64; 16],
+    energy: i128,
+    wanted: f64,
+    isentropic: f64,
+}
+
+impl Passed {
+    fn add(&mut self, sum: &VentSum, wanted: &Wanted) {
+        for (total, left) in self.left.iter_mut().zip(sum.left) {
+            *total += left;
+        }
+        self.energy += i128::from(sum.energy);
+        self.wanted += wanted.mass;
+        self.isentropic += wanted.isentropic;
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -86,6 +137,10 @@ pub struct Averages {
     patches: Vec<SurfaceSum>,
     /// Per patch since the start.
     received: Vec<[i128; 3]>,
+    /// Energy that each coat took, in the window and since the start.
+    heat: Vec<[i128; 2]>,
+    /// What each vent passed, the same.
+    passed: Vec<[Passed; 2]>,
 }
 
 /// The open window, and what walls have received.
@@ -98,11 +153,13 @@ pub struct AveragesState {
     /// Normal impulse and hits of each patch: the rest of its sum is not used.
     patches: Vec<(i64, i64)>,
     pub(super) received: Vec<[i128; 3]>,
+    heat: Vec<[i128; 2]>,
+    passed: Vec<[Passed; 2]>,
 }
 
 impl AveragesState {
     /// An empty window that starts at a time, s: of a run that is measured from there on.
-    pub(super) fn starting_at(start: f64, zones: usize, gases: usize, patches: usize) -> AveragesState {
+    pub(super) fn starting_at(start: f64, [zones, gases, patches, coats, vents]: [usize; 5]) -> AveragesState {
         AveragesState {
             start,
             steps: 0,
@@ -110,6 +167,8 @@ impl AveragesState {
             sums: vec![Sum::default(); zones * gases],
             patches: vec![(0, 0); patches],
             received: vec![[0; 3]; patches],
+            heat: vec![[0; 2]; coats],
+            passed: vec![[Passed::default(); 2]; vents],
         }
     }
 }
@@ -129,12 +188,15 @@ impl Averages {
             sums: vec![Sum::default(); zones * plan.gases.len()],
             patches: vec![SurfaceSum::default(); patches],
             received: vec![[0; 3]; patches],
+            heat: vec![[0; 2]; layout.coats],
+            passed: vec![[Passed::default(); 2]; layout.vents],
             layout,
         }
     }
 
-    /// Adds an interval of `steps` steps of `dt` that took `samples` tallies.
-    pub fn add(&mut self, tallies: &Tallies, dt: f64, steps: u32, samples: u32) {
+    /// Adds an interval of `steps` steps of `dt` that took `samples` tallies; `wanted` is what its vents should have
+    /// passed.
+    pub fn add(&mut self, tallies: &Tallies, dt: f64, steps: u32, samples: u32, wanted: &[Wanted]) {
         self.steps += u64::from(steps);
         self.weight += dt * f64::from(samples);
         let zones = tallies.zones.iter().skip(self.gases.len());
@@ -153,6 +215,20 @@ impl Averages {
                 *total += i128::from(impulse);
             }
         }
+        self.add_losses(tallies, wanted);
+    }
+
+    fn add_losses(&mut self, tallies: &Tallies, wanted: &[Wanted]) {
+        for (heat, coat) in self.heat.iter_mut().zip(&tallies.coats) {
+            for total in heat {
+                *total += i128::from(coat.energy);
+            }
+        }
+        for ((passed, sum), wanted) in self.passed.iter_mut().zip(&tallies.vents).zip(wanted) {
+            for total in passed {
+                total.add(sum, wanted);
+            }
+        }
     }
 
     pub fn state(&self) -> AveragesState {
@@ -163,6 +239,8 @@ impl Averages {
             sums: self.sums.clone(),
             patches: self.patches.iter().map(|patch| (patch.normal, patch.hits)).collect(),
             received: self.received.clone(),
+            heat: self.heat.clone(),
+            passed: self.passed.clone(),
         }
     }
 
@@ -173,6 +251,8 @@ impl Averages {
             ("sums over zones", state.sums.len(), self.sums.len()),
             ("patches of wall", state.patches.len(), self.patches.len()),
             ("impulses of patches", state.received.len(), self.received.len()),
+            ("coats of walls", state.heat.len(), self.heat.len()),
+            ("vents", state.passed.len(), self.passed.len()),
         ] {
             if found != expected {
                 return Err(StateError::differs(what, found as u64, expected as u64));
@@ -186,6 +266,8 @@ impl Averages {
         let patch = |&(normal, hits): &(i64, i64)| SurfaceSum { normal, hits, ..SurfaceSum::default() };
         self.patches = state.patches.iter().map(patch).collect();
         self.received.clone_from(&state.received);
+        self.heat.clone_from(&state.heat);
+        self.passed.clone_from(&state.passed);
         Ok(())
     }
 
@@ -205,6 +287,8 @@ impl Averages {
             step: duration / self.steps as f64,
             particles,
             surfaces: surfaces.collect(),
+            walls: self.layout.walls.iter().map(|(coats, area)| self.wall(coats, *area, duration)).collect(),
+            vents: self.passed.iter().map(|passed| self.vent(passed, duration)).collect(),
             chambers: states[..self.layout.chambers].to_vec(),
             probes: states[self.layout.chambers..].to_vec(),
         };
@@ -213,6 +297,8 @@ impl Averages {
         self.weight = 0.0;
         self.sums.fill(Sum::default());
         self.patches.fill(SurfaceSum::default());
+        self.heat.iter_mut().for_each(|heat| heat[0] = 0);
+        self.passed.iter_mut().for_each(|passed| passed[0] = Passed::default());
         row
     }
 
@@ -265,6 +351,47 @@ impl Averages {
         state.pressure = normal as f64 * self.impulse_unit() / (area * duration);
         state.impulse = received.map(|units| units as f64 * self.impulse_unit());
         state
+    }
+
+    fn energy_unit(&self) -> f64 {
+        self.scales.reference_mass / self.scales.energy
+    }
+
+    fn wall(&self, coats: &[usize], area: f64, duration: f64) -> WallState {
+        let sum = |since: usize| coats.iter().map(|&coat| self.heat[coat][since]).sum::<i128>() as f64;
+        WallState { heat: sum(1) * self.energy_unit(), heat_flux: sum(0) * self.energy_unit() / (area * duration) }
+    }
+
+    fn mass(&self, passed: &Passed) -> f64 {
+        let of_gas = |(molar_mass, &left): (&f64, &i64)| molar_mass * self.moles_per_particle * left as f64;
+        self.gases.iter().zip(&passed.left).map(of_gas).sum()
+    }
+
+    fn vent(&self, [window, all]: &[Passed; 2], duration: f64) -> VentState {
+        let mass = self.mass(window);
+        let over = |mass: f64| if window.isentropic > 0.0 { mass / window.isentropic } else { 0.0 };
+        VentState {
+            mass_flow: mass / duration,
+            wanted_mass_flow: window.wanted / duration,
+            discharge: over(mass),
+            wanted_discharge: over(window.wanted),
+            mass: self.mass(all),
+            enthalpy: all.energy as f64 * self.energy_unit(),
+        }
+    }
+
+    /// All that walls have taken since the start, J.
+    pub fn total_heat(&self) -> f64 {
+        self.heat.iter().map(|heat| heat[1]).sum::<i128>() as f64 * self.energy_unit()
+    }
+
+    /// All that has left through vents since the start: particles, kg, J.
+    pub fn total_vented(&self) -> (u64, f64, f64) {
+        let number = self.passed.iter().flat_map(|[_, all]| all.left).sum::<i64>();
+        // (The sum of nothing is -0.)
+        let mass = self.passed.iter().map(|[_, all]| self.mass(all)).sum::<f64>() + 0.0;
+        let energy = self.passed.iter().map(|[_, all]| all.energy).sum::<i128>() as f64;
+        (number.unsigned_abs(), mass, energy * self.energy_unit())
     }
 
     /// All that walls have received since the start, kg m/s.

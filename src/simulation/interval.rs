@@ -7,7 +7,7 @@ use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
+use crate::subdomain::{Coating, GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -30,8 +30,10 @@ pub struct Interval {
     pub momentum: [f64; 3],
     /// Energy that the newborns of each step bring, J.
     pub energy: Vec<f64>,
-    /// Particles at its end, on all ranks.
+    /// Particles that have entered by its end, on all ranks, the initial ones with them.
     pub particles: u64,
+    /// What the walls that are no mirrors do in it.
+    pub coating: Coating,
 }
 
 /// An interval on its way through the device.
@@ -88,6 +90,7 @@ impl Interval {
             stride: 1,
             momentum: [0.0; 3],
             energy: vec![0.0; steps as usize],
+            coating: Coating::default(),
             particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
         };
         if let Deal::ById { rank, ranks } = deal {
@@ -173,7 +176,8 @@ impl Machine<'_, '_> {
             first_id: interval.first_id,
             stride: interval.stride,
         };
-        let slots = self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns)?;
+        let slots =
+            self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns, &interval.coating)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;

@@ -1,13 +1,16 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
-use crate::plan::{Measured, Plan, PlanError, plan};
+use crate::plan::{Measured, MeasuredVent, Plan, PlanError, plan};
 use crate::scene::{Opening, Scene};
+
+use super::coats::Coats;
 
 pub struct Model {
     pub scene: Scene,
     pub vessel: Vessel,
     pub plan: Plan,
+    pub coats: Coats,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -23,6 +26,12 @@ pub enum ModelError {
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
     ))]
     OrificeInWall { orifice: String, point: [f64; 3] },
+    #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
+    #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
+    VentNowhere { vent: String },
+    #[error("vent \"{vent}\": its place borders on the chambers {chambers}, and a vent empties one")]
+    #[diagnostic(help("say which with `chamber`, or give one vent for each"))]
+    VentOfSeveral { vent: String, chambers: String },
 }
 
 impl Model {
@@ -31,6 +40,7 @@ impl Model {
     pub fn new(scene: Scene) -> Result<Model, ModelError> {
         let vessel = Vessel::build(&scene.walls)?;
         check_orifices(&scene, &vessel)?;
+        let coats = Coats::new(&scene, &vessel)?;
         let (bounds_min, bounds_max) = vessel.bounds;
         let measured = Measured {
             gas_volume: vessel.gas_volume(),
@@ -39,9 +49,11 @@ impl Model {
             bounds_max,
             openings: found_openings(&scene, &vessel),
             smallest_gap: None,
+            vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
+            heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
         };
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan })
+        Ok(Model { scene, vessel, plan, coats })
     }
 }
 

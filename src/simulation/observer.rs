@@ -82,8 +82,10 @@ pub struct Moment<'a> {
     pub step: u64,
     /// s.
     pub time: f64,
-    /// Particles, those that entered and the initial ones.
+    /// Particles that are there.
     pub particles: u64,
+    /// Those that entered and the initial ones, whether they are there or have left: ids are below.
+    pub ids: u64,
     pub state: &'a RunState,
     /// Of this rank.
     pub own: &'a [GpuParticle],

@@ -1,7 +1,7 @@
 //! The control volume of a run: the same chambers, openings and curves without space. The reference of runs of
 //! particles, and the method `control-volume` itself.
 
-use crate::gas::{Collisions, ControlVolume, Reservoir, Source, State, moles_at};
+use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
 use crate::plan::{OpeningPlan, Plan};
 use crate::scene::{Method, Opening, Scene};
 
@@ -26,12 +26,33 @@ fn volume(model: &Model) -> ControlVolume {
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).collect(),
         sources: sources.collect(),
         openings: plan.openings.iter().map(opening).collect(),
+        walls: walls(model),
+        vents: vents(model),
         collisions: match plan.method {
             Method::None => Collisions::None,
             Method::ControlVolume => Collisions::Continuum,
             _ => Collisions::Particles { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle },
         },
     }
+}
+
+fn walls(model: &Model) -> Vec<HeatedWall> {
+    let coats = model.coats.coats.iter();
+    let heated = coats.filter_map(|coat| {
+        let heat = model.scene.walls[coat.wall].heat?;
+        Some(HeatedWall { chamber: coat.chamber, area: coat.area, heat })
+    });
+    heated.collect()
+}
+
+fn vents(model: &Model) -> Vec<OpenVent> {
+    let places = model.scene.vents.iter().zip(&model.coats.vents);
+    let open = places.map(|(vent, place)| OpenVent {
+        chamber: place.chamber,
+        area: vent.area.unwrap_or(place.area),
+        vent: vent.clone(),
+    });
+    open.collect()
 }
 
 fn opening(planned: &OpeningPlan) -> Opening {

@@ -19,6 +19,7 @@ use super::audit::{Account, count_outside};
 use super::averages::Averages;
 use super::balance::Balance;
 use super::clock::Clock;
+use super::conditions::{Conditions, Seen};
 use super::decomposition::Decomposition;
 use super::exchange::Exchange;
 use super::interrupt::Request;
@@ -70,6 +71,10 @@ pub struct Simulation<'a> {
     flying: VecDeque<InFlight>,
     /// What the states read so far ask of the step and no interval has followed yet, oldest first.
     demands: VecDeque<Demand>,
+    /// And what the walls have seen of them.
+    conditions: Conditions<'a>,
+    /// With how many particles had left by then.
+    seen: VecDeque<(Seen, u64)>,
     submitted: usize,
     spare: Vec<wgpu::Buffer>,
     next_row: f64,
@@ -157,6 +162,8 @@ impl<'a> Simulation<'a> {
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
             demands: VecDeque::new(),
+            conditions: Conditions::new(model),
+            seen: VecDeque::new(),
             submitted: 0,
             spare: Vec::new(),
             next_row: plan.end_time / f64::from(scene.output.rows.max(1)),
@@ -194,6 +201,8 @@ impl<'a> Simulation<'a> {
         simulation.account.restore(&model.plan, &state.account)?;
         simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
         simulation.demands = state.demands.iter().copied().collect();
+        simulation.conditions.restore(&state.conditions)?;
+        simulation.seen = state.seen.iter().cloned().collect();
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
         simulation.next_snapshot = state.next_snapshot;
@@ -211,6 +220,8 @@ impl<'a> Simulation<'a> {
             account: self.account.state().clone(),
             inflow: self.inflow.state(),
             demands: self.demands.iter().copied().collect(),
+            conditions: self.conditions.state().clone(),
+            seen: self.seen.iter().cloned().collect(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
             next_snapshot: self.next_snapshot,
@@ -240,6 +251,7 @@ impl<'a> Simulation<'a> {
         }
         let at_start = self.measure()?;
         self.account.start(&at_start);
+        self.conditions.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
         self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
         self.snapshot(observer)?;
@@ -291,7 +303,7 @@ impl<'a> Simulation<'a> {
         let own = self.subdomain.particles(self.device)?;
         let outside = count_outside(&self.model.vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
-        let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages);
+        let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
         let (particles, owners) = self.gather(own)?.unwrap_or_default();
         Ok(Outcome {
             particles,
@@ -321,7 +333,8 @@ impl<'a> Simulation<'a> {
         observer.checkpoint(&Moment {
             step: self.clock.steps,
             time: self.clock.time(),
-            particles: self.model.plan.initial_particles + entered,
+            particles: self.account.state().particles,
+            ids: self.model.plan.initial_particles + entered,
             state: &self.state(),
             own: &own,
             comm: self.ranks.comm(),
@@ -356,6 +369,11 @@ impl<'a> Simulation<'a> {
         {
             let time = self.clock.time();
             self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+            if let Some((seen, left)) = self.seen.pop_front() {
+                self.conditions.follow(seen);
+                let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
+                self.subdomain.shrink(plan.initial_particles + entered - left);
+            }
         }
         if let Some(decomposition) = &mut self.decomposition {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
@@ -374,7 +392,8 @@ impl<'a> Simulation<'a> {
             None => Deal::ById { rank: self.ranks.comm().rank() as u32, ranks: self.ranks.comm().size() as u32 },
             Some(_) => Deal::All,
         };
-        let interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
+        let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
+        interval.coating = self.conditions.coating(start, end);
         self.submit(interval)
     }
 

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::audit::AccountState;
 use super::averages::AveragesState;
 use super::clock::ClockState;
+use super::conditions::{ConditionsState, Seen};
 use super::ladder::{Demand, LadderState};
 use crate::gas::{InflowState, InflowStateError};
 use crate::output::{Checkpoint, CheckpointError};
@@ -35,6 +36,9 @@ pub struct RunState {
     pub inflow: InflowState,
     /// What states read so far ask of the step and no interval has followed yet, oldest first.
     pub demands: Vec<Demand>,
+    pub conditions: ConditionsState,
+    /// What the walls have seen of the same states, and how many particles had left by then.
+    pub seen: Vec<(Seen, u64)>,
     /// Intervals so far.
     pub submitted: u64,
     /// s.
@@ -71,9 +75,10 @@ mod tests {
     use crate::simulation::audit::Account;
     use crate::simulation::averages::{Averages, Layout};
     use crate::simulation::clock::Clock;
+    use crate::simulation::conditions::Wanted;
     use crate::simulation::ladder::Ladder;
     use crate::simulation::model::Model;
-    use crate::subdomain::{SurfaceSum, Tallies, ZoneSum};
+    use crate::subdomain::{CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 
     fn plan() -> Plan {
         let text = include_str!("../../scenes/tank.toml").replace("particles = 1000000", "particles = 2000");
@@ -82,10 +87,18 @@ mod tests {
     }
 
     const PATCHES: usize = 2;
+    const COATS: usize = 2;
+    const VENTS: usize = 1;
 
     fn averages(plan: &Plan) -> Averages {
-        let layout =
-            Layout { volumes: vec![1e-3, 2e-3, 1e-4], chambers: 2, surfaces: vec![(vec![0], 0.1), (vec![0, 1], 0.3)] };
+        let layout = Layout {
+            volumes: vec![1e-3, 2e-3, 1e-4],
+            chambers: 2,
+            surfaces: vec![(vec![0], 0.1), (vec![0, 1], 0.3)],
+            walls: vec![(vec![0, 1], 0.2)],
+            coats: COATS,
+            vents: VENTS,
+        };
         Averages::new(plan, layout, PATCHES)
     }
 
@@ -106,9 +119,15 @@ mod tests {
             counters: crate::subdomain::Counters::default(),
             zones: zones.collect(),
             surfaces: surfaces.collect(),
+            coats: vec![CoatSum { energy: 1 << 50, tallied: -interval }; COATS],
+            vents: vec![VentSum { energy: interval, left: [3; 16], ..VentSum::default() }; VENTS],
             blocks: Vec::new(),
             fast: Vec::new(),
         }
+    }
+
+    fn wanted(interval: i64) -> Vec<Wanted> {
+        vec![Wanted { mass: 0.1 * interval as f64, isentropic: 0.3 }; VENTS]
     }
 
     fn through_bytes<T: Serialize + serde::de::DeserializeOwned>(state: &T) -> T {
@@ -124,7 +143,7 @@ mod tests {
             let mut averages = averages(&plan);
             let mut rows = Vec::new();
             for interval in 1..=9 {
-                averages.add(&tallies(&plan, interval), 1e-6 / interval as f64, 32, 4);
+                averages.add(&tallies(&plan, interval), 1e-6 / interval as f64, 32, 4, &wanted(interval));
                 if interval % 4 == 0 {
                     rows.push(averages.row(1e-5 * interval as f64, 2000));
                 }
@@ -151,10 +170,10 @@ mod tests {
     #[test]
     fn averages_of_another_scene_are_refused() {
         let plan = plan();
-        let layout = Layout { volumes: vec![1e-3], chambers: 1, surfaces: Vec::new() };
+        let layout = Layout { volumes: vec![1e-3], chambers: 1, ..Layout::default() };
         let other = Averages::new(&plan, layout, 0).state();
         let mut own = averages(&plan);
-        own.add(&tallies(&plan, 3), 1e-6, 32, 4);
+        own.add(&tallies(&plan, 3), 1e-6, 32, 4, &wanted(3));
         let before = own.state();
         assert!(own.restore(&other).unwrap_err().to_string().contains("sums over zones"));
         let mut short = before.clone();
@@ -181,6 +200,8 @@ mod tests {
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
+            conditions: ConditionsState::default(),
+            seen: vec![(Seen::default(), 7)],
             submitted: 5,
             next_row: 1.0 / 3.0,
             next_snapshot: 2,

@@ -6,7 +6,7 @@ use crate::gas::{Filling, fill};
 use crate::geometry::{TriangleGrid, block_volumes, cell_gas, region_bounds, region_contains};
 use crate::gpu::Device;
 use crate::scene::{Face, Method, Region};
-use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Scales, Walls, zone_of};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
@@ -67,16 +67,24 @@ impl Setup {
             let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
             !wall.is_convex_cavity()
         };
-        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, parts);
+        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts);
         let cells = if plan.method == Method::Cell {
             CellTable::new(&cell_gas(&model.vessel, &plan.grid, &triangle_grid, parts), &plan.grid)?
         } else {
             CellTable::default()
         };
         let zones = zones(model);
-        let (patch_count, among_others) = (patches.len(), ranks > 1);
-        let input =
-            DomainInput { plan, walls: &walls, cells: &cells, zones: &zones, patches: patch_count, among_others };
+        let tallied =
+            Patches { surfaces: patches.len(), coats: model.coats.coats.len(), vents: model.scene.vents.len() };
+        let input = DomainInput {
+            plan,
+            walls: &walls,
+            cells: &cells,
+            zones: &zones,
+            patches: tallied,
+            vent_entries: model.coats.vent_entries(),
+            among_others: ranks > 1,
+        };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),
             layout: layout(model, &patches),
@@ -120,7 +128,7 @@ fn zones(model: &Model) -> Vec<GpuZone> {
 }
 
 fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan } = model;
+    let Model { scene, vessel, plan, coats } = model;
     let probe_volumes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
@@ -140,7 +148,16 @@ fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
         let area = members.iter().map(|&index| area_of(patches[index].0, patches[index].1)).sum();
         (members, area)
     });
+    let walls = scene.walls.iter().enumerate().filter(|(_, wall)| wall.heat.is_some()).map(|(wall, _)| {
+        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.wall == wall);
+        let members: Vec<usize> = own.map(|(index, _)| index).collect();
+        let area = members.iter().map(|&index| coats.coats[index].area).sum();
+        (members, area)
+    });
     Layout {
+        walls: walls.collect(),
+        vents: scene.vents.len(),
+        coats: coats.coats.len(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes).collect(),
         chambers: scene.chambers.len(),
         surfaces: surfaces.collect(),
@@ -149,7 +166,7 @@ fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
 
 /// The initial gas, by id.
 pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationError> {
-    let Model { scene, vessel, plan } = model;
+    let Model { scene, vessel, plan, .. } = model;
     let holds = |region: &Option<Region>, point| region.as_ref().is_none_or(|region| region_contains(region, point));
     let in_chamber: Vec<Box<dyn Fn([f64; 3]) -> bool>> = (0..scene.chambers.len())
         .map(|index| -> Box<dyn Fn([f64; 3]) -> bool> {

@@ -64,6 +64,8 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
             probes: probes.iter().map(|&chamber| zones[chamber].clone()).collect(),
             chambers: zones,
             surfaces: on_surfaces,
+            walls: Vec::new(),
+            vents: Vec::new(),
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }

@@ -5,7 +5,9 @@ use crate::gpu::{Device, GpuError};
 use super::cell_table::CellTable;
 use super::constants::Features;
 use super::counters;
-use super::layout::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuWeights, GpuZone};
+use super::layout::{
+    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+};
 use super::walls::Walls;
 
 /// Cells per thread of the scan.
@@ -14,6 +16,9 @@ pub const CHUNK: u64 = 64;
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).
 pub const SURFACE_WORDS: usize = 10;
+/// Words per coat and per vent (`shaders/bounce.wgsl`).
+pub const COAT_WORDS: usize = 4;
+pub const VENT_WORDS: usize = 24;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 
@@ -85,12 +90,20 @@ pub struct FixedBuffers {
     pub rechoose_dispatches: wgpu::Buffer,
     pub asked_dispatches: wgpu::Buffer,
     pub weights: wgpu::Buffer,
+    /// What coats and vents do in the interval at hand.
+    pub coats: wgpu::Buffer,
+    pub vents: wgpu::Buffer,
     /// The cells whose gas walls part, of a step.
     pub parted: wgpu::Buffer,
 }
 
 impl FixedBuffers {
-    pub fn new(device: &Device, words: TallyWords, step_slots: u64, parted: u64) -> Result<FixedBuffers, GpuError> {
+    pub fn new(
+        device: &Device,
+        words: TallyWords,
+        step_slots: u64,
+        [coats, vents, parted]: [u64; 3],
+    ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
             counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
@@ -101,6 +114,8 @@ impl FixedBuffers {
             rechoose_dispatches: device.indirect("rechoose_dispatches", counters::LISTS as u64)?,
             asked_dispatches: device.indirect("asked_dispatches", counters::LISTS as u64)?,
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
+            coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
+            vents: device.storage::<GpuVent>("vents", vents.max(1))?,
             parted: device.storage::<u32>("parted", parted)?,
         })
     }
@@ -324,6 +339,8 @@ impl<'a> Buffers<'a> {
             ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,
             (_, "dispatches") => &fixed.dispatches,
             (_, "weights") => &fixed.weights,
+            (_, "coats") => &fixed.coats,
+            (_, "vents") => &fixed.vents,
             (_, "zones") => &domain.zones,
             (_, "cell_volume") => &domain.cell_volume,
             (_, "cell_parts") => &domain.cell_parts,

@@ -4,7 +4,7 @@
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::CHUNK;
+use super::buffers::{CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
 use super::walls::Walls;
 
@@ -13,6 +13,8 @@ pub const WORKGROUP: u32 = 64;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
 const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
+/// And those of hits on walls.
+const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,12 +29,35 @@ pub struct Features {
     pub curves: bool,
     pub orifices: bool,
     pub surfaces: bool,
+    /// Walls that exchange heat with the gas, or let it out.
+    pub coats: bool,
+    pub vents: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
 }
 
+/// What walls have tallies for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Patches {
+    pub surfaces: usize,
+    pub coats: usize,
+    pub vents: usize,
+}
+
+impl Patches {
+    /// Words of the tallies of surfaces, and of these and the coats.
+    pub(super) fn ends(&self) -> [usize; 2] {
+        let surfaces = self.surfaces.max(1) * SURFACE_WORDS;
+        [surfaces, surfaces + self.coats * COAT_WORDS]
+    }
+
+    pub(super) fn words(&self) -> usize {
+        self.ends()[1] + self.vents * VENT_WORDS
+    }
+}
+
 impl Features {
-    pub fn of(plan: &Plan, surfaces: usize, parted: bool, among_others: bool) -> Features {
+    pub fn of(plan: &Plan, patches: Patches, parted: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
@@ -40,14 +65,23 @@ impl Features {
             spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
             curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
             orifices: plan.injected_particles > 0,
-            surfaces: surfaces > 0,
+            surfaces: patches.surfaces > 0,
+            coats: patches.coats > 0,
+            vents: patches.vents > 0,
             halo: among_others && plan.method != Method::None,
         }
     }
 }
 
-pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales) -> Vec<(&'static str, f64)> {
+pub fn constants(
+    plan: &Plan,
+    features: Features,
+    patches: Patches,
+    walls: &Walls,
+    scales: &Scales,
+) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
+    let [coats_at, vents_at] = patches.ends();
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
     let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
@@ -70,6 +104,7 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ("CELL_SEED_HIGH", seed_high(PURPOSE_CELL)),
         // Collisions in cells are at the start of the step.
         ("FLOWN", if features.collisions && !features.rounds { 0.0 } else { 0.5 }),
+        ("WALL_SEED_HIGH", seed_high(PURPOSE_WALL)),
         ("COLLISIONS", flag(features.collisions)),
         ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
@@ -81,6 +116,10 @@ pub fn constants(plan: &Plan, features: Features, walls: &Walls, scales: &Scales
         ),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),
+        ("COATS", flag(features.coats)),
+        ("VENTS", flag(features.vents)),
+        ("COATS_AT", coats_at as f64),
+        ("VENTS_AT", vents_at as f64),
         ("IMPULSE_SCALE", scales.velocity),
         ("GASES", plan.gases.len() as f64),
         ("CHAMBERS", plan.chambers.len() as f64),

@@ -3,9 +3,9 @@
 use crate::gpu::{Device, GpuError};
 use crate::plan::Plan;
 
-use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_WORDS, TallyWords, ZONE_WORDS};
+use super::buffers::{BLOCK_WORDS, DomainBuffers, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
-use super::constants::{Features, block_counts, constants};
+use super::constants::{Features, Patches, block_counts, constants};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
@@ -20,8 +20,9 @@ pub struct DomainInput<'a> {
     pub cells: &'a CellTable,
     /// Zone 0 is everything, then the chambers, then the probes.
     pub zones: &'a [GpuZone],
-    /// Patches of wall whose impulse is tallied.
-    pub patches: usize,
+    pub patches: Patches,
+    /// Entries of the table of vents.
+    pub vent_entries: usize,
     /// Whether other subdomains own particles too.
     pub among_others: bool,
 }
@@ -32,6 +33,8 @@ pub struct Domain {
     pub(super) compiled: Compiled,
     pub(super) buffers: DomainBuffers,
     pub(super) words: TallyWords,
+    pub(super) patches: Patches,
+    pub(super) vent_entries: usize,
     pub(super) blocks: usize,
     pub(super) zones: usize,
     /// Cells whose gas walls part.
@@ -47,13 +50,17 @@ impl Domain {
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
-            surfaces: input.patches.max(1) * SURFACE_WORDS,
+            surfaces: input.patches.words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
         Ok(Domain {
             plan: plan.clone(),
             features,
-            compiled: Compiled::new(device, features, &constants(plan, features, input.walls, &Scales::new(plan)))?,
+            compiled: Compiled::new(
+                device,
+                features,
+                &constants(plan, features, input.patches, input.walls, &Scales::new(plan)),
+            )?,
             buffers: DomainBuffers::new(
                 device,
                 input.walls,
@@ -63,6 +70,8 @@ impl Domain {
                 &mode_table(plan),
             )?,
             words,
+            patches: input.patches,
+            vent_entries: input.vent_entries,
             blocks,
             zones: input.zones.len(),
             parted_cells: input.cells.parted,

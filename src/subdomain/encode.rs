@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use super::buffers::{CHUNK, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::kernels::CollisionKernels;
-use super::layout::{GpuNewborn, GpuStep};
+use super::layout::{GpuCoat, GpuNewborn, GpuStep, GpuVent};
 use super::place::Cells;
 use super::{GpuError, Subdomain};
 
@@ -25,6 +25,14 @@ pub struct StepSlot {
     pub(super) arrivals: u32,
     /// Entries of `sorted`.
     pub(super) total: u32,
+    tallies_left: u32,
+}
+
+/// What coats and vents do in an interval; empty where all walls are mirrors.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Coating {
+    pub coats: Vec<GpuCoat>,
+    pub vents: Vec<GpuVent>,
 }
 
 /// Who enters in an interval.
@@ -90,7 +98,13 @@ impl Subdomain {
         first_step: u64,
         dt: f64,
         newborns: &Newborns<'_>,
+        coating: &Coating,
     ) -> Result<Vec<StepSlot>, GpuError> {
+        // Work that was submitted before has seen the tables of its own interval.
+        device.write(&self.fixed.coats, 0, &coating.coats);
+        device.write(&self.fixed.vents, 0, &coating.vents);
+        let tally_every = u64::from(self.domain.plan.tally_every);
+        let tallies = |steps: usize| (first_step + steps as u64) / tally_every;
         let Newborns { of_step, list, first_id, stride } = *newborns;
         self.make_room(device, list.len() as u64, list.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, list);
@@ -109,6 +123,7 @@ impl Subdomain {
                 stride,
                 arrivals: 0,
                 total: self.count + born,
+                tallies_left: (tallies(of_step.len()) - tallies(k)) as u32,
             };
             entered += born;
             if self.place.is_alone() {
@@ -180,6 +195,8 @@ impl Subdomain {
                 near_peers: self.place.near as u32,
                 list: self.particle.list as u32,
                 stride: slot.stride,
+                tallies_left: slot.tallies_left,
+                ..GpuStep::default()
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -200,6 +217,7 @@ impl Subdomain {
             stride: 1,
             arrivals: 0,
             total: self.count,
+            tallies_left: 0,
         };
         self.write_parameters(device, &slot);
         slot

@@ -30,6 +30,8 @@ pub struct GpuStep {
     pub near_peers: u32,
     pub list: u32,
     pub stride: u32,
+    pub tallies_left: u32,
+    pub pad: [u32; 3],
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.
@@ -104,8 +106,30 @@ pub struct GpuTriangle {
     pub b: [u32; 3],
     pub surface: u32,
     pub c: [u32; 3],
-    pub pad: u32,
+    pub coat: u32,
     pub normal: [f32; 3],
+    pub pad2: u32,
+}
+
+/// `Coat` of `shaders/shared/coats.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuCoat {
+    pub thermal: f32,
+    pub accommodation: f32,
+    pub first_vent: u32,
+    pub end_vent: u32,
+}
+
+/// `Vent` of `shaders/shared/coats.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuVent {
+    pub center: [u32; 3],
+    pub radius2: f32,
+    pub beta: f32,
+    pub index: u32,
+    pub pad: u32,
     pub pad2: u32,
 }
 

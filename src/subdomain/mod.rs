@@ -23,20 +23,21 @@ use std::sync::Arc;
 
 use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
 
-pub use buffers::{BLOCK_WORDS, CHUNK, SURFACE_WORDS, ZONE_WORDS, most_particles};
+pub use buffers::{BLOCK_WORDS, CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles};
 pub use cell_table::{CellTable, TooManyParts};
-pub use constants::{Features, WORKGROUP, block_counts, constants};
+pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
 pub use domain::{Domain, DomainInput};
-pub use encode::{Newborns, StepSlot};
+pub use encode::{Coating, Newborns, StepSlot};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
-pub use tallies::{BlockSum, SurfaceSum, Tallies, ZoneSum};
+pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;
 
 use buffers::{
@@ -81,7 +82,8 @@ impl Subdomain {
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
-        let fixed = FixedBuffers::new(device, domain.words, slots, domain.parted_cells)?;
+        let tables = [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells];
+        let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);
         let particle = ParticleBuffers::new(device, capacity, 1024, FIRST_LIST, features)?;
@@ -215,6 +217,14 @@ impl Subdomain {
         Ok(Remembered { particles, count: self.count })
     }
 
+    /// At most so many particles are left here (all that have left before the last interval that was submitted are
+    /// known): frees the slots beyond, on a device alone that sorts its particles. (Among others every step does.)
+    pub fn shrink(&mut self, particles: u64) {
+        if self.place.depth == 0 && self.domain.features.collisions {
+            self.count = u64::from(self.count).min(particles) as u32;
+        }
+    }
+
     /// Back to a remembered state, as if the intervals since had not run. Their tallies are cleared.
     pub fn restore(&mut self, device: &Device, remembered: &Remembered) {
         let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
@@ -291,10 +301,10 @@ impl Subdomain {
     /// If the device fails.
     pub fn finish_readback(&mut self, device: &Device, readback: Readback) -> Result<(Tallies, Vec<u8>), GpuError> {
         let tally_bytes = self.tally_bytes() as usize;
-        let (words, blocks) = (self.domain.words, self.domain.blocks);
+        let (words, patches, blocks) = (self.domain.words, self.domain.patches, self.domain.blocks);
         let (result, staging) = readback.finish(device, |bytes| {
             let all: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes[..tally_bytes]);
-            (Tallies::decode(&all, words, blocks), bytes[tally_bytes..].to_vec())
+            (Tallies::decode(&all, words, patches, blocks), bytes[tally_bytes..].to_vec())
         })?;
         self.staging.push(staging);
         Ok(result)

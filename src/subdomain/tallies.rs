@@ -1,6 +1,7 @@
 //! What a device measured in one step interval, decoded from its integer tallies.
 
-use super::buffers::{BLOCK_WORDS, SURFACE_WORDS, TallyWords, ZONE_WORDS};
+use super::buffers::{BLOCK_WORDS, COAT_WORDS, SURFACE_WORDS, TallyWords, VENT_WORDS, ZONE_WORDS};
+use super::constants::Patches;
 use super::counters::{self, Counters};
 
 /// Sums over the particles of one gas in one zone and over the tallies of an interval, in tally units.
@@ -21,6 +22,27 @@ pub struct SurfaceSum {
     pub hits: i64,
 }
 
+/// What a coat took in an interval, in tally units over the reference mass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CoatSum {
+    pub energy: i64,
+    /// Each part of it times the tallies of the zones that followed in the interval.
+    pub tallied: i64,
+}
+
+/// What left through a vent in an interval; energies as those of a coat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct VentSum {
+    pub energy: i64,
+    pub tallied: i64,
+    /// Particles that hit its place.
+    pub hits: i64,
+    /// Those of them whose probability of passing was more than one.
+    pub clipped: i64,
+    /// Particles of each gas.
+    pub left: [i64; 16],
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BlockSum {
     pub number: u64,
@@ -33,6 +55,8 @@ pub struct Tallies {
     /// Zone-major, then gas.
     pub zones: Vec<ZoneSum>,
     pub surfaces: Vec<SurfaceSum>,
+    pub coats: Vec<CoatSum>,
+    pub vents: Vec<VentSum>,
     pub blocks: Vec<BlockSum>,
     /// Particles that would cross more than a cell in a step of each level of the ladder.
     pub fast: Vec<u32>,
@@ -48,12 +72,14 @@ fn signed(words: &[u32], index: usize) -> i64 {
 
 impl Tallies {
     /// From the counters, zones, surfaces and blocks in this order.
-    pub fn decode(words: &[u32], sizes: TallyWords, blocks: usize) -> Tallies {
+    pub fn decode(words: &[u32], sizes: TallyWords, patches: Patches, blocks: usize) -> Tallies {
         let mut counter_words = [0; counters::WORDS];
         counter_words.copy_from_slice(&words[..counters::WORDS]);
         let rest = &words[counters::WORDS..];
         let (zones, rest) = rest.split_at(sizes.zones);
-        let (surfaces, rest) = rest.split_at(sizes.surfaces);
+        let (walls, rest) = rest.split_at(sizes.surfaces);
+        let [coats_at, vents_at] = patches.ends();
+        let (surfaces, coats, vents) = (&walls[..coats_at], &walls[coats_at..vents_at], &walls[vents_at..]);
         let block_words = &rest[..sizes.blocks];
         Tallies {
             counters: Counters::from_words(&counter_words),
@@ -72,6 +98,20 @@ impl Tallies {
                     impulse: [signed(w, 0), signed(w, 2), signed(w, 4)],
                     normal: signed(w, 6),
                     hits: signed(w, 8),
+                })
+                .collect(),
+            coats: coats
+                .chunks_exact(COAT_WORDS)
+                .map(|w| CoatSum { energy: signed(w, 0), tallied: signed(w, 2) })
+                .collect(),
+            vents: vents
+                .chunks_exact(VENT_WORDS)
+                .map(|w| VentSum {
+                    energy: signed(w, 0),
+                    tallied: signed(w, 2),
+                    hits: signed(w, 4),
+                    clipped: signed(w, 6),
+                    left: std::array::from_fn(|gas| i64::from(w[8 + gas])),
                 })
                 .collect(),
             blocks: block_words[..blocks * BLOCK_WORDS]
@@ -120,7 +160,7 @@ impl Tallies {
         sums.next().is_none().then_some(all)
     }
 
-    /// The sums of zones and surfaces.
+    /// The sums of zones, surfaces, coats and vents.
     fn signed(&mut self) -> impl Iterator<Item = &mut i64> {
         let zones = self.zones.iter_mut().flat_map(|zone| {
             let ZoneSum { number, velocity: [x, y, z], kinetic, spin } = zone;
@@ -130,6 +170,11 @@ impl Tallies {
             let SurfaceSum { impulse: [x, y, z], normal, hits } = surface;
             [x, y, z, normal, hits]
         });
-        zones.chain(surfaces)
+        let coats = self.coats.iter_mut().flat_map(|coat| [&mut coat.energy, &mut coat.tallied]);
+        let vents = self.vents.iter_mut().flat_map(|vent| {
+            let VentSum { energy, tallied, hits, clipped, left } = vent;
+            [energy, tallied, hits, clipped].into_iter().chain(left)
+        });
+        zones.chain(surfaces).chain(coats).chain(vents)
     }
 }

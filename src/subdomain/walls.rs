@@ -31,10 +31,17 @@ impl Walls {
         TOLERANCE * cells * grid.cell
     }
 
-    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `parts` tells
+    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `coat` is its coat;
+    /// empty if all walls are mirrors. `parts` tells
     /// of a triangle of the vessel whether it can part two points of the gas: those of the surface of a
     /// convex cavity cannot.
-    pub fn new(triangle_grid: &TriangleGrid, grid: &Grid, patch: &[u32], parts: impl Fn(usize) -> bool) -> Walls {
+    pub fn new(
+        triangle_grid: &TriangleGrid,
+        grid: &Grid,
+        patch: &[u32],
+        coat: &[u32],
+        parts: impl Fn(usize) -> bool,
+    ) -> Walls {
         let triangles = triangle_grid
             .triangles
             .iter()
@@ -49,7 +56,7 @@ impl Walls {
                     b: corner(1),
                     surface: patch.get(triangle.source as usize).copied().unwrap_or(NOBODY),
                     c: corner(2),
-                    pad: 0,
+                    coat: coat.get(triangle.source as usize).copied().unwrap_or(NOBODY),
                     normal: triangle.normal,
                     pad2: 0,
                 }

@@ -68,6 +68,15 @@ fn free_flight_goes_on_from_any_step() {
     restarts(&published("effusion.toml", 2000, 0.008), 3, [3, 1, 2, 3]);
 }
 
+/// Who has left is not in the checkpoint, and what vents owe and walls have taken is.
+#[test]
+fn vents_and_cold_walls_go_on_from_any_step() {
+    let mut scene = published("vent.toml", 1500, 0.006);
+    scene.vents[0].opening_pressure = 5e3;
+    let case = restarts(&scene, 5, [1, 2, 3, 1]);
+    assert!(case.said.contains("heat to the walls"), "{}", case.said);
+}
+
 /// A run that goes on starts with short neighbour lists again.
 #[test]
 fn intervals_that_are_run_again_do_not_matter() {

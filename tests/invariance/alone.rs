@@ -1,12 +1,13 @@
 //! On one device.
 
+use corpuscle::output::AuditLimits;
 use corpuscle::scene::Method;
 use corpuscle::simulation::{Model, Options, Shuffle};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, by, dense, effusion, gas_box, plate, tank};
+use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, plate, tank, venting, venting_freely};
 use crate::whole_run::{Run, run};
 
 /// The scene again, in every way that must not matter.
@@ -57,6 +58,38 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 #[test]
 fn box_has_the_same_bits_in_every_way() {
     every_way(&gas_box());
+}
+
+/// Walls that exchange heat draw random numbers, and follow the gas.
+#[test]
+fn cold_walls_have_the_same_bits_in_every_way() {
+    let model = cold_walls();
+    let first = run(&model, Options::default());
+    let last = first.rows.last().expect("a row");
+    assert!(last.walls.iter().all(|wall| wall.heat > 0.0) && last.walls.len() == 2, "{:?}", last.walls);
+    assert_eq!(first.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    every_way(&model);
+}
+
+/// Particles leave, and the host knows of it two intervals late; their slots are used again.
+#[test]
+fn vents_have_the_same_bits_in_every_way() {
+    let model = venting();
+    let first = run(&model, Options::default());
+    let audit = &first.outcome.audit;
+    assert!(audit.particles_vented > 20 && audit.particles_injected > 20, "{audit:?}");
+    assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    assert_eq!(first.rows.last().map(|row| row.particles), Some(audit.particles_inside));
+    every_way(&model);
+}
+
+#[test]
+fn vents_in_free_flight_have_the_same_bits_in_every_way() {
+    let model = venting_freely();
+    let first = run(&model, Options::default());
+    assert!(first.outcome.audit.particles_vented > 20, "{:?}", first.outcome.audit);
+    assert_eq!(first.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    every_way(&model);
 }
 
 /// Inflow, two gases, and cells that a wall with a hole parts.

@@ -8,7 +8,9 @@ use corpuscle::simulation::{Ghosts, Model, Options};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
-use crate::scenes::{burst, by, curves, dense, effusion, gas_box, plate, tank, tube};
+use crate::scenes::{
+    burst, by, cold_walls, curves, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely,
+};
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
@@ -89,6 +91,21 @@ fn box_has_the_same_bits_on_any_number_of_ranks() {
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
     assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
+}
+
+/// What walls have taken is one sum, and the next intervals follow it on every rank.
+#[test]
+fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
+    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)]);
+    assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
+}
+
+#[test]
+fn vents_have_the_same_bits_on_any_number_of_ranks() {
+    let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)]);
+    assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
+    same(&venting_freely(), &[Way::new(3, Off, 1)]);
+    same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1)]);
 }
 
 /// Heat capacities that depend on the temperature, and mixtures at rest and flowing in.

@@ -63,9 +63,44 @@ pub fn plate() -> Model {
     )
 }
 
+/// Two hot gases between a cold box, a warmer plate with a heat-transfer coefficient, and a mirror.
+pub fn cold_walls() -> Model {
+    model(
+        "end_time = 4e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.08]\ngas = \"inside\"\n\
+         temperature = 250.0\naccommodation = 0.5\n\
+         [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.05, 0.04, 0.04]\nnormal = [0.8, 0.6, 0.0]\n\
+         u = [-0.6, 0.8, 0.0]\nsize = [0.05, 0.06]\nthickness = 0.002\ntemperature = 350.0\nheat_transfer = 2e4\n\
+         [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.02, 0.02, 0.02]\nradius = 0.01\nsubdivisions = 1\n\
+         gas = \"outside\"\n\
+         [[chamber]]\nname = \"dense\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.04, 0.08, 0.08] } }\n\
+         pressure = 2e5\ntemperature = 900.0\ngas = { air = 0.6, helium = 0.4 }\n\
+         [[chamber]]\nname = \"thin\"\npressure = 1e5\ntemperature = 600.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+         [model]\nparticles = 2000\noccupancy = 0.1\n[output]\nrows = 8\nsnapshots = 0\n",
+    )
+}
+
 /// Gas at rest, with the impulse on its walls.
 pub fn gas_box() -> Model {
     published("box.toml", 2000, 4e-4)
+}
+
+/// Gas flows in and leaves through a vent that opens on the way and through leaking walls.
+pub fn venting() -> Model {
+    let mut scene = published("vent.toml", 1000, 0.004).scene;
+    scene.vents[0].opening_pressure = 1e3;
+    scene.vents[0].area = Some(0.004);
+    scene.output.rows = 10;
+    Model::new(scene).expect("a model")
+}
+
+/// The same in free flight, where those that have left leave their places empty.
+pub fn venting_freely() -> Model {
+    let mut scene = venting().scene;
+    scene.model.method = Some(corpuscle::scene::Method::None);
+    Model::new(scene).expect("a model")
 }
 
 /// Free flight: not even its memory is in order.

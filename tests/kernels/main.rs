@@ -10,6 +10,7 @@ mod blocks;
 mod bounce;
 mod choose;
 mod closed;
+mod coats;
 mod collide;
 mod exchange;
 mod fly;

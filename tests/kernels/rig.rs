@@ -73,7 +73,7 @@ pub struct World {
 }
 
 pub fn wall(shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: "wall".into(), shape, gas }
+    Wall { name: "wall".into(), shape, gas, heat: None }
 }
 
 /// A box of gas from the origin.
@@ -92,7 +92,7 @@ impl World {
         let from_corner = |p: Vector| std::array::from_fn(|k| p[k] - grid.origin[k]);
         let patch: Vec<u32> = (0..vessel.triangles.len() as u32).map(|k| k % 3).collect();
         World {
-            walls: Walls::new(&fixed, &grid, &patch, |_| true),
+            walls: Walls::new(&fixed, &grid, &patch, &[], |_| true),
             triangles,
             low: from_corner(low),
             high: from_corner(high),
@@ -184,6 +184,12 @@ impl Rig {
             ("QUANTUM", grid.quantum()),
             ("QUANTA", 1.0 / grid.quantum()),
             ("TOLERANCE", world.walls.tolerance),
+            // Mirrors, unless a test gives the walls coats.
+            ("COATS", 0.0),
+            ("VENTS", 0.0),
+            ("SEED_LOW", 0.0),
+            ("SEED_HIGH", 4.0),
+            ("WALL_SEED_HIGH", 7.0),
         ];
         let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), constants };
         rig.put("wall_start", &world.walls.start);
@@ -200,6 +206,8 @@ impl Rig {
         rig.put("layers", &[0u32; MOST_PARTICLES]);
         rig.put("border", &[[0u32; 2]; 2]);
         rig.put("changed", &[0u32; 4]);
+        rig.put("coats", &[0u32; 4]);
+        rig.put("vents", &[0u32; 8]);
         rig.put("asked", &[0u32; 4]);
         rig.put("asked_dispatches", &[0u32; 3 * LISTS]);
         rig.put("origins", &[0u32; 4]);

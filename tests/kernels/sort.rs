@@ -178,7 +178,7 @@ fn only_walls_that_part_the_gas_are_marked() {
     let vessel = corpuscle::geometry::Vessel::build(&[tank([0.06, 0.07, 0.08])]).unwrap();
     let margin = corpuscle::subdomain::Walls::tolerance(&world.grid);
     let fixed = corpuscle::geometry::TriangleGrid::build(&vessel, &world.grid, margin).unwrap();
-    let none = corpuscle::subdomain::Walls::new(&fixed, &world.grid, &[], |_| false);
+    let none = corpuscle::subdomain::Walls::new(&fixed, &world.grid, &[], &[], |_| false);
     assert!(none.parting.iter().all(|&bits| bits == 0));
     let marked = |cell: u32| world.walls.parting[cell as usize / 32] >> (cell % 32) & 1 == 1;
     let cells = world.grid.cell_count() as u32;

@@ -16,7 +16,9 @@ mod mixing;
 mod orifice;
 mod statistics;
 mod two_chambers;
+mod vents;
 mod vessels;
 mod wall_pressure;
+mod walls;
 #[path = "../whole_run/mod.rs"]
 mod whole_run;

@@ -119,9 +119,8 @@ impl<'a> Checkpoints<'a> {
         let (Some(Lead { origin, .. }), Some(output)) = (&self.lead, output) else {
             return Err("rank 0 does not know what the checkpoint is of".to_owned());
         };
-        let Moment { step, time, particles, state, .. } = *moment;
-        // Nothing leaves the vessel: what entered is there.
-        let at = output::Moment { step, time, particles, ids: particles };
+        let Moment { step, time, particles, ids, state, .. } = *moment;
+        let at = output::Moment { step, time, particles, ids };
         let output = output().map_err(|error| error.to_string())?;
         let commit = || -> Result<Written, CheckpointError> {
             let path = writer.commit(files, &at, origin, state, &output)?;

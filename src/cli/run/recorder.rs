@@ -288,6 +288,8 @@ mod tests {
             chambers: vec![zone.clone(); model.scene.chambers.len()],
             probes: vec![zone; model.scene.probes.len()],
             surfaces: vec![SurfaceState::default(); model.scene.surfaces.len()],
+            walls: Vec::new(),
+            vents: Vec::new(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The columns of `history.csv` and their values.
 //!
 //! A column is called `owner:quantity`, for instance `inner:pressure_pa`. Names are unique among the
-//! chambers, among the probes and among the surfaces, and hold no colon; where two of the lists share a name
+//! chambers, the probes, the surfaces, the walls and the vents, each list for itself, and hold no colon; where two of the lists share a name
 //! its columns say which list they are of: `chamber:inner:pressure_pa`, `probe:inner:pressure_pa`.
 
 use crate::output::Column;
@@ -15,6 +15,9 @@ pub struct Owners {
     pub chambers: Vec<String>,
     pub probes: Vec<String>,
     pub surfaces: Vec<String>,
+    /// Walls that exchange heat.
+    pub walls: Vec<String>,
+    pub vents: Vec<String>,
 }
 
 impl Owners {
@@ -22,7 +25,10 @@ impl Owners {
         let chambers: Vec<&str> = scene.chambers.iter().map(|chamber| chamber.name.as_str()).collect();
         let probes: Vec<&str> = scene.probes.iter().map(|probe| probe.name.as_str()).collect();
         let surfaces: Vec<&str> = scene.surfaces.iter().map(|surface| surface.name.as_str()).collect();
-        let lists = [&chambers, &probes, &surfaces];
+        let hot = scene.walls.iter().filter(|wall| wall.heat.is_some());
+        let walls: Vec<&str> = hot.map(|wall| wall.name.as_str()).collect();
+        let vents: Vec<&str> = scene.vents.iter().map(|vent| vent.name.as_str()).collect();
+        let lists = [&chambers, &probes, &surfaces, &walls, &vents];
         let named = |kind: &str, own: &[&str]| -> Vec<String> {
             let shared = |name: &str| lists.iter().filter(|list| list.contains(&name)).count() > 1;
             own.iter().map(|name| if shared(name) { format!("{kind}:{name}") } else { (*name).to_owned() }).collect()
@@ -31,6 +37,8 @@ impl Owners {
             chambers: named("chamber", &chambers),
             probes: named("probe", &probes),
             surfaces: named("surface", &surfaces),
+            walls: named("wall", &walls),
+            vents: named("vent", &vents),
         }
     }
 }
@@ -66,6 +74,18 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(AXES.map(|axis| Column::new(format!("{owner}:impulse_{axis}"), "kg_m_s")));
         columns.push(Column::new(format!("{owner}:hits"), ""));
     }
+    for owner in &owners.walls {
+        columns.push(Column::new(format!("{owner}:heat"), "j"));
+        columns.push(Column::new(format!("{owner}:heat_flux"), "w_m2"));
+    }
+    for owner in &owners.vents {
+        columns.push(Column::new(format!("{owner}:mass_flow"), "kg_s"));
+        columns.push(Column::new(format!("{owner}:wanted_mass_flow"), "kg_s"));
+        columns.push(Column::new(format!("{owner}:discharge"), ""));
+        columns.push(Column::new(format!("{owner}:wanted_discharge"), ""));
+        columns.push(Column::new(format!("{owner}:mass"), "kg"));
+        columns.push(Column::new(format!("{owner}:enthalpy"), "j"));
+    }
     columns
 }
 
@@ -91,6 +111,13 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
         values.push(surface.pressure);
         values.extend(surface.impulse);
         values.push(surface.hits as f64);
+    }
+    for wall in &row.walls {
+        values.extend([wall.heat, wall.heat_flux]);
+    }
+    for vent in &row.vents {
+        values.extend([vent.mass_flow, vent.wanted_mass_flow, vent.discharge, vent.wanted_discharge]);
+        values.extend([vent.mass, vent.enthalpy]);
     }
     values
 }

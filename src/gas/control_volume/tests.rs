@@ -30,6 +30,8 @@ fn two_chambers(length: f64) -> ControlVolume {
         volumes: vec![0.002, 0.058],
         sources: vec![],
         openings: vec![Opening { name: "hole".into(), between: [0, 1], area: 1.6e-3, length }],
+        walls: vec![],
+        vents: vec![],
         collisions: Collisions::Particles { diameter: 2.4e-3, moles_per_particle: 5e-6 },
     }
 }
@@ -137,4 +139,56 @@ fn levelling_is_monotone_in_the_discharge_coefficient() {
     let pressures = [1e-4, 0.01, 0.04, 0.2, 10.0].map(left);
     assert!(pressures.windows(2).all(|pair| pair[0] > pair[1]), "{pressures:?}");
     assert!(left(1e-4) - left(1e-5) < 1e-6 * left(1e-4), "both are in the kinetic limit");
+}
+
+fn nitrogen_tank() -> ControlVolume {
+    ControlVolume { volumes: vec![0.001], openings: vec![], collisions: Collisions::None, ..two_chambers(0.04) }
+}
+
+/// dT/dt = -(T - T_w)/tau, tau = n cv / (h A).
+#[test]
+fn heat_loss_is_exponential() {
+    let start = air(1e5, 0.001, 600.0);
+    let capacity = start.moles[0] * 2.5 * GAS_CONSTANT;
+    let heat =
+        WallHeat { temperature: 300.0, transfer: crate::scene::HeatTransfer::Coefficient(capacity / 0.06 / 0.002) };
+    let tank = ControlVolume { walls: vec![HeatedWall { chamber: 0, area: 0.06, heat }], ..nitrogen_tank() };
+    for (time, states) in [0.001, 0.005].into_iter().zip(tank.solve(&[start], &[0.001, 0.005])) {
+        let expected = 300.0 + 300.0 * libm::exp(-time / 0.002);
+        assert!(relative(states[0].temperature, expected) < 1e-8, "{} {expected}", states[0].temperature);
+    }
+}
+
+/// Choked flow into vacuum: x = (1 + (gamma-1)/2 K t)^(-2/(gamma-1)), T = T0 x^(gamma-1); and from a chamber that has
+/// not reached the opening pressure nothing flows.
+#[test]
+fn a_vent_empties_a_chamber_isentropically() {
+    let flow = crate::scene::VentFlow::Discharge(Curve { points: vec![[0.0, 0.5]] });
+    let vent = |opening_pressure: f64| OpenVent {
+        chamber: 0,
+        area: 1e-4,
+        vent: Vent {
+            name: "vent".into(),
+            wall: 0,
+            face: None,
+            chamber: None,
+            disc: None,
+            area: None,
+            flow: flow.clone(),
+            opening_pressure,
+            external_pressure: 0.0,
+        },
+    };
+    let start = air(1e5, 0.001, 400.0);
+    let tank = |opening| ControlVolume { vents: vec![vent(opening)], ..nitrogen_tank() };
+    let times = [0.01, 0.05];
+    let choked = libm::sqrt(1.4) * libm::pow(1.2, -3.0);
+    let rate = 0.5 * 1e-4 / 0.001 * choked * libm::sqrt(GAS_CONSTANT * 400.0 / 0.029);
+    for (time, states) in times.into_iter().zip(tank(9e4).solve(std::slice::from_ref(&start), &times)) {
+        let left = libm::pow(1.0 + 0.2 * rate * time, -5.0);
+        assert!(relative(states[0].moles[0], start.moles[0] * left) < 1e-7, "{:?} {left}", states[0]);
+        assert!(relative(states[0].temperature, 400.0 * libm::pow(left, 0.4)) < 1e-7);
+    }
+    let closed = tank(1.1e5).solve(std::slice::from_ref(&start), &times);
+    assert_eq!(closed[1][0].moles, start.moles);
 }

@@ -64,6 +64,9 @@ pub struct RefineReport {
 pub enum RefineError {
     #[error("{times} times as many particles is no refinement: expected at least 2")]
     Times { times: u64 },
+    #[error("the scene has the vent `{vent}`: particles have left, and which of a refined run would have is unknown")]
+    #[diagnostic(help("refine a state of a scene without vents"))]
+    Vents { vent: String },
     #[error("{times} times the {particles} particles of the run are more than the {limit} that an id can name")]
     TooMany { times: u64, particles: u64, limit: u64 },
     #[error("the refined scene cannot be planned: {0}")]
@@ -99,6 +102,9 @@ impl From<InflowStateError> for RefineError {
 /// # Errors
 /// If the state is not of this model, or the refined scene has too many particles or cannot be planned.
 pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times: u64) -> Result<Refined, RefineError> {
+    if let Some(vent) = parent.scene.vents.first() {
+        return Err(RefineError::Vents { vent: vent.name.clone() });
+    }
     let progress = check(parent, state, particles)?;
     let model = Model::new(refined_scene(parent, times)?).map_err(RefineError::Model)?;
     let clock = Clock::starting_at(&model.plan, progress);

@@ -24,7 +24,7 @@ pub fn state(
     parent: &RunState,
     particles: &[GpuParticle],
 ) -> Result<RunState, LadderError> {
-    let Model { scene, vessel, plan } = model;
+    let Model { scene, vessel, plan, coats } = model;
     let mut ladder = Ladder::new(plan, block_volumes(vessel, &plan.grid, plan.block_cells_log2));
     let (blocks, fast) = tallies(plan, particles);
     ladder.start(ladder.demand(&blocks, &fast))?;
@@ -34,10 +34,15 @@ pub fn state(
     Ok(RunState {
         clock: clock.state(),
         ladder: ladder.state(),
-        averages: AveragesState::starting_at(clock.time(), zones, plan.gases.len(), patches(model).1.len()),
+        averages: AveragesState::starting_at(
+            clock.time(),
+            [zones, plan.gases.len(), patches(model).1.len(), coats.coats.len(), scene.vents.len()],
+        ),
         account: account.state().clone(),
         inflow: inflow.state(),
         demands: Vec::new(),
+        conditions: parent.conditions.clone(),
+        seen: Vec::new(),
         submitted: 0,
         next_row: parent.next_row,
         next_snapshot: parent.next_snapshot,

@@ -84,7 +84,10 @@ impl Simulation<'_> {
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
-        self.averages.add(&tallies, interval.dt, interval.steps, samples);
+        let span = [self.read_until - duration, self.read_until];
+        let (seen, wanted) = self.conditions.see(&tallies, samples, span);
+        self.seen.push_back((seen, self.account.state().left()));
+        self.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
         if self.decomposition.is_some() {
             let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
             self.tuner.measured(slowest, interval.steps, interval.particles);

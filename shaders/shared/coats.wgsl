@@ -1,0 +1,88 @@
+// What walls that are no mirrors do: by wall and chamber, for the length of an interval.
+
+struct Coat {
+    // R T_w over the molar mass of the reference gas, (m/s)^2.
+    thermal: f32,
+    // Share of the hits that leave with the temperature of the wall.
+    accommodation: f32,
+    // Its entries of `vents`.
+    first_vent: u32,
+    end_vent: u32,
+}
+
+// A place of a wall that lets gas out.
+struct Vent {
+    // Quanta.
+    center: vec3<u32>,
+    // m2; negative: all of the wall.
+    radius2: f32,
+    // Probability of passing, per normal speed (s/m) and mass over the reference mass.
+    beta: f32,
+    // Its tally.
+    index: u32,
+    pad: u32,
+    pad2: u32,
+}
+
+@group(0) @binding(45) var<storage, read> coats: array<Coat>;
+@group(0) @binding(46) var<storage, read> vents: array<Vent>;
+
+// Key of the draws at walls: as SEED_HIGH, with their purpose.
+override WALL_SEED_HIGH: u32;
+
+// Blocks of random words that one hit may use up; the hits of a flight in a step are numbered from 1.
+const BLOCKS_PER_HIT: u32 = 32;
+
+fn wall_draw(tag: u32, hit: u32, block: u32) -> vec4<u32> {
+    let counter = vec4<u32>(step.index, hit * BLOCKS_PER_HIT + block, id_of(tag), 0u);
+    return philox(counter, vec2<u32>(SEED_LOW, WALL_SEED_HIGH));
+}
+
+// The vent of a coat that a place lies in, or NOBODY; of several the first.
+fn vent_at(coat: Coat, place: vec3<u32>) -> u32 {
+    for (var v = coat.first_vent; v < coat.end_vent; v++) {
+        let away = between(vents[v].center, place);
+        if (vents[v].radius2 < 0.0 || dot(away, away) <= vents[v].radius2) {
+            return v;
+        }
+    }
+    return NOBODY;
+}
+
+// Two standard normal numbers (Box and Muller 1958).
+fn normals(a: u32, b: u32) -> vec2<f32> {
+    let angle = 6.2831853 * unit_interval(b);
+    return sqrt(-2.0 * log(unit_interval(a))) * vec2<f32>(cos(angle), sin(angle));
+}
+
+// The velocity of a particle that leaves with the temperature of the wall (specification, section 4 "Rigid
+// wall"): v_n = sqrt(-2 kT/m ln U) along the normal, normal distributions across it; `thermal` is kT/m.
+fn emitted(normal: vec3<f32>, thermal: f32, tag: u32, hit: u32, word: u32) -> vec3<f32> {
+    let draw = wall_draw(tag, hit, 1u);
+    // Three normal numbers less their part along the normal are two across it, whatever the axes.
+    let any = vec3<f32>(normals(draw.x, draw.y), normals(draw.z, draw.w).x);
+    let across = any - dot(any, normal) * normal;
+    return sqrt(thermal) * (across + sqrt(-2.0 * log(unit_interval(word))) * normal);
+}
+
+// A gamma variate of unit scale (Marsaglia and Tsang 2000, with their boost for shapes below one).
+fn gamma_variate(shape: f32, tag: u32, hit: u32) -> f32 {
+    var boost = 1.0;
+    var d = shape - 1.0 / 3.0;
+    if (shape < 1.0) {
+        boost = pow(unit_interval(wall_draw(tag, hit, 2u).x), 1.0 / shape);
+        d += 1.0;
+    }
+    let c = 1.0 / sqrt(9.0 * d);
+    // More than 19 attempts in 20 are accepted, so the last of these is never refused in practice.
+    for (var block = 3u; block < BLOCKS_PER_HIT; block++) {
+        let draw = wall_draw(tag, hit, block);
+        let x = normals(draw.x, draw.y).x;
+        let root = 1.0 + c * x;
+        let v = root * root * root;
+        if (root > 0.0 && log(unit_interval(draw.z)) < 0.5 * x * x + d - d * v + d * log(v)) {
+            return boost * d * v;
+        }
+    }
+    return boost * d;
+}

@@ -1,0 +1,40 @@
+//! What the chambers lose through their walls: heat to those that keep a temperature, gas through vents.
+//!
+//! dU/dt = -A h (T - T_w), by the same rule as the particles' walls (`wall_heat`); dn/dt = -A G / M, dU/dt = -A G h of a
+//! vent that is open (`vent`).
+
+use super::ControlVolume;
+use crate::gas::vent::{LocalGas, flux, opens};
+use crate::gas::wall_heat::heat_flux;
+
+impl ControlVolume {
+    /// Opens the vents whose chambers have reached their opening pressure.
+    pub(super) fn open_vents(&self, contents: &[f64], open: &mut [bool]) {
+        for (vent, open) in self.vents.iter().zip(open) {
+            *open = opens(&vent.vent, *open, self.side(contents, vent.chamber).pressure());
+        }
+    }
+
+    /// Takes the losses at a time (s) from the time derivative of the unknowns.
+    pub(super) fn lose(&self, time: f64, contents: &[f64], open: &[bool], rate: &mut [f64]) {
+        let stride = self.stride();
+        for wall in &self.walls {
+            let side = self.side(contents, wall.chamber);
+            let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
+            let flux = heat_flux(&wall.heat, &self.gases, &concentrations, side.temperature);
+            rate[(wall.chamber + 1) * stride - 1] -= wall.area * flux;
+        }
+        for (open, _) in self.vents.iter().zip(open).filter(|(_, open)| **open) {
+            let side = self.side(contents, open.chamber);
+            let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
+            let Some(gas) = LocalGas::new(&self.gases, &concentrations, side.temperature) else { continue };
+            let moles = open.area * flux(&open.vent, &gas, time) / gas.molar_mass;
+            let total: f64 = side.moles.iter().sum();
+            for (index, own) in side.moles.iter().enumerate() {
+                let flow = moles * own / total;
+                rate[open.chamber * stride + index] -= flow;
+                rate[(open.chamber + 1) * stride - 1] -= flow * self.gases[index].enthalpy(1.0, side.temperature);
+            }
+        }
+    }
+}

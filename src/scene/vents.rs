@@ -1,0 +1,94 @@
+//! Vents: where on a wall, and how much they let out.
+
+use super::errors::Problem;
+use super::flows::curve;
+use super::holes::face;
+use super::names::Names;
+use super::numbers::{not_negative, point, positive};
+use super::raw::{RawShape, RawVent, RawWall};
+use super::raw_values::{At, NumberOr, Numbers};
+use super::types::{Curve, Disc, UnitSystem, Vent, VentFlow};
+use super::units::Quantity;
+
+/// The standard atmosphere, Pa.
+const ATMOSPHERE: f64 = 101_325.0;
+
+pub(super) fn vent(
+    raw: &At<RawVent>,
+    walls: &Names,
+    chambers: &Names,
+    raw_walls: &[At<RawWall>],
+    units: UnitSystem,
+) -> Result<Vent, Problem> {
+    let vent = &raw.value;
+    let wall = walls.find(&vent.wall)?;
+    if let Some(given) = &vent.face
+        && raw_walls[wall].value.shape.value != RawShape::Box
+    {
+        let found = format!("a face of the wall {:?}, which is no box", vent.wall.value);
+        return Err(Problem::value(&given.span, found, "`face` of a box"));
+    }
+    let pressure = |at: &Option<At<f64>>| at.as_ref().map(|at| not_negative(at, Quantity::Pressure, units)).transpose();
+    Ok(Vent {
+        name: vent.name.value.clone(),
+        wall,
+        face: vent.face.as_ref().map(|at| face(at.value)),
+        chamber: vent.chamber.as_ref().map(|name| chambers.find(name)).transpose()?,
+        disc: disc(raw, units)?,
+        area: vent.area.as_ref().map(|at| positive(at, Quantity::Area, units)).transpose()?,
+        flow: flow(raw, units)?,
+        opening_pressure: pressure(&vent.opening_pressure)?.unwrap_or(0.0),
+        external_pressure: pressure(&vent.external_pressure)?.unwrap_or(ATMOSPHERE),
+    })
+}
+
+fn disc(raw: &At<RawVent>, units: UnitSystem) -> Result<Option<Disc>, Problem> {
+    match (&raw.value.position, &raw.value.diameter) {
+        (None, None) => Ok(None),
+        (Some(position), Some(diameter)) => {
+            Ok(Some(Disc { center: point(position, units)?, diameter: positive(diameter, Quantity::Length, units)? }))
+        }
+        (Some(position), None) => {
+            Err(Problem::value(&position.span, "`position` without `diameter`", "both of them, or neither"))
+        }
+        (None, Some(diameter)) => {
+            Err(Problem::value(&diameter.span, "`diameter` without `position`", "both of them, or neither"))
+        }
+    }
+}
+
+fn flow(raw: &At<RawVent>, units: UnitSystem) -> Result<VentFlow, Problem> {
+    let vent = &raw.value;
+    let keys = "exactly one of `discharge`, `discharge_by_pressure`, `leak_velocity`";
+    let coefficient = |at: &At<f64>| not_negative(at, Quantity::Pure, units);
+    let by_pressure = |at: &At<Vec<At<Numbers<2>>>>, ordinate: Quantity| -> Result<Curve, Problem> {
+        if at.value.is_empty() {
+            return Err(Problem::value(&at.span, "an empty curve", "at least one point [pressure, value]"));
+        }
+        curve(&at.value, Quantity::Pressure, units, |value| not_negative(value, ordinate, units))
+    };
+    match (&vent.discharge, &vent.discharge_by_pressure, &vent.leak_velocity) {
+        (Some(at), None, None) => Ok(VentFlow::Discharge(match &at.value {
+            NumberOr::Number(value) => {
+                let number = At { value: *value, span: at.span.clone() };
+                Curve { points: vec![[0.0, coefficient(&number)?]] }
+            }
+            NumberOr::Array(points) if points.is_empty() => {
+                return Err(Problem::value(&at.span, "an empty curve", "a number, or at least one point [time, C23]"));
+            }
+            NumberOr::Array(points) => curve(points, Quantity::Time, units, coefficient)?,
+        })),
+        (None, Some(at), None) => Ok(VentFlow::DischargeByPressure(by_pressure(at, Quantity::Pure)?)),
+        (None, None, Some(at)) => Ok(VentFlow::LeakVelocity(by_pressure(at, Quantity::Velocity)?)),
+        (None, None, None) => Err(Problem::missing(&raw.span, "discharge", keys)),
+        (discharge, by_pressure, leak) => {
+            let spans = [
+                discharge.as_ref().map(|at| &at.span),
+                by_pressure.as_ref().map(|at| &at.span),
+                leak.as_ref().map(|at| &at.span),
+            ];
+            let last = spans.into_iter().flatten().max_by_key(|span| span.start).unwrap_or(&raw.span);
+            Err(Problem::value(last, "a second law of the flow", keys))
+        }
+    }
+}

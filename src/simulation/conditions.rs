@@ -1,0 +1,277 @@
+//! What the walls that are no mirrors do in an interval: the share of the hits that take the temperature of the
+//! wall, and the probability of passing a vent (specification, section 4).
+//!
+//! Both follow from the gas of a wall's chamber, as the integer tallies of an earlier interval have it: the same on
+//! any number of ranks. A vent passes P = beta |v_n|, beta = 2 G / p for the flux G; for a mixture beta in proportion to
+//! the molar mass, since the flux of a gas is beta p_s / 2 and what leaves must have the composition of what is there.
+//! G is corrected by what the vent owes: the mass that should have left till then less that which has.
+
+use serde::{Deserialize, Serialize};
+
+use crate::gas::Species;
+use crate::gas::vent::{LocalGas, flux, opens};
+use crate::gas::wall_heat::accommodation;
+use crate::scene::{GAS_CONSTANT, HeatTransfer};
+use crate::subdomain::{Coating, GpuCoat, GpuVent, Scales, Tallies, ZoneSum};
+
+use super::model::Model;
+use super::run_state::StateError;
+
+/// A vent pays what it owes within so many intervals of its flow, or while so many particles leave.
+const PAID_IN: f64 = 8.0;
+const PAID_BY: f64 = 32.0;
+/// Its flow is raised to so many times what the gas gives it, at most.
+const MOST_RAISED: f64 = 4.0;
+
+/// The gas of a chamber, and what each vent owes, at the end of an interval.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Seen {
+    chambers: Vec<ChamberGas>,
+    vents: Vec<VentSeen>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct ChamberGas {
+    /// mol/m3 of each gas.
+    moles: Vec<f64>,
+    /// K, translational.
+    temperature: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct VentSeen {
+    open: bool,
+    /// kg; negative if too much has left.
+    owed: f64,
+}
+
+/// What a run remembers of them.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ConditionsState {
+    latest: Seen,
+    current: Seen,
+    /// Of each coat, the largest share of accommodation that its coefficient has asked for.
+    most_asked: Vec<f64>,
+}
+
+/// What a vent should pass in an interval, kg, and what isentropic flow through its area would.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wanted {
+    pub mass: f64,
+    pub isentropic: f64,
+}
+
+pub struct Conditions<'a> {
+    model: &'a Model,
+    species: Vec<Species>,
+    scales: Scales,
+    state: ConditionsState,
+}
+
+impl<'a> Conditions<'a> {
+    pub fn new(model: &'a Model) -> Conditions<'a> {
+        let most_asked = vec![0.0; model.coats.coats.len()];
+        Conditions {
+            model,
+            species: model.plan.species(),
+            scales: Scales::new(&model.plan),
+            state: ConditionsState { most_asked, ..ConditionsState::default() },
+        }
+    }
+
+    pub fn state(&self) -> &ConditionsState {
+        &self.state
+    }
+
+    /// # Errors
+    /// If the state is of another scene; then nothing is changed.
+    pub fn restore(&mut self, state: &ConditionsState) -> Result<(), StateError> {
+        let (chambers, vents) = (self.model.plan.chambers.len(), self.model.scene.vents.len());
+        let mut lengths = vec![("coats of walls", state.most_asked.len(), self.state.most_asked.len())];
+        // Where all walls are mirrors nothing is seen.
+        for seen in [&state.latest, &state.current].into_iter().filter(|seen| **seen != Seen::default()) {
+            lengths.push(("chambers", seen.chambers.len(), chambers));
+            lengths.push(("vents", seen.vents.len(), vents));
+            let gases = seen.chambers.iter().map(|gas| ("gases", gas.moles.len(), self.model.plan.gases.len()));
+            lengths.extend(gases);
+        }
+        for (what, found, expected) in lengths {
+            if found != expected {
+                return Err(StateError::differs(what, found as u64, expected as u64));
+            }
+        }
+        self.state.clone_from(state);
+        Ok(())
+    }
+
+    fn mirrors(&self) -> bool {
+        self.model.coats.coats.is_empty()
+    }
+
+    /// Takes the tallies of an interval from `start` to `end`, s; intervals come in their order. Also tells what its
+    /// vents should have passed, by the gas that was there (and not by that of the interval before last, whose state they
+    /// followed: so a vessel that empties fast does not lose more than it should).
+    pub fn see(&mut self, tallies: &Tallies, samples: u32, [start, end]: [f64; 2]) -> (Seen, Vec<Wanted>) {
+        if self.mirrors() {
+            return (Seen::default(), Vec::new());
+        }
+        let model = self.model;
+        if samples > 0 {
+            let gases = model.plan.gases.len();
+            self.state.latest.chambers = (0..model.plan.chambers.len())
+                .map(|chamber| {
+                    let zones = &tallies.zones[(chamber + 1) * gases..(chamber + 2) * gases];
+                    self.chamber(zones, f64::from(samples), model.plan.chambers[chamber].volume)
+                })
+                .collect();
+        }
+        self.state.latest.vents.resize(model.scene.vents.len(), VentSeen::default());
+        let wanted: Vec<Wanted> =
+            (0..model.scene.vents.len()).map(|index| self.flow(&self.state.latest, index, start, end).0).collect();
+        for (index, vent) in model.scene.vents.iter().enumerate() {
+            let mut seen = self.state.latest.vents[index];
+            let pressure = self.local(&self.state.latest, model.coats.vents[index].chamber).map_or(0.0, |g| g.pressure);
+            seen.open = opens(vent, seen.open, pressure);
+            let mass = wanted[index].mass;
+            let most = MOST_RAISED * (PAID_IN * mass).max(PAID_BY * self.scales.reference_mass);
+            seen.owed = (seen.owed + mass - self.left(tallies, index)).clamp(-most, most);
+            self.state.latest.vents[index] = seen;
+        }
+        (self.state.latest.clone(), wanted)
+    }
+
+    /// The state of the start of a run, before any interval.
+    pub fn start(&mut self, at_start: &Tallies) {
+        self.state.current = self.see(at_start, 1, [0.0; 2]).0;
+    }
+
+    /// From now on the walls follow this state.
+    pub fn follow(&mut self, seen: Seen) {
+        if !self.mirrors() {
+            self.state.current = seen;
+        }
+    }
+
+    fn chamber(&self, zones: &[ZoneSum], samples: f64, volume: f64) -> ChamberGas {
+        let plan = &self.model.plan;
+        let (mut mass, mut kinetic, mut total, mut momentum) = (0.0, 0.0, 0.0, [0.0; 3]);
+        let mut moles = Vec::with_capacity(zones.len());
+        for (zone, gas) in zones.iter().zip(&plan.gases) {
+            let number = zone.number as f64 / samples * plan.moles_per_particle;
+            moles.push(number / volume);
+            total += number;
+            mass += gas.molar_mass * number;
+            let own = gas.molar_mass * plan.moles_per_particle / samples;
+            kinetic += own * zone.kinetic as f64 / self.scales.energy;
+            for (sum, velocity) in momentum.iter_mut().zip(zone.velocity) {
+                *sum += own * velocity as f64 / self.scales.velocity;
+            }
+        }
+        if total <= 0.0 {
+            return ChamberGas { moles, temperature: 0.0 };
+        }
+        let bulk = 0.5 * momentum.iter().map(|p| p * p).sum::<f64>() / mass;
+        ChamberGas { moles, temperature: (kinetic - bulk).max(0.0) / (1.5 * total * GAS_CONSTANT) }
+    }
+
+    fn local(&self, seen: &Seen, chamber: usize) -> Option<LocalGas> {
+        let gas = seen.chambers.get(chamber)?;
+        LocalGas::new(&self.species, &gas.moles, gas.temperature)
+    }
+
+    /// Mass that has left through a vent, kg.
+    fn left(&self, tallies: &Tallies, vent: usize) -> f64 {
+        let plan = &self.model.plan;
+        let left = tallies.vents.get(vent).map(|sum| sum.left).unwrap_or_default();
+        plan.gases.iter().zip(left).map(|(gas, n)| gas.molar_mass * plan.moles_per_particle * n as f64).sum()
+    }
+
+    /// What the walls do from `start` to `end`, s.
+    pub fn coating(&mut self, start: f64, end: f64) -> Coating {
+        let mut coating = Coating::default();
+        if self.mirrors() {
+            return coating;
+        }
+        let model = self.model;
+        let betas: Vec<f64> =
+            (0..model.scene.vents.len()).map(|index| self.flow(&self.state.current, index, start, end).1).collect();
+        let heaviest = self.scales.reference_mass / model.plan.moles_per_particle;
+        for (index, coat) in model.coats.coats.iter().enumerate() {
+            let first_vent = coating.vents.len() as u32;
+            for &vent in &coat.vents {
+                let (center, radius2) = self.disc(vent);
+                let (beta, index) = (betas[vent] as f32, vent as u32);
+                coating.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
+            }
+            let (mut thermal, mut share) = (0.0, 0.0);
+            if let Some(heat) = &model.scene.walls[coat.wall].heat {
+                thermal = GAS_CONSTANT * heat.temperature / heaviest;
+                share = match self.state.current.chambers.get(coat.chamber) {
+                    Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
+                    None => 0.0,
+                };
+                // In an empty chamber any coefficient is too large, and nothing hits the wall.
+                if share.is_finite() && matches!(heat.transfer, HeatTransfer::Coefficient(_)) {
+                    self.state.most_asked[index] = self.state.most_asked[index].max(share);
+                }
+            }
+            coating.coats.push(GpuCoat {
+                thermal: thermal as f32,
+                accommodation: share.min(1.0) as f32,
+                first_vent,
+                end_vent: coating.vents.len() as u32,
+            });
+        }
+        coating
+    }
+
+    /// Centre in quanta and the square of the radius, m2, of a vent's place.
+    fn disc(&self, vent: usize) -> ([u32; 3], f32) {
+        let grid = &self.model.plan.grid;
+        match &self.model.scene.vents[vent].disc {
+            None => ([0; 3], -1.0),
+            Some(disc) => {
+                let quanta = |axis: usize| ((disc.center[axis] - grid.origin[axis]) / grid.quantum()).round() as i64;
+                (std::array::from_fn(|axis| quanta(axis) as u32), (0.25 * disc.diameter * disc.diameter) as f32)
+            }
+        }
+    }
+
+    /// What a vent should pass of the gas of a state, and its beta for the reference mass, s/m.
+    fn flow(&self, state: &Seen, index: usize, start: f64, end: f64) -> (Wanted, f64) {
+        let model = self.model;
+        let (vent, place) = (&model.scene.vents[index], &model.coats.vents[index]);
+        let Some(gas) = self.local(state, place.chamber) else {
+            return (Wanted::default(), 0.0);
+        };
+        let seen = state.vents.get(index).copied().unwrap_or_default();
+        let area = vent.area.unwrap_or(place.area);
+        let over = area * (end - start);
+        let isentropic = over * gas.isentropic_flux(vent.external_pressure);
+        if !seen.open {
+            return (Wanted { mass: 0.0, isentropic }, 0.0);
+        }
+        let flux = flux(vent, &gas, 0.5 * (start + end));
+        let wanted = Wanted { mass: over * flux, isentropic };
+        let within = (PAID_IN * wanted.mass).max(PAID_BY * self.scales.reference_mass);
+        let raised = (1.0 + seen.owed / within).clamp(0.0, MOST_RAISED);
+        let heaviest = self.scales.reference_mass / model.plan.moles_per_particle;
+        let beta = 2.0 * flux * area / place.area / gas.pressure * heaviest / gas.molar_mass;
+        (wanted, beta * raised)
+    }
+
+    /// The walls whose coefficient asked for more than all hits can give, with how many times as much.
+    pub fn beyond(&self) -> Vec<(String, f64)> {
+        let mut beyond: Vec<(String, f64)> = Vec::new();
+        for (coat, &asked) in self.model.coats.coats.iter().zip(&self.state.most_asked) {
+            if asked > 1.0 {
+                let name = &self.model.scene.walls[coat.wall].name;
+                match beyond.iter_mut().find(|(known, _)| known == name) {
+                    Some((_, most)) => *most = most.max(asked),
+                    None => beyond.push((name.clone(), asked)),
+                }
+            }
+        }
+        beyond
+    }
+}
