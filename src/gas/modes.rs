@@ -193,7 +193,7 @@ mod tests {
         assert!((ratio(1.0) - 1.0).abs() < 0.02 && (ratio(2.0) - 1.0).abs() < 0.05, "{modes:?}");
     }
 
-    /// Air, nitrogen, carbon dioxide, water, methane, propane and sulphur hexafluoride as quadratics of the usual tables.
+    /// Air, nitrogen, carbon dioxide, water, methane and propane as quadratics of the usual tables.
     #[test]
     fn gases_of_the_tables_are_met_within_a_per_cent() {
         for (name, cp, most) in [

@@ -16,7 +16,8 @@ fn rigid_spheres_press_as_the_table_says() {
     let warnings = gas.model().expect("a model").plan.warnings;
     assert!(warnings.iter().any(|warning| warning.contains("Carnahan-Starling")), "{warnings:?}");
     for (occupancy, steps, expected) in RIGID {
-        let (ratio, error) = rigid_pressure_ratio(&device(), occupancy, steps).expect("a run");
+        let ((ratio, error), taken) = rigid_pressure_ratio(&device(), occupancy, steps).expect("a run");
+        assert_eq!(taken, u64::from(steps), "every step is as long as asked");
         println!("f {occupancy}: {ratio:.4} +- {error:.4} ({expected})");
         let tolerance = expected * (0.005 + 3.0 * error);
         assert!((ratio - expected).abs() < tolerance, "f {occupancy}: {ratio:.4} +- {error:.4}");

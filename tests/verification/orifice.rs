@@ -19,6 +19,8 @@ fn discharge(knudsen: f64) -> (f64, f64) {
 
 #[test]
 fn gas_leaves_a_hole_at_the_discharge_coefficient_of_its_knudsen_number() {
+    let model = holes::emptying(12_000, 0.1).expect("a model");
+    assert!((model.plan.openings[0].length - holes::RADIUS).abs() < 1e-9, "the Knudsen number is of the hole's radius");
     let (resolved, error) = discharge(0.1);
     println!("Cd at Kn .1: {resolved:.3} +- {error:.3}");
     assert!((resolved - 0.78).abs() < 2.5 * error + 0.02, "{resolved:.3} +- {error:.3}");

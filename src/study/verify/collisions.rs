@@ -48,11 +48,11 @@ pub fn virial_error_of_cells(gas: &EquilibriumBox<'_>) -> f64 {
 }
 
 /// Of the method `hard-sphere`: wall pressure over n k T after the first quarter of a run, in which overlaps of the
-/// start end, and the error of as many independent hits.
+/// start end, and the error of as many independent hits; and the steps that it took.
 ///
 /// # Errors
 /// If the run fails.
-pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Result<(f64, f64), StudyError> {
+pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Result<((f64, f64), u64), StudyError> {
     let gas = EquilibriumBox {
         method: "hard-sphere",
         particles: 8000,
@@ -76,7 +76,7 @@ pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Resu
         duration += length;
         hits += row.surfaces[0].hits;
     }
-    Ok((ratio / duration, 1.13 / (hits as f64).sqrt()))
+    Ok(((ratio / duration, 1.13 / (hits as f64).sqrt()), run.outcome.steps))
 }
 
 /// Steps, and wall pressure over n k T of rigid spheres by the specification's table, section 2 (x = .1, R = 2,
@@ -102,7 +102,7 @@ pub(super) fn wall_pressures(device: &Device, effort: Effort) -> Result<Vec<Chec
     checks.push(Check::of("cell: p/nkT, x = 0.2", 1.0, (found.ratio, error), 0.005));
     if effort == Effort::Full {
         for (occupancy, steps, expected) in RIGID {
-            let found = rigid_pressure_ratio(device, occupancy, 4 * steps)?;
+            let (found, _) = rigid_pressure_ratio(device, occupancy, 4 * steps)?;
             let quantity = format!("hard-sphere: p/nkT, f = {occupancy}");
             checks.push(Check::of(quantity, expected, found, 0.02 * expected));
         }

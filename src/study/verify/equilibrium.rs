@@ -128,7 +128,7 @@ pub(super) fn relaxation(device: &Device, effort: Effort) -> Result<Vec<Check>, 
     ways[..count].iter().map(check).collect()
 }
 
-/// Relative change of the energy, and the collisions per particle.
+/// Relative change of the energy, collisions per particle, and steps.
 ///
 /// What rounding takes from a pair goes into spin; a gas without spin has only the rounding itself. Its energies are
 /// known to 3e-8 of a thermal energy each (scales of the tallies), so their sum over N far better than any limit here.
@@ -141,7 +141,7 @@ pub fn energy_drift(
     gases: &str,
     particles: u64,
     steps: u32,
-) -> Result<(f64, f64), StudyError> {
+) -> Result<(f64, f64, u64), StudyError> {
     let (mixture, molar_mass) = if gases == HELIUM { ("\"helium\"", 0.004) } else { ("\"nitrogen\"", 0.028) };
     let gas = EquilibriumBox {
         method,
@@ -157,7 +157,7 @@ pub fn energy_drift(
     // Noise of few particles in a block must not shorten the steps.
     model.plan.collision_limit = model.plan.collision_limit.max(1.0);
     let run = run(device, &model, Options::default())?;
-    Ok((run.outcome.audit.energy_error(), 2.0 * run.outcome.collisions as f64 / particles as f64))
+    Ok((run.outcome.audit.energy_error(), 2.0 * run.outcome.collisions as f64 / particles as f64, run.outcome.steps))
 }
 
 /// Within 1e-5 over 1e5 steps (specification, section 8); in fewer steps in proportion.
@@ -169,7 +169,7 @@ pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Vec<Check>
         ("cell", "helium", HELIUM),
     ];
     let check = |(method, name, gases): (&str, &str, &str)| {
-        let (drift, _) = energy_drift(device, method, gases, 500, steps)?;
+        let (drift, ..) = energy_drift(device, method, gases, 500, steps)?;
         let quantity = format!("{method}: {name}, {steps} steps");
         Ok(Check::of(quantity, 0.0, (drift, 0.0), 1e-5 * f64::from(steps) / 1e5))
     };

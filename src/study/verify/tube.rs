@@ -110,13 +110,12 @@ impl Tube {
         Some([density_error, velocity_error])
     }
 
-    /// What the counting noise of as many independent particles makes of the density's mean |difference|, and its
-    /// standard error.
-    pub fn noise(&self, model: &Model) -> (f64, f64) {
+    /// Standard error that the counting noise of as many independent particles gives the density's mean |difference|.
+    pub fn noise(&self, model: &Model) -> f64 {
         let left: f64 = model.plan.chambers[0].particles.iter().map(|&n| n as f64).sum();
-        // Of a slice with the left's density: sqrt(2/pi) of its standard deviation.
+        // Of the |difference| in a slice with the left's density, whose counts scatter by a root of 2 left / BINS.
         let of_slice = (BINS as f64 / (2.0 * left)).sqrt();
-        ((2.0 / PI).sqrt() * of_slice, (1.0 - 2.0 / PI).sqrt() * of_slice / (BINS as f64).sqrt())
+        (1.0 - 2.0 / PI).sqrt() * of_slice / (BINS as f64).sqrt()
     }
 }
 
@@ -131,7 +130,7 @@ pub fn shock_tube(device: &Device, tube: &Tube) -> Result<([f64; 2], f64), Study
     let model = tube.model()?;
     let run = run(device, &model, Options::default())?;
     let errors = tube.errors(&model, tube.end, &run.outcome.particles).unwrap_or([f64::NAN; 2]);
-    Ok((errors, tube.noise(&model).1))
+    Ok((errors, tube.noise(&model)))
 }
 
 /// At 160,000 particles and f = .1 the mean |difference| of the density is at most .024 (specification, section 8); it
