@@ -103,7 +103,9 @@ fn an_emulation_says_what_is_measured_and_what_is_modelled() {
     let folder = tempfile::tempdir().unwrap();
     let counts = ["--emulate", "--devices", "1,2,5", "--validate", "1", "--steps", "32", "--repeat", "1"];
     let options = ["--intervals", "2", "--latency-us", "100", "--bandwidth-gbs", "0.5", "--gpu-particle-ns", "1000"];
-    let text = finished(folder.path(), &[&counts[..], &options].concat());
+    // By particles: cuts by cost follow the times of a busy machine.
+    let by = ["--balance-by", "particles"];
+    let text = finished(folder.path(), &[&counts[..], &options, &by].concat());
     for part in [
         "## Measured",
         "## Modelled: work alone",
