@@ -57,6 +57,9 @@ pub enum PlanError {
     #[error("{what} together with gas `{gas}`, whose heat capacity depends on the temperature: that is not there yet")]
     #[diagnostic(help("give the gas a constant `cp`, that of the mean temperature"))]
     LossesOfCurves { what: String, gas: String },
+    #[error("wall `{wall}` moves, which the method `cell` cannot have yet: the gas volumes of its cells do not follow")]
+    #[diagnostic(help("choose `method = \"closest-approach\"` in [model]"))]
+    MotionInCells { wall: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

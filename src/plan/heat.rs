@@ -2,7 +2,7 @@
 
 use super::amounts::highest_temperature;
 use super::render::significant;
-use super::{PlanError, Reason};
+use super::{Measured, PlanError, Reason};
 use crate::gas::{Species, fit};
 use crate::scene::{HeatCapacity, Scene};
 
@@ -13,16 +13,16 @@ const COLDER: f64 = 0.8;
 const HOTTER: f64 = 1.1;
 
 /// K, over which heat capacities count.
-fn range(scene: &Scene) -> [f64; 2] {
+fn range(scene: &Scene, measured: &Measured) -> [f64; 2] {
     let chambers = scene.chambers.iter().map(|chamber| chamber.temperature);
     let orifices = scene.orifices.iter().flat_map(|orifice| orifice.temperature.points.iter().map(|point| point[1]));
     let coldest = chambers.chain(orifices).fold(f64::INFINITY, f64::min);
-    [COLDER * coldest, HOTTER * highest_temperature(scene).0]
+    [COLDER * coldest, HOTTER * highest_temperature(scene, measured).0]
 }
 
 /// Of each gas of the scene.
-pub fn species(scene: &Scene, reasons: &mut Vec<Reason>) -> Result<Vec<Species>, PlanError> {
-    let range = range(scene);
+pub fn species(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) -> Result<Vec<Species>, PlanError> {
+    let range = range(scene, measured);
     let one = |gas: &crate::scene::Gas| match gas.heat {
         HeatCapacity::Constant(cv) => Ok(Species::constant(gas.molar_mass, cv)),
         HeatCapacity::Curve(cp) => {

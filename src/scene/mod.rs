@@ -8,6 +8,7 @@ mod errors;
 mod flows;
 mod gases;
 mod holes;
+mod motions;
 mod names;
 mod numbers;
 mod places;
@@ -27,6 +28,7 @@ mod write;
 use std::io::Read;
 use std::path::Path;
 
+pub use motions::MOST_MOTIONS;
 pub use errors::{InvalidScene, Problem, SceneError};
 pub use types::*;
 pub use write::to_toml;

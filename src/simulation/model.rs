@@ -5,12 +5,15 @@ use crate::plan::{Measured, MeasuredVent, Plan, PlanError, plan};
 use crate::scene::{Opening, Scene};
 
 use super::coats::Coats;
+use super::moving::Moving;
 
 pub struct Model {
     pub scene: Scene,
     pub vessel: Vessel,
     pub plan: Plan,
     pub coats: Coats,
+    /// The walls that move; `vessel` has them as they are drawn.
+    pub moving: Moving,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -26,6 +29,21 @@ pub enum ModelError {
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
     ))]
     OrificeInWall { orifice: String, point: [f64; 3] },
+    #[error("wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move")]
+    #[diagnostic(help("give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"))]
+    MovingCavity { wall: String },
+    #[error("wall \"{wall}\" moves and has {found} triangles, more than the {limit} that a moving wall may have")]
+    #[diagnostic(help("a flight near it is tested against each of them: use a coarser mesh, or fewer segments"))]
+    MovingTriangles { wall: String, found: usize, limit: usize },
+    #[error("wall \"{wall}\" sweeps over {what}: what lets gas in or out must stay free of moving walls")]
+    #[diagnostic(help("move it out of the box that the wall passes through from its first to its last place"))]
+    Swept { what: String, wall: String },
+    #[error("chamber \"{chamber}\" is squeezed to {share:.1e} of its volume at {time:.4e} s; a thousandth is the least")]
+    #[diagnostic(help("let the wall stop earlier: it must not leave the vessel, nor close a chamber"))]
+    Squeezed { chamber: String, share: f64, time: f64 },
+    #[error("chamber \"{chamber}\": one side of its box lies in two moving walls, \"{}\" and \"{}\", and can go along with one", walls[0], walls[1])]
+    #[diagnostic(help("let the side lie in the wall that is to take it along"))]
+    SideOfTwo { chamber: String, walls: [String; 2] },
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
     VentNowhere { vent: String },
@@ -41,10 +59,13 @@ impl Model {
         let vessel = Vessel::build(&scene.walls)?;
         check_orifices(&scene, &vessel)?;
         let coats = Coats::new(&scene, &vessel)?;
-        let (bounds_min, bounds_max) = vessel.bounds;
+        let moving = Moving::new(&scene, &vessel)?;
+        let (bounds_min, bounds_max) = moving.bounds(&vessel);
+        let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
         let measured = Measured {
             gas_volume: vessel.gas_volume(),
-            chamber_volumes: vessel.chamber_volumes(&scene.chambers),
+            motion: moving.measured(&chamber_volumes),
+            chamber_volumes,
             bounds_min,
             bounds_max,
             openings: found_openings(&scene, &vessel),
@@ -53,7 +74,17 @@ impl Model {
             heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
         };
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan, coats })
+        Ok(Model { scene, vessel, plan, coats, moving })
+    }
+}
+
+impl Model {
+    /// The walls as they are at a time, s.
+    pub fn vessel_at(&self, time: f64) -> std::borrow::Cow<'_, Vessel> {
+        if self.moving.is_empty() {
+            return std::borrow::Cow::Borrowed(&self.vessel);
+        }
+        std::borrow::Cow::Owned(self.moving.vessel_at(&self.vessel, time))
     }
 }
 
