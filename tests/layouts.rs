@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
-    GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
+    GpuVent, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 

@@ -21,8 +21,8 @@ pub mod wall_heat;
 
 pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
 pub use curve::{
-    FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns, value_held,
-    value_inside, velocity,
+    FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,
+    value_held, value_inside, velocity,
 };
 pub use discharge::{Side, exchange};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};

@@ -28,8 +28,8 @@ mod write;
 use std::io::Read;
 use std::path::Path;
 
-pub use motions::MOST_MOTIONS;
 pub use errors::{InvalidScene, Problem, SceneError};
+pub use motions::MOST_MOTIONS;
 pub use types::*;
 pub use write::to_toml;
 

@@ -29,8 +29,9 @@ pub(super) fn motion(
     }
     if matches!(raw_walls[wall].value.gas.as_ref().map(|side| side.value), Some(RawSide::Inside)) {
         let found = format!("the wall {:?}, which encloses the gas", name.value);
-        return Err(Problem::value(&name.span, found, "a body with the gas outside of it")
-            .hint("give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"));
+        return Err(Problem::value(&name.span, found, "a body with the gas outside of it").hint(
+            "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls",
+        ));
     }
     if vents.iter().any(|vent| vent.value.wall.value == name.value) {
         let found = format!("the wall {:?}, which has a vent", name.value);
@@ -49,7 +50,11 @@ fn course(raw: &At<RawMotion>, units: UnitSystem) -> Result<Course, Problem> {
                 Curve { points: vec![[0.0, any(&number, Quantity::Velocity)?]] }
             }
             NumberOr::Array(points) if points.is_empty() => {
-                return Err(Problem::value(&at.span, "an empty curve", "a number, or at least one point [time, velocity]"));
+                return Err(Problem::value(
+                    &at.span,
+                    "an empty curve",
+                    "a number, or at least one point [time, velocity]",
+                ));
             }
             NumberOr::Array(points) => curve(points, Quantity::Time, units, |value| any(value, Quantity::Velocity))?,
         })),
@@ -62,8 +67,9 @@ fn course(raw: &At<RawMotion>, units: UnitSystem) -> Result<Course, Problem> {
             if path.points[0] != [0.0, 0.0] {
                 let [time, distance] = &first.value.0;
                 let found = format!("a first point [{}, {}]", show(time.value), show(distance.value));
-                return Err(Problem::value(&first.span, found, allowed)
-                    .hint("the wall is drawn where it is at the start"));
+                return Err(
+                    Problem::value(&first.span, found, allowed).hint("the wall is drawn where it is at the start")
+                );
             }
             Ok(Course::Displacement(path))
         }

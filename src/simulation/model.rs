@@ -29,8 +29,12 @@ pub enum ModelError {
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
     ))]
     OrificeInWall { orifice: String, point: [f64; 3] },
-    #[error("wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move")]
-    #[diagnostic(help("give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"))]
+    #[error(
+        "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
+    )]
+    #[diagnostic(help(
+        "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"
+    ))]
     MovingCavity { wall: String },
     #[error("wall \"{wall}\" moves and has {found} triangles, more than the {limit} that a moving wall may have")]
     #[diagnostic(help("a flight near it is tested against each of them: use a coarser mesh, or fewer segments"))]
@@ -38,7 +42,9 @@ pub enum ModelError {
     #[error("wall \"{wall}\" sweeps over {what}: what lets gas in or out must stay free of moving walls")]
     #[diagnostic(help("move it out of the box that the wall passes through from its first to its last place"))]
     Swept { what: String, wall: String },
-    #[error("chamber \"{chamber}\" is squeezed to {share:.1e} of its volume at {time:.4e} s; a thousandth is the least")]
+    #[error(
+        "chamber \"{chamber}\" is squeezed to {share:.1e} of its volume at {time:.4e} s; a thousandth is the least"
+    )]
     #[diagnostic(help("let the wall stop earlier: it must not leave the vessel, nor close a chamber"))]
     Squeezed { chamber: String, share: f64, time: f64 },
     #[error("chamber \"{chamber}\": one side of its box lies in two moving walls, \"{}\" and \"{}\", and can go along with one", walls[0], walls[1])]

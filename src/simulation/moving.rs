@@ -216,7 +216,9 @@ impl Moving {
                         let away = |sign: f64| disc.center.map(|c| c + sign * 0.5 * disc.diameter);
                         (away(-1.0), away(1.0))
                     }
-                    None => extent(vessel, |wall, face| wall == vent.wall && (vent.face.is_none() || vent.face == face)),
+                    None => {
+                        extent(vessel, |wall, face| wall == vent.wall && (vent.face.is_none() || vent.face == face))
+                    }
                 };
                 if overlap(&swept, &place) {
                     let what = format!("vent \"{}\"", vent.name);
@@ -377,9 +379,10 @@ fn carried(chamber: &Chamber, bodies: &[Body]) -> Result<u32, ModelError> {
         let place = if side < 3 { low[axis] } else { high[axis] };
         let mut face = (low, high);
         (face.0[axis], face.1[axis]) = (place, place);
-        let here = bodies.iter().enumerate().filter(|(_, body)| {
-            body.motion.direction[axis] != 0.0 && overlap(&face, &(body.low, body.high))
-        });
+        let here = bodies
+            .iter()
+            .enumerate()
+            .filter(|(_, body)| body.motion.direction[axis] != 0.0 && overlap(&face, &(body.low, body.high)));
         let here: Vec<usize> = here.map(|(index, _)| index).collect();
         match here[..] {
             [] => {}

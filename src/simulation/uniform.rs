@@ -41,7 +41,8 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     for row in 0..rows as usize {
         let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k]);
         let window = [times[2 * row], times[2 * row + 2]];
-        let zones: Vec<ZoneState> = (0..plan.chambers.len()).map(|index| zone(model, index, times[2 * row + 1], &middle[index])).collect();
+        let zones: Vec<ZoneState> =
+            (0..plan.chambers.len()).map(|index| zone(model, index, times[2 * row + 1], &middle[index])).collect();
         let pressed = |chamber: usize| {
             (before[chamber].pressure + 4.0 * middle[chamber].pressure + after[chamber].pressure) / 6.0
         };

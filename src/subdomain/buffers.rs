@@ -6,7 +6,8 @@ use super::cell_table::CellTable;
 use super::constants::Features;
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 use super::walls::Walls;
 
