@@ -11,7 +11,7 @@ use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
 use super::witness::model_of;
-use super::{Check, Effort, Run, run};
+use super::{Check, Effort, Findings, Run, run};
 
 pub const GAMMA: f64 = 1.4;
 const MOLAR_MASS: f64 = 0.028;
@@ -118,7 +118,7 @@ pub fn compressions(device: &Device, particles: u64, seeds: u64) -> Result<(f64,
     Ok((mean, (square / count).sqrt()))
 }
 
-pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (slow, fast, seeds, tolerance) = match effort {
         Effort::Quick => (800, 24_000, 3, 0.04),
         Effort::Full => (8000, 200_000, 4, 0.015),
@@ -132,5 +132,5 @@ pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Vec<Check>, Stu
         let what = format!("p on a piston of {speed} c0 over p1, N = {fast}");
         checks.push(Check::of(what, shock_pressure(speed), pressure, tolerance));
     }
-    Ok(checks)
+    Ok(checks.into())
 }
