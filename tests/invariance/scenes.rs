@@ -140,7 +140,7 @@ pub fn pistons() -> Model {
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.06, 0.06]\ngas = \"inside\"\n\
          [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.03, 0.03, 0.03]\nnormal = [1.0, 0.0, 0.0]\n\
          u = [0.0, 1.0, 0.0]\nsize = [0.064, 0.06]\nthickness = 0.002\ntemperature = 400.0\naccommodation = 0.5\n\
-         [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.08, 0.015, 0.03]\nradius = 0.008\nsubdivisions = 1\n\
+         [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.09, 0.015, 0.03]\nradius = 0.008\nsubdivisions = 1\n\
          gas = \"outside\"\n\
          [[motion]]\nwall = \"plate\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = [[0.0, 0.0], [2e-4, 150.0]]\n\
          [[motion]]\nwall = \"ball\"\ndirection = [0.0, 1.0, 0.0]\ndisplacement = [[0.0, 0.0], [2e-4, 0.02], [3e-4, 0.0]]\n\

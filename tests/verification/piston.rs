@@ -89,3 +89,30 @@ fn nothing_passes_a_plate_that_moves() {
         println!("{method}: {} bounces, {:?} J", run.outcome.bounces, audit.work_by_walls);
     }
 }
+
+/// A round piston in a tilted cylinder, to a fifth of its length: corners everywhere on the grid, and volumes that no axis
+/// follows.
+#[test]
+fn a_tilted_piston_is_tight() {
+    let model = model(
+        "end_time = 8e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"cylinder\"\nshape = \"cylinder\"\nbase = [0.0, 0.0, 0.0]\naxis = [2.0, 1.0, 2.0]\n\
+         radius = 0.03\nheight = 0.1\nsegments = 24\ngas = \"inside\"\n\
+         [[wall]]\nname = \"piston\"\nshape = \"cylinder\"\nbase = [-0.06, -0.03, -0.06]\naxis = [2.0, 1.0, 2.0]\n\
+         radius = 0.034\nheight = 0.09\nsegments = 24\ngas = \"outside\"\n\
+         [[motion]]\nwall = \"piston\"\ndirection = [2.0, 1.0, 2.0]\nvelocity = 100.0\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"cylinder\"\n\
+         [model]\nparticles = 1500\n[output]\nrows = 8\nsnapshots = 0\n",
+    );
+    let run = run(&model, Options::default());
+    assert_eq!(run.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    let [first, .., last] = &run.rows[..] else { panic!("no rows") };
+    // From the middle of the first row to that of the last: 95 mm and 25 mm are left of 100.
+    let ratio = first.chambers[0].volume / last.chambers[0].volume;
+    assert!((ratio - 0.095 / 0.025).abs() < 0.05, "{ratio}");
+    // Somewhat more than isentropic, for its shock.
+    let pressure = last.chambers[0].pressure / first.chambers[0].pressure;
+    println!("{ratio:.3} times as dense, p {pressure:.3} times as high");
+    assert!(pressure > 0.93 * ratio.powf(1.4) && pressure < 1.4 * ratio.powf(1.4), "{pressure}");
+}
