@@ -54,9 +54,6 @@ pub enum PlanError {
         "choose a method of particles in [model]; its history has a control volume with these losses beside it"
     ))]
     LossesOfControlVolume { what: String },
-    #[error("{what} together with gas `{gas}`, whose heat capacity depends on the temperature: that is not there yet")]
-    #[diagnostic(help("give the gas a constant `cp`, that of the mean temperature"))]
-    LossesOfCurves { what: String, gas: String },
     #[error("wall `{wall}` moves, which the method `cell` cannot have yet: the gas volumes of its cells do not follow")]
     #[diagnostic(help("choose `method = \"closest-approach\"` in [model]"))]
     MotionInCells { wall: String },
