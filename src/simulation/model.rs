@@ -47,9 +47,11 @@ pub enum ModelError {
     )]
     #[diagnostic(help("let the wall stop earlier: it must not leave the vessel, nor close a chamber"))]
     Squeezed { chamber: String, share: f64, time: f64 },
-    #[error("chamber \"{chamber}\": one side of its box lies in two moving walls, \"{}\" and \"{}\", and can go along with one", walls[0], walls[1])]
+    #[error(
+        "chamber \"{chamber}\": one side of its box lies in the moving walls {walls}, and can go along with one of them"
+    )]
     #[diagnostic(help("let the side lie in the wall that is to take it along"))]
-    SideOfTwo { chamber: String, walls: [String; 2] },
+    SideOfTwo { chamber: String, walls: String },
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
     VentNowhere { vent: String },

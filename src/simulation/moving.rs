@@ -360,9 +360,9 @@ fn extent(vessel: &Vessel, own: impl Fn(usize, Option<Face>) -> bool) -> ([f64; 
     let mut corners = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for triangle in vessel.triangles.iter().filter(|triangle| own(triangle.wall as usize, triangle.face)) {
         for vertex in triangle.vertices.map(|vertex| vessel.vertices[vertex as usize]) {
-            for axis in 0..3 {
-                corners.0[axis] = corners.0[axis].min(vertex[axis]);
-                corners.1[axis] = corners.1[axis].max(vertex[axis]);
+            for (axis, place) in vertex.into_iter().enumerate() {
+                corners.0[axis] = corners.0[axis].min(place);
+                corners.1[axis] = corners.1[axis].max(place);
             }
         }
     }
@@ -388,10 +388,8 @@ fn carried(chamber: &Chamber, bodies: &[Body]) -> Result<u32, ModelError> {
             [] => {}
             [one] => carried |= (one as u32 + 1) << (4 * side),
             [one, other, ..] => {
-                return Err(ModelError::SideOfTwo {
-                    chamber: chamber.name.clone(),
-                    walls: [bodies[one].name.clone(), bodies[other].name.clone()],
-                });
+                let walls = format!("\"{}\" and \"{}\"", bodies[one].name, bodies[other].name);
+                return Err(ModelError::SideOfTwo { chamber: chamber.name.clone(), walls });
             }
         }
     }

@@ -151,6 +151,6 @@ pub fn pistons() -> Model {
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.03, 0.03]\ndirection = [1.0, 0.0, 0.0]\narea = 0.001\n\
          gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.3], [2e-3, 0.3]]\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-         [model]\nparticles = 2000\n[output]\nrows = 8\nsnapshots = 0\n",
+         [model]\nparticles = 1200\n[output]\nrows = 8\nsnapshots = 0\n",
     )
 }

@@ -60,7 +60,7 @@ fn crowded(method: &str) -> String {
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.06, 0.06]\ngas = \"inside\"\n\
          [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.03, 0.03, 0.03]\nnormal = [1.0, 0.0, 0.0]\n\
          u = [0.0, 1.0, 0.0]\nsize = [0.064, 0.06]\nthickness = 0.002\ntemperature = 400.0\naccommodation = 0.5\n\
-         [[motion]]\nwall = \"plate\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = [[0.0, 0.0], [2e-4, 150.0]]\n\
+         [[motion]]\nwall = \"plate\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = [[0.0, 0.0], [2e-4, 100.0]]\n\
          [[chamber]]\nname = \"behind\"\nregion = {{ box = {{ min = [0.0, 0.0, 0.0], max = [0.03, 0.06, 0.06] }} }}\n\
          pressure = 2e5\ntemperature = 300.0\ngas = {{ air = 0.5, helium = 0.5 }}\n\
          [[chamber]]\nname = \"before\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
@@ -108,9 +108,10 @@ fn a_tilted_piston_is_tight() {
     let run = run(&model, Options::default());
     assert_eq!(run.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
     let [first, .., last] = &run.rows[..] else { panic!("no rows") };
-    // From the middle of the first row to that of the last: 95 mm and 25 mm are left of 100.
     let ratio = first.chambers[0].volume / last.chambers[0].volume;
-    assert!((ratio - 0.095 / 0.025).abs() < 0.05, "{ratio}");
+    // At 100 m/s; the tallies of a row lie up to half a dozen steps behind its middle.
+    let left = |time: f64| 0.1 - 100.0 * time;
+    assert!((ratio * left(last.time) / left(first.time) - 1.0).abs() < 0.04, "{ratio}");
     // Somewhat more than isentropic, for its shock.
     let pressure = last.chambers[0].pressure / first.chambers[0].pressure;
     println!("{ratio:.3} times as dense, p {pressure:.3} times as high");
