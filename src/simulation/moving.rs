@@ -471,7 +471,7 @@ mod tests {
         };
         told("velocity = 20.0", &orifice(0.05), "sweeps over orifice \"in\"");
         assert!(model("velocity = 20.0", &orifice(0.08)).is_ok());
-        let vent = "[[vent]]\nname = \"out\"\nwall = \"box\"\nface = \"-y\"\ndischarge = 0.1\n";
+        let vent = "[[vent]]\nname = \"out\"\nwall = \"box\"\nface = \"-y\"\nchamber = \"right\"\ndischarge = 0.1\n";
         told("velocity = 20.0", vent, "sweeps over vent \"out\"");
         let mut scene = model("velocity = 20.0", "").unwrap().scene;
         scene.model.method = Some(crate::scene::Method::Cell);
