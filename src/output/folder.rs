@@ -25,14 +25,19 @@ pub const SWEEP_FILE: &str = "sweep.csv";
 pub const SWEEP_TABLE_FILE: &str = "sweep.txt";
 pub const SWEEP_CHART_FILE: &str = "sweep.svg";
 pub const SWEEP_MODEL_CHART_FILE: &str = "sweep_modelled.svg";
+pub const PARETO_FILE: &str = "pareto.csv";
+pub const PARETO_TABLE_FILE: &str = "pareto.txt";
+pub const PARETO_CHART_FILE: &str = "pareto.svg";
+/// Mean and spread over the seeds of a repeated run.
+pub const HISTORY_MEAN_FILE: &str = "history_mean.csv";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
-/// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 14] = [
+/// Everything a run or a study writes at the top of its folder, apart from the snapshots and checkpoints.
+const RESULT_FILES: [&str; 18] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
@@ -47,6 +52,10 @@ const RESULT_FILES: [&str; 14] = [
     SWEEP_TABLE_FILE,
     SWEEP_CHART_FILE,
     SWEEP_MODEL_CHART_FILE,
+    PARETO_FILE,
+    PARETO_TABLE_FILE,
+    PARETO_CHART_FILE,
+    HISTORY_MEAN_FILE,
 ];
 
 /// A folder that exists, holds no earlier results, and carries the marker.
