@@ -95,6 +95,10 @@ pub struct RunArguments {
     /// Write into a folder that holds more than an earlier run's results
     #[arg(long)]
     pub force: bool,
+    /// Run it with N seeds, the scene's and the N - 1 after it, each in a folder of its own; mean and spread of the
+    /// histories in history_mean.csv
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with_all = ["steps", "checkpoint_every", "stop_after"])]
+    pub repeat: Option<u32>,
     #[command(flatten)]
     pub execution: ExecutionArguments,
 }
@@ -384,6 +388,18 @@ mod tests {
         Arguments::command().debug_assert();
     }
 
+    /// A run of several seeds has no one state to stop at or to go on from.
+    #[test]
+    fn runs_of_several_seeds_have_no_checkpoints() {
+        let parse = |more: &[&str]| {
+            Arguments::try_parse_from([&["corpuscle", "run", "s.toml", "--repeat", "3"], more].concat())
+        };
+        assert!(parse(&[]).is_ok() && parse(&["--seed", "5"]).is_ok());
+        for more in [["--steps", "64"], ["--checkpoint-every", "64"], ["--stop-after", "90s"]] {
+            assert!(parse(&more).is_err(), "{more:?}");
+        }
+    }
+
     #[test]
     fn values_out_of_range_are_refused() {
         let parse =
@@ -397,6 +413,7 @@ mod tests {
             ("--checkpoint-every", "0"),
             ("--checkpoint-every", "often"),
             ("--stop-after", "90"),
+            ("--repeat", "1"),
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }

@@ -89,6 +89,14 @@ pub enum CliError {
     UnknownCase { asked: String, known: Vec<String> },
     #[error("case `{case}` has no `{method}`; it has: {}", known.join(", "))]
     MethodOfCase { case: String, method: &'static str, known: Vec<&'static str> },
+    #[error("--repeat with the method `control-volume`: it draws nothing, so that all seeds give the same")]
+    #[diagnostic(help("leave out --repeat, or ask for particles with another `method` in [model]"))]
+    NothingToRepeat,
+    #[error("--repeat {times} from seed {first} on: seeds are below {}", 1u64 << 56)]
+    SeedsBeyond { first: u64, times: u32 },
+    #[error("the run with seed {seed} was stopped before its end: there is no mean of {times} runs")]
+    #[diagnostic(help("`corpuscle resume {}` goes on with that run alone; the others must be run anew", folder.display()))]
+    RepeatStopped { seed: u64, folder: PathBuf, times: u32 },
     #[error("{failed} of {checks} checks do not pass")]
     #[diagnostic(help(
         "FAIL: off by more than the tolerance; UNCLEAR: the run knows too little. Please report it with the adapter and driver"
@@ -152,6 +160,9 @@ impl CliError {
             | CliError::StandardOutput(_)
             | CliError::UnknownVerb { .. }
             | CliError::MethodOfCase { .. }
+            | CliError::NothingToRepeat
+            | CliError::SeedsBeyond { .. }
+            | CliError::RepeatStopped { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }

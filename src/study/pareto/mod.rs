@@ -106,37 +106,4 @@ impl Trials {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every setting of every case can be planned: none is charted as a failure that is none of the method's.
-    #[test]
-    fn every_setting_of_every_case_has_a_plan() {
-        for case in CASES {
-            for extent in [Extent::Quick, Extent::Normal, Extent::Full] {
-                let trials = (case.trials)(extent).unwrap();
-                assert!(trials.methods().len() >= 4, "{}", case.name);
-                for setting in &trials.settings {
-                    if let Err(error) = (trials.model)(setting, 0) {
-                        panic!("{}: {setting:?}: {error}", case.name);
-                    }
-                    assert!(setting.particles.is_none_or(|particles| particles <= trials.most_particles));
-                }
-                trials.unwished().unwrap();
-            }
-        }
-    }
-
-    /// Seeds differ, and nothing else does.
-    #[test]
-    fn another_seed_is_another_sample_of_the_same_plan() {
-        for case in CASES {
-            let trials = (case.trials)(Extent::Quick).unwrap();
-            let of_seed = |seed| (trials.model)(&trials.settings[0], seed).unwrap().plan;
-            let (first, mut third) = (of_seed(0), of_seed(2));
-            assert_eq!(third.seed, first.seed + 2, "{}", case.name);
-            third.seed = first.seed;
-            assert_eq!(third, first, "{}", case.name);
-        }
-    }
-}
+mod tests;

@@ -64,7 +64,7 @@ pub struct Point {
 }
 
 impl Point {
-    fn new(setting: &Setting, plan: Option<&Plan>, volume: Option<f64>) -> Point {
+    pub(super) fn new(setting: &Setting, plan: Option<&Plan>, volume: Option<f64>) -> Point {
         Point {
             setting: *setting,
             method: plan.map(|plan| plan.method).or(setting.method).unwrap_or(Method::ClosestApproach),

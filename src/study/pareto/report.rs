@@ -254,9 +254,9 @@ impl Chart<'_> {
         for run in winners.chunk_by(|a, b| a.1.method == b.1.method) {
             let ((most, _), (least, best)) = (run[0], run[run.len() - 1]);
             let range = if most > least {
-                format!("from {} down to {}", short(most), short(least))
+                format!("errors from {} down to {} are", short(most), short(least))
             } else {
-                format!("of {}", short(least))
+                format!("an error of {} is", short(least))
             };
             let others = self.methods().into_iter().filter(|method| *method != best.method);
             let next = others.filter_map(|method| self.cheapest(least, Some(method)));
@@ -270,17 +270,31 @@ impl Chart<'_> {
                 ),
                 _ => "; no other method gets there within these ranges".to_owned(),
             };
-            lines.push(format!(
-                "an error {range} is cheapest with `{}`, the last by {}{margin}",
-                best.method.name(),
-                described(best)
-            ));
+            let last = if most > least { ", for the least of them by" } else { ", by" };
+            let name = best.method.name();
+            lines.push(format!("{range} cheapest with `{name}`{last} {}{margin}", described(best)));
         }
         for method in self.methods() {
-            let own = self.points.iter().filter(|point| point.method == method && !point.beyond);
-            let best = own.filter_map(|point| Some((point, point.error()?))).min_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((point, error)) = best {
-                lines.push(format!("`{}` comes down to {} ({})", method.name(), figure(error), described(point)));
+            let best = |beyond: bool| {
+                let own = self.points.iter().filter(|point| point.method == method && point.beyond == beyond);
+                own.filter_map(|point| Some((point, point.error()?))).min_by(|a, b| a.1.total_cmp(&b.1))
+            };
+            match (best(false), best(true)) {
+                (Some((point, error)), _) => {
+                    lines.push(format!(
+                        "the least error of `{}` is {}, by {}",
+                        method.name(),
+                        figure(error),
+                        described(point)
+                    ));
+                }
+                (None, Some((point, error))) => lines.push(format!(
+                    "all settings of `{}` are beyond its limits; their least error is {}, by {}",
+                    method.name(),
+                    figure(error),
+                    described(point)
+                )),
+                (None, None) => {}
             }
         }
         lines.extend(self.points.iter().filter(|point| point.unwished).filter_map(|point| self.about_default(point)));
@@ -316,11 +330,11 @@ impl Chart<'_> {
                 |(other, own)| format!("{} does it in {} of the time", described(other), figure(own / seconds)),
             );
         let taken = self.unwished_particles.map_or_else(String::new, |particles| {
-            format!(" (a plan without any wish takes {} particles, more than is run here)", grouped(particles))
+            format!(", where a plan without any wish takes {} particles, more than is run here", grouped(particles))
         });
         let bar = point.standard_error().map_or_else(String::new, |bar| format!(" +- {}", figure(bar)));
         Some(format!(
-            "the default, {}{taken}: error {}{bar} in {} s; {share}",
+            "the default is {}{taken}: error {}{bar} in {} s; {share}",
             described(point),
             figure(error),
             figure(seconds)
@@ -330,7 +344,7 @@ impl Chart<'_> {
 
 /// A setting in words.
 fn described(point: &Point) -> String {
-    let mut words = vec![format!("`{}`", point.method.name())];
+    let mut words = Vec::new();
     if point.particles > 0 {
         words.push(format!("N = {}", grouped(point.particles)));
     }
@@ -343,7 +357,8 @@ fn described(point: &Point) -> String {
     if point.rounds > 0 {
         words.push(format!("R = {}", point.rounds));
     }
-    words.join(", ")
+    let name = format!("`{}`", point.method.name());
+    if words.is_empty() { name } else { format!("{name} ({})", words.join(", ")) }
 }
 
 fn style(method: Method) -> ([u8; 3], Shape) {
