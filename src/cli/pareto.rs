@@ -31,29 +31,29 @@ pub fn pareto(raw: ParetoArguments) -> Result<(), CliError> {
     let default = trials.unwished()?;
     keep(&mut trials, case, &raw.methods)?;
     let mut settings = trials.settings.clone();
-    // The place of the default is wanted whatever methods are.
+    // The place of the default is wanted whatever the methods are.
     settings.push(default.0);
     let device = Device::open(raw.gpu.as_deref())?;
     let path = raw.out.clone().unwrap_or_else(|| Path::new("results").join(format!("pareto-{}", case.name)));
     let folder = OutputFolder::create(&path, raw.force)?;
-    let mut points = Vec::new();
-    for (index, setting) in settings.iter().enumerate() {
-        tracing::info!("{} of {}: {setting}", index + 1, settings.len());
-        points.push(measure(&device, &trials, setting, raw.repeat)?);
-    }
-    let info = &device.adapter().info;
-    let chart = Chart {
+    let mut chart = Chart {
         name: case.name,
         trials: &trials,
-        front: front_of(&points),
-        points,
+        points: Vec::new(),
+        front: Vec::new(),
         unwished_particles: default.1,
-        adapter: info.name.clone(),
+        adapter: device.adapter().info.name.clone(),
         command: command(case, &raw),
         seeds: raw.repeat,
     };
+    for (index, setting) in settings.iter().enumerate() {
+        tracing::info!("{} of {}: {setting}", index + 1, settings.len());
+        chart.points.push(measure(&device, &trials, setting, raw.repeat)?);
+        // What is known stays known if the program is stopped.
+        chart.front = front_of(&chart.points);
+        folder.write_text(PARETO_FILE, &chart.csv().map_err(StudyError::from)?)?;
+    }
     let text = chart.text();
-    folder.write_text(PARETO_FILE, &chart.csv().map_err(StudyError::from)?)?;
     folder.write_text(PARETO_TABLE_FILE, &text)?;
     chart.draw(&folder.path().join(PARETO_CHART_FILE))?;
     say(&text)?;

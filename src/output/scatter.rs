@@ -138,7 +138,7 @@ fn draw_axes(area: &Area, chart: &mut Chart<'_, '_>, scatter: &Scatter, [x, y]: 
     let (right, top) = local(area, chart.backend_coord(&(x.end, y.end)));
     let style = text_style(1.1 * TEXT).pos(Pos::new(HPos::Center, VPos::Bottom));
     let (_, height) = area.dim_in_pixel();
-    area.draw(&Text::new(scatter.x_label.clone(), ((left + right) / 2, height as i32 - 16), style))?;
+    area.draw(&Text::new(scatter.x_label.clone(), ((left + right) / 2, height as i32 - 24), style))?;
     let style = text_style(1.1 * TEXT).transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
     area.draw(&Text::new(scatter.y_label.clone(), (MARGIN / 2, (top + bottom) / 2), style))?;
     Ok(())

@@ -4,7 +4,7 @@
 //! [`Point`]: its error, and the seconds that the device took. [`front::front`] finds what nothing beats; settings
 //! beyond the limits of their method are charted, marked, and not on the front.
 //!
-//! To add a case: a function like [`sod::trials`] and a line in [`CASES`].
+//! To add a case: a function like `sod::trials` and a line in [`CASES`].
 
 pub mod front;
 mod orifice;

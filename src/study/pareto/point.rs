@@ -116,7 +116,7 @@ impl Point {
     fn add(&mut self, model: &Model, volume: Option<f64>, run: &Run, error: Option<f64>) {
         let outcome = &run.outcome;
         let limits = audit_limits(&model.plan);
-        match error {
+        match error.filter(|error| error.is_finite()) {
             Some(error) => self.errors.push(error),
             None => self.trouble = Some("the run says nothing of the quantity".into()),
         }
