@@ -298,12 +298,12 @@ impl Chart<'_> {
             }
         }
         lines.extend(self.points.iter().filter(|point| point.unwished).filter_map(|point| self.about_default(point)));
-        let beyond: Vec<&Point> = self.points.iter().filter(|point| point.beyond).collect();
-        if !beyond.is_empty() {
+        let beyond = self.points.iter().filter(|point| point.beyond).count();
+        if beyond > 0 {
+            let are = if beyond == 1 { "setting is" } else { "settings are" };
             lines.push(format!(
-                "{} settings are beyond the limits of their methods: a step too long for its rounds or for a cell, more than \
-                 3 % of the collisions lost, or an audit that failed",
-                beyond.len()
+                "{beyond} {are} beyond the limits of the method: a step too long for its rounds or for a cell, more than 3 % of \
+                 the collisions lost, or an audit that failed"
             ));
         }
         if self.points.iter().any(|point| point.timed == Timed::Host) {
