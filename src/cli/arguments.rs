@@ -312,7 +312,7 @@ pub struct VerifyArguments {
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub struct ParetoArguments {
-    /// The case: sod, tank or orifice; --list says what each compares
+    /// The case; --list says which there are and what each compares
     #[arg(value_name = "CASE", required_unless_present = "list")]
     pub case: Option<String>,
     /// Only these methods [default: all that the case has]

@@ -141,7 +141,7 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
         assert!(code == 2 && parts.iter().all(|part| flat.contains(part)), "{options:?}: {err}");
     };
     refused(&["pipe"], &["`pipe`", "sod, tank, orifice"]);
-    refused(&["sod", "--methods", "control-volume"], &["no `control-volume`", "hard-sphere"]);
+    refused(&["sod", "--methods", "control-volume"], &["no `control-volume`", "closest-approach, cell"]);
     refused(&["sod", "--quick", "--full"], &["--full"]);
     refused(&["sod", "--repeat", "0"], &["--repeat"]);
     refused(&["sod", "--methods", "dsmc"], &["dsmc"]);
