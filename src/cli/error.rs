@@ -94,9 +94,6 @@ pub enum CliError {
     NothingToRepeat,
     #[error("--repeat {times} from seed {first} on: seeds are below {}", 1u64 << 56)]
     SeedsBeyond { first: u64, times: u32 },
-    #[error("the run with seed {seed} was stopped before its end: there is no mean of {times} runs")]
-    #[diagnostic(help("`corpuscle resume {}` goes on with that run alone; the others must be run anew", folder.display()))]
-    RepeatStopped { seed: u64, folder: PathBuf, times: u32 },
     #[error("{failed} of {checks} checks do not pass")]
     #[diagnostic(help(
         "FAIL: off by more than the tolerance; UNCLEAR: the run knows too little. Please report it with the adapter and driver"
@@ -162,7 +159,6 @@ impl CliError {
             | CliError::MethodOfCase { .. }
             | CliError::NothingToRepeat
             | CliError::SeedsBeyond { .. }
-            | CliError::RepeatStopped { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }

@@ -58,7 +58,12 @@ pub fn repeat(
         // A signal may have stopped it at a checkpoint: then it was meant for all of them.
         let ended = comm.rank() == 0 && OutputFolder::open(&of_seed.folder)?.has_ended();
         if comm.broadcast(vec![u8::from(ended)])? != [1] {
-            return Err(CliError::RepeatStopped { seed, folder: of_seed.folder, times });
+            if comm.rank() == 0 {
+                tracing::warn!(
+                    "seed {seed} was stopped before its end: the seeds after it are not run, there is no mean"
+                );
+            }
+            return Ok(());
         }
     }
     let Some(folder) = folder else { return Ok(()) };

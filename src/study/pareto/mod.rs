@@ -60,6 +60,9 @@ pub const CASES: &[Case] = &[
     },
 ];
 
+/// The model of a setting and of a seed that is counted from 0.
+pub type Build = Box<dyn Fn(&Setting, u64) -> Result<Model, StudyError>>;
+
 /// The error of a run; `None` if it says nothing.
 pub type Judge = Box<dyn Fn(&Model, &Run) -> Option<f64>>;
 
@@ -75,8 +78,7 @@ pub struct Trials {
     pub most_particles: u64,
     /// m3, of the gas that occupancy and step are of; `None`: of the plan's mean state at the end.
     pub volume: Option<f64>,
-    /// Of a setting and a seed that is counted from 0.
-    pub model: Box<dyn Fn(&Setting, u64) -> Result<Model, StudyError>>,
+    pub model: Build,
     pub judge: Judge,
 }
 
