@@ -54,6 +54,8 @@ pub enum Verb {
     Sweep(SweepArguments),
     /// Run reference cases and compare with closed forms and published figures
     Verify(VerifyArguments),
+    /// Chart error against device time over methods and settings, for a case with a known answer
+    Pareto(ParetoArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -93,6 +95,10 @@ pub struct RunArguments {
     /// Write into a folder that holds more than an earlier run's results
     #[arg(long)]
     pub force: bool,
+    /// Run it with N seeds, the scene's and the N - 1 after it, each in a folder of its own; mean and spread of the
+    /// histories in history_mean.csv
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with_all = ["steps", "checkpoint_every", "stop_after"])]
+    pub repeat: Option<u32>,
     #[command(flatten)]
     pub execution: ExecutionArguments,
 }
@@ -302,6 +308,49 @@ pub struct VerifyArguments {
     pub gpu: Option<String>,
 }
 
+/// What no other setting beats in both is the front.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct ParetoArguments {
+    /// The case; --list says which there are and what each compares
+    #[arg(value_name = "CASE", required_unless_present = "list")]
+    pub case: Option<String>,
+    /// Only these methods [default: all that the case has]
+    #[arg(long, value_enum, value_name = "METHOD,...", value_delimiter = ',')]
+    pub methods: Vec<MethodName>,
+    /// Run every setting with so many seeds: means, with error bars
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub repeat: u32,
+    /// A few small settings, to see that it works
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// More particles and finer ranges: for a GPU
+    #[arg(long)]
+    pub full: bool,
+    /// Only say which cases there are
+    #[arg(long, conflicts_with_all = ["case", "quick", "full", "gpu", "out", "methods"])]
+    pub list: bool,
+    /// The folder for the results [default: results/pareto-<case>]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than an earlier chart
+    #[arg(long)]
+    pub force: bool,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+}
+
+/// As scenes write them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MethodName {
+    ClosestApproach,
+    HardSphere,
+    Cell,
+    None,
+    ControlVolume,
+}
+
 #[derive(Debug, Args)]
 pub struct PlanArguments {
     #[command(flatten)]
@@ -339,6 +388,18 @@ mod tests {
         Arguments::command().debug_assert();
     }
 
+    /// A run of several seeds has no one state to stop at or to go on from.
+    #[test]
+    fn runs_of_several_seeds_have_no_checkpoints() {
+        let parse = |more: &[&str]| {
+            Arguments::try_parse_from([&["corpuscle", "run", "s.toml", "--repeat", "3"], more].concat())
+        };
+        assert!(parse(&[]).is_ok() && parse(&["--seed", "5"]).is_ok());
+        for more in [["--steps", "64"], ["--checkpoint-every", "64"], ["--stop-after", "90s"]] {
+            assert!(parse(&more).is_err(), "{more:?}");
+        }
+    }
+
     #[test]
     fn values_out_of_range_are_refused() {
         let parse =
@@ -352,6 +413,7 @@ mod tests {
             ("--checkpoint-every", "0"),
             ("--checkpoint-every", "often"),
             ("--stop-after", "90"),
+            ("--repeat", "1"),
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }

@@ -87,6 +87,13 @@ pub enum CliError {
     Rank(#[from] RankError),
     #[error("there is no case `{asked}`; there are: {}", known.join(", "))]
     UnknownCase { asked: String, known: Vec<String> },
+    #[error("case `{case}` has no `{method}`; it has: {}", known.join(", "))]
+    MethodOfCase { case: String, method: &'static str, known: Vec<&'static str> },
+    #[error("--repeat with the method `control-volume`: it draws nothing, so that all seeds give the same")]
+    #[diagnostic(help("leave out --repeat, or ask for particles with another `method` in [model]"))]
+    NothingToRepeat,
+    #[error("--repeat {times} from seed {first} on: seeds are below {}", 1u64 << 56)]
+    SeedsBeyond { first: u64, times: u32 },
     #[error("{failed} of {checks} checks do not pass")]
     #[diagnostic(help(
         "FAIL: off by more than the tolerance; UNCLEAR: the run knows too little. Please report it with the adapter and driver"
@@ -149,6 +156,9 @@ impl CliError {
             | CliError::SchemaJson(_)
             | CliError::StandardOutput(_)
             | CliError::UnknownVerb { .. }
+            | CliError::MethodOfCase { .. }
+            | CliError::NothingToRepeat
+            | CliError::SeedsBeyond { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }
@@ -172,6 +182,7 @@ fn study_code(error: &StudyError) -> u8 {
         | StudyError::TooShort { .. }
         | StudyError::Model { .. }
         | StudyError::PlanToml(_)
+        | StudyError::Table(_)
         | StudyError::Scene(_)
         | StudyError::Checkpoint(_)
         | StudyError::Output(_)

@@ -10,6 +10,7 @@ mod check;
 mod completions;
 mod error;
 mod man;
+mod pareto;
 mod plan;
 mod refine;
 mod resume;
@@ -59,6 +60,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Verify(raw) => verify::verify(raw),
+        Verb::Pareto(raw) => pareto::pareto(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),

@@ -8,6 +8,7 @@ mod checkpoints;
 mod devices;
 mod recorder;
 mod reference;
+mod repeat;
 pub(super) mod table;
 mod timing;
 mod uniform;
@@ -37,7 +38,10 @@ use reference::Reference;
 
 pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
     let started = Instant::now();
-    among_ranks(|comm| launch(&RunSettings::new(raw)?, None, comm, quiet, started))
+    among_ranks(|comm| match raw.repeat {
+        Some(times) => repeat::repeat(RunSettings::new(raw)?, times, comm, quiet, started),
+        None => launch(&RunSettings::new(raw)?, None, comm, quiet, started),
+    })
 }
 
 /// What this process does as a rank of those that a launcher may have started.

@@ -39,6 +39,7 @@ pub struct RunSettings {
 }
 
 /// How a run is done.
+#[derive(Debug, Clone)]
 pub struct Execution {
     /// Index or PCI bus id; `None`: the first.
     pub gpu: Option<String>,

@@ -29,14 +29,14 @@ pub struct Series {
 }
 
 /// Units of the drawing; the image is shown at half of it, so that lines fall on half pixels.
-const SIZE: (u32, u32) = (1840, 1080);
-const MARGIN: i32 = 40;
+pub(super) const SIZE: (u32, u32) = (1840, 1080);
+pub(super) const MARGIN: i32 = 40;
 const TITLE_HEIGHT: i32 = 60;
 const LEGEND_LINE: i32 = 46;
-const TEXT: f64 = 34.0;
+pub(super) const TEXT: f64 = 34.0;
 /// Mean width of a letter. No font is at hand to measure; this is that of wide sans-serif fonts.
-const LETTER: f64 = 0.43 * TEXT;
-const INK: RGBColor = RGBColor(40, 40, 40);
+pub(super) const LETTER: f64 = 0.43 * TEXT;
+pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
 
 /// Draws `series` over each other into `path`. Errors: the file cannot be written.
 pub fn line_chart(
@@ -46,17 +46,21 @@ pub fn line_chart(
     y_label: &str,
     series: &[Series],
 ) -> Result<(), OutputError> {
+    save(path, SIZE, |svg| draw(svg, title, x_label, y_label, series))
+}
+
+/// Writes what is drawn in units of `size`, shown at half of it.
+pub(super) fn save(path: &Path, size: (u32, u32), draw: impl FnOnce(&mut String) -> Drawn) -> Result<(), OutputError> {
     let mut svg = String::new();
-    draw(&mut svg, title, x_label, y_label, series)
-        .map_err(|problem| OutputError::Chart { path: path.to_path_buf(), problem: problem.to_string() })?;
-    let drawn = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-    let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0 / 2, SIZE.1 / 2);
+    draw(&mut svg).map_err(|problem| OutputError::Chart { path: path.to_path_buf(), problem: problem.to_string() })?;
+    let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0 / 2, size.1 / 2);
     let svg = svg.replacen(&drawn, &shown, 1);
     write_atomically(path, |out| out.write_all(svg.as_bytes()))
 }
 
-type Drawn = Result<(), Box<dyn std::error::Error>>;
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 fn draw(svg: &mut String, title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Drawn {
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
@@ -136,7 +140,7 @@ fn stroke_colour(colour: [u8; 3], dashed: bool) -> [u8; 3] {
     if dashed { colour.map(|channel| channel / 2) } else { colour }
 }
 
-fn text_style(size: f64) -> TextStyle<'static> {
+pub(super) fn text_style(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size)).color(&INK)
 }
 

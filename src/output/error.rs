@@ -59,6 +59,10 @@ pub enum OutputError {
     BadTriangle { triangle: usize, vertex: u32, vertices: usize },
     #[error("{triangles} wall triangles came with {indices} wall indices")]
     WallIndexCount { triangles: usize, indices: usize },
+    #[error("{found} runs have no spread: two are the least")]
+    NoSpread { found: usize },
+    #[error("the histories of {one} and {other} {what}")]
+    Unlike { one: String, other: String, what: String },
     #[error("cannot draw {path}: {problem}", path = path.display())]
     Chart { path: PathBuf, problem: String },
 }

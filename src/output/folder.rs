@@ -25,14 +25,19 @@ pub const SWEEP_FILE: &str = "sweep.csv";
 pub const SWEEP_TABLE_FILE: &str = "sweep.txt";
 pub const SWEEP_CHART_FILE: &str = "sweep.svg";
 pub const SWEEP_MODEL_CHART_FILE: &str = "sweep_modelled.svg";
+pub const PARETO_FILE: &str = "pareto.csv";
+pub const PARETO_TABLE_FILE: &str = "pareto.txt";
+pub const PARETO_CHART_FILE: &str = "pareto.svg";
+/// Mean and spread over the seeds of a repeated run.
+pub const HISTORY_MEAN_FILE: &str = "history_mean.csv";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
 /// Says that the folder is a run's.
 const MARKER_FILE: &str = ".corpuscle-run";
 
-/// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 14] = [
+/// Everything a run or a study writes at the top of its folder, apart from the snapshots and checkpoints.
+const RESULT_FILES: [&str; 18] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
@@ -47,7 +52,18 @@ const RESULT_FILES: [&str; 14] = [
     SWEEP_TABLE_FILE,
     SWEEP_CHART_FILE,
     SWEEP_MODEL_CHART_FILE,
+    PARETO_FILE,
+    PARETO_TABLE_FILE,
+    PARETO_CHART_FILE,
+    HISTORY_MEAN_FILE,
 ];
+
+const SEED_PREFIX: &str = "seed-";
+
+/// The name of the folder of one run of several seeds.
+pub fn seed_folder(seed: u64) -> String {
+    format!("{SEED_PREFIX}{seed}")
+}
 
 /// A folder that exists, holds no earlier results, and carries the marker.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,11 +88,12 @@ impl OutputFolder {
         for file in &contents.results {
             fs::remove_file(file).map_err(OutputError::io("remove", file))?;
         }
-        for checkpoint in &contents.checkpoints {
+        for own in &contents.folders {
+            use std::io::ErrorKind;
             // With `force` a folder may hold what is the user's: it stays.
-            match fs::remove_dir(checkpoint) {
-                Err(error) if error.kind() != std::io::ErrorKind::DirectoryNotEmpty => {
-                    return Err(OutputError::io("remove", checkpoint)(error));
+            match fs::remove_dir(own) {
+                Err(error) if !matches!(error.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::NotFound) => {
+                    return Err(OutputError::io("remove", own)(error));
                 }
                 _ => {}
             }
@@ -138,15 +155,16 @@ impl OutputFolder {
 struct Contents {
     marked: bool,
     results: Vec<PathBuf>,
-    /// Folders of checkpoints, whole or not; their files are among the results.
-    checkpoints: Vec<PathBuf>,
+    /// Folders of checkpoints, whole or not, and of the runs of several seeds, the inner ones first; their files are among
+    /// the results.
+    folders: Vec<PathBuf>,
     /// Names, sorted, of what no run writes.
     others: Vec<String>,
 }
 
 impl Contents {
     fn of(folder: &Path) -> Result<Contents, OutputError> {
-        let mut contents = Contents { marked: false, results: Vec::new(), checkpoints: Vec::new(), others: Vec::new() };
+        let mut contents = Contents { marked: false, results: Vec::new(), folders: Vec::new(), others: Vec::new() };
         for (name, path, kind) in entries(folder)? {
             if name == SNAPSHOT_FOLDER && kind.is_dir() {
                 for (inner, path, kind) in entries(&path)? {
@@ -158,6 +176,8 @@ impl Contents {
                 }
             } else if name == CHECKPOINT_FOLDER && kind.is_dir() {
                 contents.add_checkpoints(&path)?;
+            } else if kind.is_dir() && is_seed_folder(&name) && path.join(MARKER_FILE).is_file() {
+                contents.add_run(&name, &path)?;
             } else if kind.is_file() && RESULT_FILES.contains(&name.trim_end_matches(PARTIAL_SUFFIX)) {
                 contents.marked |= name == MARKER_FILE;
                 contents.results.push(path);
@@ -182,8 +202,18 @@ impl Contents {
                     self.others.push(format!("{CHECKPOINT_FOLDER}/{name}/{inner}"));
                 }
             }
-            self.checkpoints.push(path);
+            self.folders.push(path);
         }
+        Ok(())
+    }
+
+    /// Of one of several seeds, in a folder of its own.
+    fn add_run(&mut self, name: &str, folder: &Path) -> Result<(), OutputError> {
+        let run = Contents::of(folder)?;
+        self.results.extend(run.results);
+        self.others.extend(run.others.iter().map(|other| format!("{name}/{other}")));
+        self.folders.extend(run.folders);
+        self.folders.extend([folder.join(SNAPSHOT_FOLDER), folder.join(CHECKPOINT_FOLDER), folder.to_path_buf()]);
         Ok(())
     }
 
@@ -218,6 +248,10 @@ fn entries(folder: &Path) -> Result<Vec<(String, PathBuf, fs::FileType)>, Output
             .collect()
     };
     list().map_err(OutputError::io("list", folder))
+}
+
+fn is_seed_folder(name: &str) -> bool {
+    name.strip_prefix(SEED_PREFIX).is_some_and(|seed| !seed.is_empty() && seed.bytes().all(|b| b.is_ascii_digit()))
 }
 
 pub(super) fn is_snapshot_file(name: &str) -> bool {
@@ -281,6 +315,31 @@ mod tests {
         assert!(error.contains("checkpoints/step-0000000064/mine.txt"), "{error}");
         OutputFolder::create(dir.path(), true).unwrap();
         assert!(mine.exists());
+    }
+
+    /// The runs of several seeds go with the next, whatever is in their folders, but for what is the user's.
+    #[test]
+    fn the_runs_of_several_seeds_go_with_the_next() {
+        let dir = tempfile::tempdir().unwrap();
+        OutputFolder::create(dir.path(), false).unwrap().write_text(HISTORY_MEAN_FILE, "x").unwrap();
+        for seed in [1, 20] {
+            let run = dir.path().join(seed_folder(seed));
+            finished_run(&run);
+            fs::create_dir_all(run.join(CHECKPOINT_FOLDER).join("step-0000000064")).unwrap();
+        }
+        OutputFolder::create(dir.path(), false).unwrap();
+        let left: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, [MARKER_FILE]);
+        // What no run wrote is not taken for one by its name.
+        fs::create_dir(dir.path().join("seed-3")).unwrap();
+        assert!(OutputFolder::create(dir.path(), false).unwrap_err().to_string().contains("seed-3"));
+        fs::remove_dir(dir.path().join("seed-3")).unwrap();
+        finished_run(&dir.path().join("seed-4"));
+        let mine = dir.path().join("seed-4/mine.txt");
+        fs::write(&mine, "mine").unwrap();
+        assert!(OutputFolder::create(dir.path(), false).unwrap_err().to_string().contains("seed-4/mine.txt"));
+        OutputFolder::create(dir.path(), true).unwrap();
+        assert!(mine.exists() && !dir.path().join("seed-4").join(HISTORY_FILE).exists());
     }
 
     #[test]

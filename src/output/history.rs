@@ -45,7 +45,11 @@ pub struct History {
 impl History {
     /// An empty table. Errors: two columns with the same header.
     pub fn new(columns: &[Column]) -> Result<History, OutputError> {
-        let headers: Vec<String> = columns.iter().map(Column::header).collect();
+        History::with_headers(columns.iter().map(Column::header).collect())
+    }
+
+    /// An empty table under these headers. Errors: two are the same.
+    pub(super) fn with_headers(headers: Vec<String>) -> Result<History, OutputError> {
         if let Some(header) = repeated(&headers) {
             return Err(OutputError::DuplicateColumn { header });
         }

@@ -16,7 +16,9 @@ mod folder;
 mod history;
 mod phases;
 mod progress;
+mod scatter;
 mod snapshot;
+mod spread;
 mod subdomains;
 mod table;
 mod ticks;
@@ -34,14 +36,17 @@ pub use checkpoint::{
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;
 pub use folder::{
-    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, OutputFolder, PLAN_FILE,
-    PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER, SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE,
-    SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE,
+    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, OutputFolder,
+    PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
+    SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE,
+    seed_folder,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use phases::PhaseTable;
 pub use progress::Progress;
+pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};
 pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
+pub use spread::spread as history_spread;
 pub use subdomains::{Frame, subdomain_chart};
 pub use table::grouped;
 pub use timing::{RankTiming, Timing};

@@ -7,6 +7,7 @@
 pub mod emulation;
 pub mod launched;
 pub mod modelled;
+pub mod pareto;
 pub mod report;
 pub mod state;
 pub mod stopwatch;
@@ -64,6 +65,8 @@ pub enum StudyError {
     TooShort { state: String },
     #[error("{}: {error}", from.display())]
     Model { from: std::path::PathBuf, error: Box<crate::simulation::ModelError> },
+    #[error("cannot write the table: {0}")]
+    Table(#[from] csv::Error),
     #[error("cannot write the plan as TOML: {0}")]
     PlanToml(toml::ser::Error),
     #[error(transparent)]

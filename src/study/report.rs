@@ -131,7 +131,7 @@ pub fn csv(measured: &[Measured], points: &[Point]) -> String {
 }
 
 /// A table of Markdown with aligned columns.
-fn table(head: &[String], rows: &[Vec<String>]) -> String {
+pub(super) fn table(head: &[String], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = std::iter::once(&head[column]).chain(rows.iter().map(|row| &row[column]));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0).max(3)

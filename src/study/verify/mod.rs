@@ -25,6 +25,7 @@ mod witness;
 use crate::gpu::Device;
 use crate::output::{PALETTE, Series};
 
+pub(crate) use witness::model_from;
 pub use witness::{Run, Witness, run, scene_of};
 
 use super::StudyError;

@@ -1,0 +1,111 @@
+//! Error against cost: what each method, with each of its settings, makes of a case whose answer is known.
+//!
+//! A [`Case`] says what is compared with what and lists settings; each is run with one seed or several and becomes a
+//! [`Point`]: its error, and the seconds that the device took. [`front::front`] finds what nothing beats; settings
+//! beyond the limits of their method are charted, marked, and not on the front.
+//!
+//! To add a case: a function like `sod::trials` and a line in [`CASES`].
+
+pub mod front;
+mod orifice;
+mod point;
+pub mod report;
+mod setting;
+mod sod;
+mod tank;
+
+use crate::scene::Method;
+use crate::simulation::Model;
+use crate::study::StudyError;
+use crate::study::verify::Run;
+
+pub use point::{Point, Timed, measure};
+pub use setting::{Range, Setting, collision_time, denser, model_with};
+
+/// How much a chart takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// Seconds to a minute: to see that it works.
+    Quick,
+    /// Minutes on two cores without a GPU.
+    Normal,
+    /// More particles: for a GPU.
+    Full,
+}
+
+/// A problem with a known answer.
+pub struct Case {
+    pub name: &'static str,
+    /// What is compared with what, and where the reference is from.
+    pub law: &'static str,
+    pub trials: fn(Extent) -> Result<Trials, StudyError>,
+}
+
+/// All cases.
+pub const CASES: &[Case] = &[
+    Case {
+        name: "sod",
+        law: "Sod's shock tube, gamma 7/5: density profile against the exact Riemann solution",
+        trials: sod::trials,
+    },
+    Case {
+        name: "tank",
+        law: "scenes/tank.toml, first part: pressures of both chambers against the control volume",
+        trials: tank::trials,
+    },
+    Case {
+        name: "orifice",
+        law: "discharge through a resolved hole into near-vacuum against that of a thin orifice in a continuum",
+        trials: orifice::trials,
+    },
+];
+
+/// The model of a setting and of a seed that is counted from 0.
+pub type Build = Box<dyn Fn(&Setting, u64) -> Result<Model, StudyError>>;
+
+/// The error of a run; `None` if it says nothing.
+pub type Judge = Box<dyn Fn(&Model, &Run) -> Option<f64>>;
+
+/// What a case runs.
+pub struct Trials {
+    /// What the error is, as precisely as words can, for the reader of the table.
+    pub about: String,
+    /// The label of its axis.
+    pub error: String,
+    /// Without that of a plan without any wish, which every case has.
+    pub settings: Vec<Setting>,
+    /// If a plan without any wish takes more particles it has this many.
+    pub most_particles: u64,
+    /// m3, of the gas that occupancy and step are of; `None`: of the plan's mean state at the end.
+    pub volume: Option<f64>,
+    pub model: Build,
+    pub judge: Judge,
+}
+
+impl Trials {
+    /// The methods among the settings, in the order of their first mention.
+    pub fn methods(&self) -> Vec<Method> {
+        let mut found = Vec::new();
+        for method in self.settings.iter().filter_map(|setting| setting.method) {
+            if !found.contains(&method) {
+                found.push(method);
+            }
+        }
+        found
+    }
+
+    /// The setting of a plan without any wish, and the particles that it would take if they are too many here.
+    ///
+    /// # Errors
+    /// If there is no such plan.
+    pub fn unwished(&self) -> Result<(Setting, Option<u64>), StudyError> {
+        let wanted = (self.model)(&Setting::default(), 0)?.plan.particles;
+        if wanted <= self.most_particles {
+            return Ok((Setting::default(), None));
+        }
+        Ok((Setting { particles: Some(self.most_particles), ..Setting::default() }, Some(wanted)))
+    }
+}
+
+#[cfg(test)]
+mod tests;
