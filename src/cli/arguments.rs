@@ -119,6 +119,9 @@ pub struct ExecutionArguments {
     /// Stop after that many steps since the start of the run, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
+    /// Stop at the first warning, of the plan or of the run, as an error
+    #[arg(long)]
+    pub strict: bool,
     /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
     #[arg(long, value_name = "STEPS|WALLTIME")]
     pub checkpoint_every: Option<CheckpointEvery>,
@@ -309,6 +312,9 @@ pub struct PlanArguments {
     /// As TOML, with everything that is in the plan.toml of a run
     #[arg(long)]
     pub toml: bool,
+    /// Warnings are errors
+    #[arg(long)]
+    pub strict: bool,
 }
 
 #[derive(Debug, Args)]

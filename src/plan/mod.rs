@@ -18,6 +18,7 @@ mod control_volume;
 mod decide;
 mod error;
 mod heat;
+mod limits;
 mod population;
 mod render;
 mod resolution;
@@ -31,6 +32,7 @@ use serde::Serialize;
 
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
+pub use limits::{Bound, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,8 +46,10 @@ pub struct Measured {
     pub bounds_max: [f64; 3],
     /// The openings found from the holes of the walls; those declared in the scene are added.
     pub openings: Vec<Opening>,
-    /// The narrowest passage of the gas, m, where it is known.
+    /// The narrowest passage of the gas between walls that face each other, m, where one was found.
     pub smallest_gap: Option<f64>,
+    /// m3 of gas, one per probe of the scene.
+    pub probe_volumes: Vec<f64>,
     /// Of each vent of the scene.
     pub vents: Vec<MeasuredVent>,
     /// Indices of a wall that exchanges heat and of a chamber that it borders on.

@@ -11,6 +11,8 @@ pub struct Model {
     pub vessel: Vessel,
     pub plan: Plan,
     pub coats: Coats,
+    /// m3 of gas in each probe.
+    pub probe_volumes: Vec<f64>,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -42,18 +44,20 @@ impl Model {
         check_orifices(&scene, &vessel)?;
         let coats = Coats::new(&scene, &vessel)?;
         let (bounds_min, bounds_max) = vessel.bounds;
+        let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
         let measured = Measured {
             gas_volume: vessel.gas_volume(),
             chamber_volumes: vessel.chamber_volumes(&scene.chambers),
             bounds_min,
             bounds_max,
             openings: found_openings(&scene, &vessel),
-            smallest_gap: None,
+            smallest_gap: vessel.smallest_gap(),
+            probe_volumes: probe_volumes.clone(),
             vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
             heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
         };
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan, coats })
+        Ok(Model { scene, vessel, plan, coats, probe_volumes })
     }
 }
 

@@ -10,6 +10,7 @@ use crate::plan::Plan;
 use crate::simulation::audit::Account;
 use crate::simulation::averages::AveragesState;
 use crate::simulation::clock::Clock;
+use crate::simulation::guards::GuardState;
 use crate::simulation::ladder::{Ladder, LadderError};
 use crate::simulation::model::Model;
 use crate::simulation::run_state::RunState;
@@ -24,7 +25,7 @@ pub fn state(
     parent: &RunState,
     particles: &[GpuParticle],
 ) -> Result<RunState, LadderError> {
-    let Model { scene, vessel, plan, coats } = model;
+    let Model { scene, vessel, plan, coats, .. } = model;
     let mut ladder = Ladder::new(plan, block_volumes(vessel, &plan.grid, plan.block_cells_log2));
     let (blocks, fast) = tallies(plan, particles);
     ladder.start(ladder.demand(&blocks, &fast))?;
@@ -42,6 +43,7 @@ pub fn state(
         inflow: inflow.state(),
         demands: Vec::new(),
         conditions: parent.conditions.clone(),
+        guards: GuardState::default(),
         seen: Vec::new(),
         submitted: 0,
         next_row: parent.next_row,

@@ -4,6 +4,7 @@
 use crate::simulation::SimulationError;
 use crate::simulation::balance::Load;
 use crate::simulation::exchange::Traffic;
+use crate::simulation::guards::{Shown, Told};
 use crate::simulation::interrupt::Request;
 use crate::simulation::interval::{InFlight, Interval, Pending};
 use crate::simulation::observer::Observer;
@@ -80,10 +81,14 @@ impl Simulation<'_> {
         self.read_until += duration;
         let plan = &self.model.plan;
         let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
-        self.account.check(plan, &tallies, &interval).map_err(lost)?;
+        let drift = self.account.check(plan, &tallies, &interval).map_err(lost)?;
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
+        let clipped = self.account.state().clipped();
+        let shown = Shown { time: self.read_until, step: interval.dt, tallies: &tallies, drift, clipped };
+        let told = self.guards.interval(&shown);
+        self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];
         let (seen, wanted) = self.conditions.see(&tallies, samples, span);
         self.seen.push_back((seen, self.account.state().left()));
@@ -112,11 +117,24 @@ impl Simulation<'_> {
 
     pub(super) fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
         let row = self.averages.row(self.read_until, self.account.state().particles);
+        let told = self.guards.row(&row);
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
         while self.next_row <= self.read_until * (1.0 + 1e-9) {
             self.next_row += spacing;
         }
-        observer.row(&row)
+        observer.row(&row)?;
+        self.tell(&told, observer)
+    }
+
+    /// Tells what has left its limits; a strict run ends there, on all ranks alike.
+    fn tell(&self, told: &[Told], observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        for told in told {
+            observer.warning(told);
+        }
+        match told.first() {
+            Some(first) if self.options.strict => Err(SimulationError::Guard { told: Box::new(first.clone()) }),
+            _ => Ok(()),
+        }
     }
 
     /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
