@@ -54,6 +54,8 @@ pub enum Verb {
     Sweep(SweepArguments),
     /// Run reference cases and compare with closed forms and published figures
     Verify(VerifyArguments),
+    /// Map where the methods fail: which quantity breaks first along an axis, and by how much
+    Stability(StabilityArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -300,6 +302,35 @@ pub struct VerifyArguments {
     /// Also write the table as a page in Markdown
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub markdown: Option<PathBuf>,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct StabilityArguments {
+    /// The axes to map, or `all`
+    #[arg(value_name = "CASE", required_unless_present = "list")]
+    pub cases: Vec<String>,
+    /// Few values, known badly: to see that it works
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// More values and more particles: hours on a CPU
+    #[arg(long)]
+    pub full: bool,
+    /// Only say which axes there are
+    #[arg(long, conflicts_with_all = ["cases", "quick", "full", "markdown", "gpu", "out"])]
+    pub list: bool,
+    /// Also write the maps as a page in Markdown
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub markdown: Option<PathBuf>,
+    /// The folder for the results [default: results/stability]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than earlier results
+    #[arg(long)]
+    pub force: bool,
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,

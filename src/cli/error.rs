@@ -124,7 +124,9 @@ impl CliError {
             CliError::Audit { .. }
             | CliError::RunWarnings { .. }
             | CliError::Verification { .. }
-            | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. } | SimulationError::Guard { .. }) => AUDIT_FAILED,
+            | CliError::Simulation(
+                SimulationError::Lost { .. } | SimulationError::Ladder { .. } | SimulationError::Guard { .. },
+            ) => AUDIT_FAILED,
             CliError::Simulation(
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)

@@ -16,6 +16,7 @@ mod resume;
 mod run;
 mod schema;
 mod settings;
+mod stability;
 mod sweep;
 mod terminal;
 mod verify;
@@ -59,6 +60,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Verify(raw) => verify::verify(raw),
+        Verb::Stability(raw) => stability::stability(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),

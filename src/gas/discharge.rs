@@ -19,8 +19,8 @@
 use super::{Species, kinetics, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture};
 
-/// Discharge coefficient of a thin orifice in the continuum.
-const CONTINUUM_COEFFICIENT: f64 = 0.84;
+/// Discharge coefficient of a thin orifice in the continuum (specification, section 4, from memory of the literature).
+pub const CONTINUUM_COEFFICIENT: f64 = 0.84;
 /// (Kn, Cd) into vacuum, and at the pressure ratio [`MODERATE_RATIO`].
 const VACUUM: [[f64; 2]; 4] = [[10.0, 0.60], [0.3, 0.71], [0.1, 0.78], [0.05, 0.83]];
 const MODERATE: [[f64; 2]; 3] = [[1.0, 0.18], [0.1, 0.29], [0.03, 0.34]];

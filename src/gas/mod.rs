@@ -20,7 +20,7 @@ pub mod wall_heat;
 
 pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
 pub use curve::{FlowIntegral, flow_times_of_temperature, flow_times_temperature, value_held, value_inside};
-pub use discharge::{Side, exchange};
+pub use discharge::{CONTINUUM_COEFFICIENT, Side, exchange};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
 pub use initial::{FillError, Filling, fill};
 pub use modes::{MOST_MODES, fit};

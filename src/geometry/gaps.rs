@@ -92,7 +92,8 @@ mod tests {
         Vessel::build(&scene.walls).unwrap().smallest_gap()
     }
 
-    const TANK: &str = "[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [1.0, 0.5, 0.5]\ngas = \"inside\"\n";
+    const TANK: &str =
+        "[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [1.0, 0.5, 0.5]\ngas = \"inside\"\n";
 
     fn near(found: Option<f64>, expected: f64) -> bool {
         found.is_some_and(|found| (found / expected - 1.0).abs() < 1e-6)

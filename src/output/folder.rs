@@ -25,6 +25,9 @@ pub const SWEEP_FILE: &str = "sweep.csv";
 pub const SWEEP_TABLE_FILE: &str = "sweep.txt";
 pub const SWEEP_CHART_FILE: &str = "sweep.svg";
 pub const SWEEP_MODEL_CHART_FILE: &str = "sweep_modelled.svg";
+pub const STABILITY_FILE: &str = "stability.csv";
+pub const STABILITY_TABLE_FILE: &str = "stability.txt";
+pub const STABILITY_CHART_FILE: &str = "stability.svg";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
@@ -32,7 +35,7 @@ pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run or a sweep writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 14] = [
+const RESULT_FILES: [&str; 17] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
@@ -47,6 +50,9 @@ const RESULT_FILES: [&str; 14] = [
     SWEEP_TABLE_FILE,
     SWEEP_CHART_FILE,
     SWEEP_MODEL_CHART_FILE,
+    STABILITY_FILE,
+    STABILITY_TABLE_FILE,
+    STABILITY_CHART_FILE,
 ];
 
 /// A folder that exists, holds no earlier results, and carries the marker.

@@ -33,6 +33,7 @@ use serde::Serialize;
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
 pub use limits::{Bound, LIMITS, Limit, Quantity, Warning, limit, step_limit};
+pub use render::significant;
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]

@@ -193,8 +193,7 @@ impl Resolution {
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
         let collisions_per_step = time_step / tau;
         let in_cell = 0.5 * density * cell * cell * cell * collisions_per_step;
-        let why =
-            format!("expected in a step; {} per particle, {limit} at most", significant(collisions_per_step));
+        let why = format!("expected in a step; {} per particle, {limit} at most", significant(collisions_per_step));
         because("collisions per cell", significant(in_cell), why);
         Self {
             diameter,

@@ -79,10 +79,21 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         found.push(table(Quantity::Flight, "the time step", resolution.flight_over_cell, remedy));
     }
     found.push(unequal_masses(scene, decided));
-    found.extend(scene.orifices.iter().filter_map(|orifice| {
-        let subject = format!("the jet of orifice `{}`", orifice.name);
-        table(Quantity::Mach, &subject, orifice.jet?.mach, "a wider orifice with a slower jet of the same enthalpy")
-    }).map(Some));
+    found.extend(
+        scene
+            .orifices
+            .iter()
+            .filter_map(|orifice| {
+                let subject = format!("the jet of orifice `{}`", orifice.name);
+                table(
+                    Quantity::Mach,
+                    &subject,
+                    orifice.jet?.mach,
+                    "a wider orifice with a slower jet of the same enthalpy",
+                )
+            })
+            .map(Some),
+    );
     found.into_iter().flatten().map(|warning| warning.text).collect()
 }
 

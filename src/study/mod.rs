@@ -8,6 +8,7 @@ pub mod emulation;
 pub mod launched;
 pub mod modelled;
 pub mod report;
+pub mod stability;
 pub mod state;
 pub mod stopwatch;
 pub mod verify;

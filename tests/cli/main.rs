@@ -3,6 +3,8 @@
 //! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
 //! whatever adapter the machine has.
 
+mod strict;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

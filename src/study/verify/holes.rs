@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use crate::geometry::region_contains;
 use crate::gpu::Device;
-use crate::scene::{Method, Outline, Shape};
-use crate::simulation::{Model, Options};
+use crate::scene::{Method, Outline, Scene, Shape};
+use crate::simulation::{Model, Options, Row};
 use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
-use super::witness::{model_from, model_of};
+use super::witness::model_from;
 use super::{Check, Effort, run, scene_of};
 
 /// s.
@@ -67,7 +67,7 @@ pub(super) fn effusion(device: &Device, effort: Effort) -> Result<Vec<Check>, St
 }
 
 /// m3: the inner box.
-const VOLUME: f64 = 0.16 * 0.12 * 0.12;
+pub const VOLUME: f64 = 0.16 * 0.12 * 0.12;
 /// m, half the side of the hole, which is the radius 2 area / perimeter of a square one.
 pub const RADIUS: f64 = 0.02;
 
@@ -79,12 +79,21 @@ pub fn emptying(particles: u64, knudsen: f64) -> Result<Model, StudyError> {
     let mean_free_path = knudsen * RADIUS;
     let density = particles as f64 / VOLUME;
     let diameter = (1.0 / (2f64.sqrt() * PI * density * mean_free_path)).sqrt();
-    let text = format!(
-        r#"
+    let mut scene = emptying_scene()?;
+    scene.model.particles = Some(particles);
+    scene.model.diameter = Some(diameter);
+    model_from("orifice", scene)
+}
+
+/// The same with all that a plan decides left to it.
+///
+/// # Errors
+/// If its text makes no scene.
+pub fn emptying_scene() -> Result<Scene, StudyError> {
+    let text = r#"
         end_time = 1.2e-3
-        gas = [{{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }}]
-        model = {{ particles = {particles}, diameter = {diameter:e} }}
-        output = {{ rows = 12, snapshots = 0 }}
+        gas = [{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }]
+        output = { rows = 12, snapshots = 0 }
         [[wall]]
         name = "tank"
         shape = "box"
@@ -97,10 +106,10 @@ pub fn emptying(particles: u64, knudsen: f64) -> Result<Model, StudyError> {
         min = [0.0, -0.06, -0.06]
         max = [0.16, 0.06, 0.06]
         thickness = 0.002
-        hole = [{{ name = "vent", face = "+x", center = [0.0, 0.0], size = [0.04, 0.04] }}]
+        hole = [{ name = "vent", face = "+x", center = [0.0, 0.0], size = [0.04, 0.04] }]
         [[chamber]]
         name = "inner"
-        region = {{ box = {{ min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] }} }}
+        region = { box = { min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] } }
         pressure = 1.0e6
         temperature = 700.0
         gas = "nitrogen"
@@ -109,9 +118,8 @@ pub fn emptying(particles: u64, knudsen: f64) -> Result<Model, StudyError> {
         pressure = 200.0
         temperature = 700.0
         gas = "nitrogen"
-        "#
-    );
-    model_of("orifice", &text)
+        "#;
+    scene_of("orifice", text)
 }
 
 /// Discharge coefficient over the run and its standard error, with a mean free path of `knudsen` hole radii at the
@@ -124,7 +132,11 @@ pub fn emptying(particles: u64, knudsen: f64) -> Result<Model, StudyError> {
 /// If the run fails.
 pub fn discharge(device: &Device, particles: u64, knudsen: f64) -> Result<(f64, f64), StudyError> {
     let model = emptying(particles, knudsen)?;
-    let rows = run(device, &model, Options::default())?.rows;
+    Ok(discharge_of(&run(device, &model, Options::default())?.rows))
+}
+
+/// Of the rows of such a run; there must be four.
+pub fn discharge_of(rows: &[Row]) -> (f64, f64) {
     // The first two rows see the flow start.
     let window = &rows[2..];
     let number = |k: usize| window[k].chambers[0].particles[0];
@@ -137,7 +149,7 @@ pub fn discharge(device: &Device, particles: u64, knudsen: f64) -> Result<(f64, 
         })
         .sum();
     let (first, last) = (number(0), number(window.len() - 1));
-    Ok(((first / last).ln() / passed, (first / last).ln() / passed / (first - last).sqrt()))
+    ((first / last).ln() / passed, (first / last).ln() / passed / (first - last).sqrt())
 }
 
 /// The specification's table, section 4 (good to .02), whose Knudsen number is of the hole's radius.

@@ -19,6 +19,7 @@ mod witness;
 
 use crate::gpu::Device;
 
+pub(crate) use witness::model_from;
 pub use witness::{Run, Witness, run, scene_of};
 
 use super::StudyError;

@@ -7,13 +7,14 @@ use std::f64::consts::PI;
 
 use crate::gas::{Fluid, Riemann};
 use crate::gpu::Device;
+use crate::scene::Scene;
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::subdomain::GpuParticle;
 
 use super::gas_box::GAS_CONSTANT;
-use super::witness::model_of;
-use super::{Check, Effort, run};
+use super::witness::model_from;
+use super::{Check, Effort, run, scene_of};
 
 /// m.
 const LENGTH: f64 = 1.0;
@@ -46,6 +47,12 @@ impl Tube {
     /// # Errors
     /// If no plan can be made for it.
     pub fn model(&self) -> Result<Model, StudyError> {
+        model_from("tube", self.scene()?)
+    }
+
+    /// # Errors
+    /// If its figures make no scene.
+    pub fn scene(&self) -> Result<Scene, StudyError> {
         let Tube { particles, gamma, width, snapshots, .. } = *self;
         let [pressure, temperature] = self.right;
         let right = if pressure > 0.0 {
@@ -67,7 +74,7 @@ impl Tube {
             end = self.end * LENGTH / self.speed(),
             half = 0.5 * LENGTH,
         );
-        model_of("tube", &text)
+        scene_of("tube", &text)
     }
 
     /// The exact solution until waves reach the ends of the tube, in the units of the left.

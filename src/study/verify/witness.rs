@@ -47,7 +47,8 @@ pub(super) fn model_of(case: &str, text: &str) -> Result<Model, StudyError> {
     model_from(case, scene_of(case, text)?)
 }
 
-pub(super) fn model_from(case: &str, scene: Scene) -> Result<Model, StudyError> {
+/// `case` stands in the message if its walls or its plan are not sound.
+pub(crate) fn model_from(case: &str, scene: Scene) -> Result<Model, StudyError> {
     let wrong = |error: ModelError| StudyError::Model { from: case.into(), error: Box::new(error) };
     Model::new(scene).map_err(wrong)
 }
