@@ -172,7 +172,7 @@ fn free_flight_has_no_collisions() {
     assert_eq!((plan.diameter, plan.rounds, plan.occupancy), (0.0, 0, 0.0));
     assert!(plan.mean_free_path.is_infinite());
     // At the pressure of the atmosphere molecules do collide.
-    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("Knudsen number 1.67"), "{:?}", plan.warnings);
+    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("Knudsen number 1.641e-6"), "{:?}", plan.warnings);
     let thin = planned(|scene, _| {
         scene.model.method = Some(Method::None);
         scene.chambers.iter_mut().for_each(|chamber| chamber.pressure = 1e-2);
