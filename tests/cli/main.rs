@@ -3,6 +3,7 @@
 //! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
 //! whatever adapter the machine has.
 
+mod stability;
 mod strict;
 
 use std::fs;
@@ -75,8 +76,8 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 11] =
-    ["run", "resume", "refine", "sweep", "verify", "plan", "check", "schema", "adapters", "completions", "man"];
+const VERBS: [&str; 12] =
+    ["run", "resume", "refine", "sweep", "verify", "stability", "plan", "check", "schema", "adapters", "completions", "man"];
 
 #[test]
 fn every_verb_has_its_help() {

@@ -21,13 +21,13 @@ const PRESSURE: f64 = 0.01;
 const RATE: f64 = 0.03;
 const TEMPERATURES: f64 = 0.02;
 /// Stretches of a series for its standard error.
-const BLOCKS: usize = 10;
+const BLOCKS: usize = 6;
 
 /// Particles and collisions of each.
 fn size(effort: Effort) -> (u64, f64) {
     match effort {
         Effort::Quick => (1000, 40.0),
-        Effort::Usual => (4000, 100.0),
+        Effort::Usual => (2000, 150.0),
         Effort::Full => (8000, 300.0),
     }
 }

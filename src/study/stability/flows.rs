@@ -25,7 +25,7 @@ const CONE: f64 = 0.2;
 pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let particles = match effort {
         Effort::Quick => 4000,
-        Effort::Usual => 16_000,
+        Effort::Usual => 10_000,
         Effort::Full => 64_000,
     };
     let mut scene = emptying_scene()?;

@@ -13,6 +13,7 @@ pub mod report;
 use crate::gpu::Device;
 use crate::plan::{Bound, Quantity, limit, step_limit};
 use crate::scene::Method;
+use crate::simulation::SimulationError;
 use crate::study::StudyError;
 use crate::study::verify::Check;
 
@@ -64,7 +65,14 @@ impl Axis {
     /// # Errors
     /// If a run fails but for what the method is to blame for.
     pub fn run(&self, device: &Device, method: Method, value: f64, effort: Effort) -> Result<Point, StudyError> {
-        Ok(Point { method, value, checks: (self.run)(device, method, value, effort)? })
+        let checks = match (self.run)(device, method, value, effort) {
+            // A run that its own checks stop: what it knows is no number.
+            Err(StudyError::Simulation(error @ (SimulationError::Lost { .. } | SimulationError::Ladder { .. }))) => {
+                vec![Check::of(format!("run stopped, {error}"), 0.0, (f64::NAN, 0.0), 1.0)]
+            }
+            done => done?,
+        };
+        Ok(Point { method, value, checks })
     }
 }
 
@@ -157,7 +165,7 @@ pub const AXES: &[Axis] = &[
         runs: "gas at rest in a box at occupancy 0.1 (rigid spheres 0.01), the step held against the ladder",
         methods: COLLIDING,
         quick: &[0.2, 2.0],
-        usual: &[0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0],
+        usual: &[0.1, 0.2, 0.5, 1.0, 2.0, 4.0],
         full: &[0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0],
         limit: |method| Some(Bound::AtMost(step_limit(method, ROUNDS))),
         run: at_rest::time_step,
@@ -180,7 +188,7 @@ pub const AXES: &[Axis] = &[
         runs: "gas at rest in a box at x = 0.2",
         methods: COLLIDING,
         quick: &[0.1, 0.3],
-        usual: &[0.001, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4],
+        usual: &[0.0025, 0.01, 0.1, 0.2, 0.3, 0.4],
         full: &[0.001, 0.0025, 0.005, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4],
         limit: |method| of_table(Quantity::Occupancy)(method),
         run: at_rest::occupancy,
@@ -191,7 +199,7 @@ pub const AXES: &[Axis] = &[
         runs: "as occupancy, at f = 0.1 (rigid spheres 0.01), runs as much longer",
         methods: COLLIDING,
         quick: &[2000.0, 200.0],
-        usual: &[4000.0, 1000.0, 500.0, 200.0, 100.0],
+        usual: &[2000.0, 1000.0, 500.0, 200.0, 100.0],
         full: &[16000.0, 4000.0, 2000.0, 1000.0, 500.0, 200.0, 100.0],
         limit: |method| of_table(Quantity::Particles)(method),
         run: at_rest::particles,

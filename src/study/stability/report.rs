@@ -39,7 +39,7 @@ fn cell(point: &Point) -> String {
     match (point.state(), point.worst()) {
         (State::Broken, Some(check)) => {
             let name = check.quantity.split(',').next().unwrap_or_default();
-            format!("{name} x{}", times(check))
+            if check.measured.is_nan() { name.to_owned() } else { format!("{name} x{}", times(check)) }
         }
         (state, _) => state.word().to_owned(),
     }
@@ -90,6 +90,9 @@ fn verdict(axis: &Axis, points: &[Point], method: Method) -> Option<String> {
     let found = first_broken(points, method);
     let held = found.held.map_or_else(|| "nowhere held".to_owned(), |value| format!("holds to {value}"));
     let broken = found.broken.map_or_else(String::new, |(value, check)| {
+        if check.measured.is_nan() {
+            return format!("; at {value} {}", check.quantity);
+        }
         format!(
             "; at {value} {} is {} +- {}, off by {} times the {} allowed",
             check.quantity,
