@@ -30,6 +30,9 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
     let device = Device::open(raw.gpu.as_deref())?;
     let folder = raw.out.clone().unwrap_or_else(|| Path::new("results").join("stability"));
     let folder = OutputFolder::create(&folder, raw.force)?;
+    let info = &device.adapter().info;
+    let driver = format!("{} {}", info.driver, info.driver_info);
+    let adapter = format!("{} ({})", info.name, driver.trim());
     let mut maps: Vec<Map<'_>> = Vec::new();
     let mut text = String::new();
     for axis in axes {
@@ -48,12 +51,10 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
         folder.write_text(STABILITY_FILE, &report::csv(&maps))?;
         folder.write_text(STABILITY_TABLE_FILE, &text)?;
         report::chart(&folder.path().join(STABILITY_CHART_FILE), &maps)?;
-    }
-    if let Some(path) = &raw.markdown {
-        let info = &device.adapter().info;
-        let driver = format!("{} {}", info.driver, info.driver_info);
-        let page = report::page(&maps, &command(&raw), &format!("{} ({})", info.name, driver.trim()));
-        fs::write(path, page).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
+        if let Some(path) = &raw.markdown {
+            let page = report::page(&maps, &command(&raw), &adapter);
+            fs::write(path, page).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
+        }
     }
     say(&format!("{}\n", folder.path().display()))
 }

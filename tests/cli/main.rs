@@ -76,8 +76,20 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 12] =
-    ["run", "resume", "refine", "sweep", "verify", "stability", "plan", "check", "schema", "adapters", "completions", "man"];
+const VERBS: [&str; 12] = [
+    "run",
+    "resume",
+    "refine",
+    "sweep",
+    "verify",
+    "stability",
+    "plan",
+    "check",
+    "schema",
+    "adapters",
+    "completions",
+    "man",
+];
 
 #[test]
 fn every_verb_has_its_help() {

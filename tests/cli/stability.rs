@@ -21,14 +21,20 @@ fn a_quick_map_finds_what_breaks_first() {
     assert_eq!(state("rounds,closest-approach,4,\"energy\""), Some(Some("holds")), "{csv}");
     assert_eq!(state("rounds,closest-approach,1,\"collision rate\""), Some(Some("broken")), "{csv}");
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("corpuscle stability rounds --quick --markdown") && page.contains("| method | 4 | 1 |"), "{page}");
+    assert!(
+        page.contains("corpuscle stability rounds --quick --markdown") && page.contains("| method | 4 | 1 |"),
+        "{page}"
+    );
 }
 
 #[test]
 fn what_is_no_axis_is_2() {
     let (code, _, err) = outcome(&["stability", "rounds", "temperature"]);
-    assert!(code == 2 && err.contains("`temperature`") && err.contains("temperature-ratio") && err.contains("all"), "{err}");
+    assert!(
+        code == 2 && err.contains("`temperature`") && err.contains("temperature-ratio") && err.contains("all"),
+        "{err}"
+    );
     assert_eq!(outcome(&["stability"]).0, 2);
     let list = printed(&["stability", "--list"]);
-    assert!(list.lines().count() >= 10 && list.contains("mass-ratio  heavier over lighter gas"), "{list}");
+    assert!(list.lines().count() >= 10 && list.contains("mass-ratio         heavier over lighter gas"), "{list}");
 }

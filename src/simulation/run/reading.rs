@@ -127,14 +127,32 @@ impl Simulation<'_> {
     }
 
     /// Tells what has left its limits; a strict run ends there, on all ranks alike.
-    fn tell(&self, told: &[Told], observer: &mut dyn Observer) -> Result<(), SimulationError> {
+    fn tell(&mut self, told: &[Told], observer: &mut dyn Observer) -> Result<(), SimulationError> {
         for told in told {
             observer.warning(told);
         }
         match told.first() {
-            Some(first) if self.options.strict => Err(SimulationError::Guard { told: Box::new(first.clone()) }),
+            Some(first) if self.options.strict => {
+                self.abandon()?;
+                // Nobody leaves before rank 0 has written what it had to.
+                self.ranks.comm().sum(vec![0])?;
+                Err(SimulationError::Guard { told: Box::new(first.clone()) })
+            }
             _ => Ok(()),
         }
+    }
+
+    /// Waits for what is under way, and drops it.
+    fn abandon(&mut self) -> Result<Vec<(Interval, Remembered)>, SimulationError> {
+        let mut dropped = Vec::new();
+        for flight in std::mem::take(&mut self.flying) {
+            match flight.tallies {
+                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
+                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
+            }
+            dropped.push((flight.interval, flight.before));
+        }
+        Ok(dropped)
     }
 
     /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
@@ -149,14 +167,7 @@ impl Simulation<'_> {
         self.repeated += 1;
         self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
-        let mut later = Vec::new();
-        for flight in std::mem::take(&mut self.flying) {
-            match flight.tallies {
-                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
-                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
-            }
-            later.push((flight.interval, flight.before));
-        }
+        let later = self.abandon()?;
         self.subdomain.restore(self.device, &before);
         self.subdomain.make_room(self.device, 0, 0, wanted)?;
         if let Some(decomposition) = &mut self.decomposition {

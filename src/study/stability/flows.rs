@@ -25,7 +25,7 @@ const CONE: f64 = 0.2;
 pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let particles = match effort {
         Effort::Quick => 4000,
-        Effort::Usual => 10_000,
+        Effort::Usual => 8_000,
         Effort::Full => 64_000,
     };
     let mut scene = emptying_scene()?;
@@ -47,7 +47,7 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
 fn tube(device: &Device, method: Method, right: [f64; 2], effort: Effort) -> Result<Vec<Check>, StudyError> {
     let particles = match effort {
         Effort::Quick => 4000,
-        Effort::Usual => 10_000,
+        Effort::Usual => 6_000,
         Effort::Full => 160_000,
     };
     let tube = Tube { particles, right, end: 0.15, ..SOD };
@@ -86,11 +86,11 @@ pub(super) fn mach(device: &Device, method: Method, mach: f64, effort: Effort) -
     scene.model.method = Some(method);
     scene.model.particles = Some(match effort {
         Effort::Quick => 1000,
-        Effort::Usual => 3000,
+        Effort::Usual => 2000,
         Effort::Full => 30_000,
     });
     // Moles per particle follow from the gas that is in at the end of the run.
-    scene.end_time = if effort == Effort::Quick { 0.004 } else { 0.008 };
+    scene.end_time = 0.004;
     scene.output.rows = 10;
     scene.output.snapshots = 0;
     for orifice in &mut scene.orifices {
