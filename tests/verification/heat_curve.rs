@@ -7,7 +7,7 @@
 
 use corpuscle::output::AuditLimits;
 use corpuscle::simulation::Options;
-use corpuscle::study::verify::curve::{Balance, CP, END, INFLOW, MOLAR_MASS, balance, cp, tank};
+use corpuscle::study::verify::curve::{Balance, CP, END, INFLOW, MOLAR_MASS, balance, cp, enthalpy_gain, tank};
 use corpuscle::subdomain::{GpuParticle, Scales};
 
 use crate::equilibrium_box::{EquilibriumBox, GAS_CONSTANT as R, TEMPERATURE};
@@ -118,4 +118,45 @@ fn a_tank_filled_with_such_a_gas_has_its_enthalpy_and_its_temperature() {
     let [n0, n1] = [audit.mass_start, audit.mass_injected].map(|mass| mass / MOLAR_MASS);
     let constant = (n0 * 300.0 + n1 * INFLOW * cp(INFLOW) / (cp(INFLOW) - R)) / (n0 + n1);
     assert!((found - constant).abs() > 4.5 * noise, "{constant}");
+}
+
+/// What leaves a wall that exchanges all hits has the internal energy of the curve at its temperature: mean u and variance
+/// T^2 (cv - 3/2 R). In free flight within such walls all gas has it soon, from whatever start.
+#[test]
+fn walls_emit_the_energy_of_the_curve_at_their_temperature() {
+    let (wall, particles) = (800.0, 20_000);
+    let text = format!(
+        "end_time = 4e-3\n[[gas]]\nname = \"curved\"\nmolar_mass = {MOLAR_MASS}\ncp = {CP:?}\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         temperature = {wall}\naccommodation = 1.0\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"curved\"\n\
+         [model]\nmethod = \"none\"\nparticles = {particles}\n[output]\nrows = 4\nsnapshots = 0\n"
+    );
+    let model = model(&text);
+    let run = run(&model, Options::default());
+    let kelvin = Scales::new(&model.plan).reference_mass / (model.plan.moles_per_particle * R);
+    let [mean, square] = spin_moments(&run.outcome.particles, kelvin);
+    let own = &model.plan.gases[0].species;
+    let internal = |t: f64| own.energy(1.0, t) / R - 1.5 * t;
+    let variance = wall * wall * (cp(wall) / R - 2.5);
+    let error = (variance / particles as f64).sqrt();
+    println!(
+        "spin {mean:.1} +- {error:.1} K of {:.1}, variance {:.4e} of {variance:.4e}",
+        internal(wall),
+        square - mean * mean
+    );
+    // 4 ms are some twenty crossings of the box.
+    assert!((mean - internal(wall)).abs() < 4.5 * error, "{mean} {}", internal(wall));
+    // Of a gamma variate of shape s the variance errs by sqrt((2 + 6/s)/N); of a mixture somewhat more.
+    assert!(((square - mean * mean) / variance - 1.0).abs() < 4.5 * (4.0 / particles as f64).sqrt());
+    // The checks can fail: a constant heat capacity of the same cv would have another mean and variance.
+    let constant = (cp(wall) / R - 2.5) * wall;
+    assert!((constant - internal(wall)).abs() > 9.0 * error);
+    let audit = &run.outcome.audit;
+    assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    // The heat that came in is that of the curve between the two temperatures.
+    let heat = audit.mass_start / MOLAR_MASS * (enthalpy_gain(300.0, wall) - R * (wall - 300.0));
+    let noise = (variance + 1.5 * wall * wall).sqrt() * R * audit.mass_start / MOLAR_MASS / (particles as f64).sqrt();
+    let taken = -audit.heat_to_walls.expect("heat");
+    assert!((taken - heat).abs() < 4.5 * noise + 1e-4 * heat, "{taken} {heat} +- {noise}");
 }

@@ -8,9 +8,11 @@
 
 use corpuscle::output::AuditLimits;
 use corpuscle::simulation::Options;
+use corpuscle::study::verify::curve::CP;
+use corpuscle::study::verify::gas_box::GAS_CONSTANT as R;
 use corpuscle::study::verify::losses::{emptied, left as left_after, pores, rate, slope};
 
-use crate::whole_run::{device, run};
+use crate::whole_run::{device, model, run};
 
 #[test]
 fn a_vessel_empties_isentropically() {
@@ -71,4 +73,40 @@ fn filling_and_venting_follows_the_control_volume() {
     assert_eq!(run.outcome.particles.len() as u64, entered - run.outcome.audit.particles_vented);
     // The check can fail: without the vents there would be so much more.
     assert!(run.outcome.audit.particles_vented as f64 > 0.1 * entered as f64);
+}
+
+/// The same with a gas of cp(T): what is left has lost n cv dT = -dn R T, so ln(N/N0) is the integral of cv/(R T).
+#[test]
+fn a_gas_with_a_curve_empties_isentropically_too() {
+    let (start, [a, b, c]) = (600.0, CP);
+    let text = format!(
+        "end_time = 4e-3\nseed = 4\n[[gas]]\nname = \"curved\"\nmolar_mass = 0.044\ncp = {CP:?}\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 2e5\ntemperature = {start}\ngas = \"curved\"\n\
+         [[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = {:e}\nexternal_pressure = 0.0\n\
+         [model]\nparticles = 4000\noccupancy = 0.1\n[output]\nrows = 4\nsnapshots = 0\n",
+        pores()
+    );
+    let model = model(&text);
+    let run = run(&model, Options::default());
+    let audit = &run.outcome.audit;
+    assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    let (before, after) = (audit.particles_initial as f64, audit.particles_inside as f64);
+    let integral = |t: f64| (a - R) * t.ln() + b * t + 0.5 * c * t * t;
+    let (mut low, mut high) = (0.3 * start, start);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if integral(start) - integral(middle) > R * (before / after).ln() { low = middle } else { high = middle }
+    }
+    // u = the integral of cv from 0 K, of which the model has its own below the curve's range.
+    let gain = a * (low - start) + 0.5 * b * (low.powi(2) - start.powi(2)) + c / 3.0 * (low.powi(3) - start.powi(3));
+    let per_mole = |energy: f64, count: f64| energy / (count * model.plan.moles_per_particle);
+    let found = per_mole(audit.energy_end, after) - per_mole(audit.energy_start, before);
+    let expected = gain - R * (low - start);
+    // As of the constant gas, with a variance of some 5 (kT)^2 for each of those that left.
+    let error = (5.0 * (before - after)).sqrt() * R * 0.5 * (start + low) / after;
+    println!("{before} to {after}, {low:.1} K: {found:.1} +- {error:.1} J/mol of {expected:.1}");
+    assert!((found - expected).abs() < 4.5 * error, "{found} {expected} +- {error}");
+    // The check can fail: if each took only its share of the energy, nothing would change.
+    assert!(expected.abs() > 9.0 * error);
 }

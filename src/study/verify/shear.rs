@@ -47,7 +47,7 @@ pub fn viscosity(device: &Device, method: &str, particles: u64, seeds: u64) -> R
         scene.seed = seed;
         let mut model = model_from("shear", scene)?;
         model.plan.collision_limit = 1.0;
-        let grid = model.plan.grid.clone();
+        let grid = model.plan.grid;
         let stirred = move |particles: &mut [GpuParticle]| {
             for particle in particles {
                 let [x, y] = form(&grid, particle).map(|u| (START * speed * u) as f32);
