@@ -320,8 +320,11 @@ pub struct StabilityArguments {
     #[arg(long)]
     pub full: bool,
     /// Only say which axes there are
-    #[arg(long, conflicts_with_all = ["cases", "quick", "full", "markdown", "gpu", "out"])]
+    #[arg(long, conflicts_with_all = ["cases", "quick", "full", "markdown", "gpu", "out", "go_on"])]
     pub list: bool,
+    /// Keep the axes that the folder's stability.csv has whole: after an interruption
+    #[arg(long)]
+    pub go_on: bool,
     /// Also write the maps as a page in Markdown
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub markdown: Option<PathBuf>,

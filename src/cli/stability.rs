@@ -29,6 +29,9 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
     };
     let device = Device::open(raw.gpu.as_deref())?;
     let folder = raw.out.clone().unwrap_or_else(|| Path::new("results").join("stability"));
+    // Before the folder is made ready, which removes it.
+    let kept =
+        if raw.go_on { fs::read_to_string(folder.join(STABILITY_FILE)).unwrap_or_default() } else { String::new() };
     let folder = OutputFolder::create(&folder, raw.force)?;
     let info = &device.adapter().info;
     let driver = format!("{} {}", info.driver, info.driver_info);
@@ -36,8 +39,10 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
     let mut maps: Vec<Map<'_>> = Vec::new();
     let mut text = String::new();
     for axis in axes {
-        let mut points = Vec::new();
-        for &method in axis.methods {
+        let known = report::points_of(&kept, axis, effort);
+        let missing = if known.is_some() { &[][..] } else { axis.methods };
+        let mut points = known.unwrap_or_default();
+        for &method in missing {
             for &value in axis.values(effort) {
                 points.push(axis.run(&device, method, value, effort)?);
                 tracing::info!("{}: {} at {value} done", axis.name, method.name());

@@ -48,6 +48,7 @@ fn tank() -> (Scene, Measured) {
         bounds_max: [0.4, 0.4, 0.4],
         openings: vec![hole],
         smallest_gap: None,
+        wall_area: 1.0,
         probe_volumes: vec![],
         vents: vec![],
         heated: vec![],
@@ -175,6 +176,7 @@ fn free_flight_has_no_collisions() {
     assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("Knudsen number 1.641e-6"), "{:?}", plan.warnings);
     let thin = planned(|scene, _| {
         scene.model.method = Some(Method::None);
+        scene.orifices.clear();
         scene.chambers.iter_mut().for_each(|chamber| chamber.pressure = 1e-2);
     });
     assert_eq!(thin.unwrap().warnings, Vec::<String>::new());
@@ -239,6 +241,8 @@ fn warnings_fire() {
     warns("smallest passage", &|_, measured| measured.openings[0].length = 2e-3);
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
+    warns("wall hits", &|_, measured| measured.wall_area = 1e4);
+    warns("occupancy 0.", &|_, measured| measured.chamber_volumes = vec![2.304e-4, 0.057696]);
     warns("lost", &|scene, _| {
         scene.model.rounds = Some(1);
         scene.model.time_step = Some(3e-7);

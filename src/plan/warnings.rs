@@ -74,6 +74,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         table(Quantity::ProbeParticles, &format!("probe `{}` at the end of the run", probe.name), count, remedy)
     }));
     found.push(long_steps(decided));
+    found.push(busy_walls(measured, decided));
     if !method.has_rounds() {
         let remedy = "a smaller `time_step`";
         found.push(table(Quantity::Flight, "the time step", resolution.flight_over_cell, remedy));
@@ -156,6 +157,14 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
         return None;
     }
     Warning::beyond(Quantity::Step, bound, "the time step", x, &effect, remedy)
+}
+
+/// cbar dt S / (4 V), with cbar tau the mean free path.
+fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
+    let Decided { method, number_density, resolution, .. } = *decided;
+    let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
+    let hits = flown * measured.wall_area / (4.0 * measured.gas_volume);
+    Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
 }
 
 /// Heaviest over lightest of the gases that are there.

@@ -64,6 +64,8 @@ pub struct Shown<'a> {
     pub time: f64,
     pub step: f64,
     pub tallies: &'a Tallies,
+    /// Of all particles in the interval, together.
+    pub particle_steps: u64,
     /// Energy found over that which should be there, less 1.
     pub drift: f64,
     /// Of each vent: particles that left, and hits that were clipped, so far.
@@ -111,6 +113,7 @@ impl<'a> Guards<'a> {
             (0, self.lost_events(shown.tallies)),
             (0, self.dense(&shown.tallies.blocks)),
             (0, self.last_step(shown.step)),
+            (0, self.busy_walls(shown)),
             (0, self.table(Quantity::EnergyDrift, "the gas", shown.drift.abs(), "report it with the scene")),
         ];
         for (index, (vent, [left, clipped])) in self.scene.vents.iter().zip(shown.clipped).enumerate() {
@@ -168,6 +171,11 @@ impl<'a> Guards<'a> {
         let subject = format!("where {share:.0} % of the gas is");
         let remedy = "a smaller `diameter`, or more `particles`";
         self.table(Quantity::Occupancy, &subject, within as f64 / volume * per_density, remedy)
+    }
+
+    fn busy_walls(&self, shown: &Shown<'_>) -> Option<Warning> {
+        let hits = f64::from(shown.tallies.counters.bounces) / shown.particle_steps.max(1) as f64;
+        self.table(Quantity::WallHits, "the time step", hits, "a smaller `time_step`")
     }
 
     /// How far the step is from the ladder's smallest.
@@ -230,7 +238,7 @@ mod tests {
     }
 
     fn shown(tallies: &Tallies) -> Shown<'_> {
-        Shown { time: 1e-3, step: 0.0, tallies, drift: 0.0, clipped: &[] }
+        Shown { time: 1e-3, step: 0.0, tallies, particle_steps: 1000, drift: 0.0, clipped: &[] }
     }
 
     fn quantities(told: &[Told]) -> Vec<Quantity> {
@@ -249,7 +257,8 @@ mod tests {
             let number = (density(occupancy) * 1e-3) as u64;
             vec![BlockSum { number, energy: 0 }, BlockSum::default(), BlockSum::default(), BlockSum::default()]
         };
-        let calm = tallies(20, 1980, filled(0.29));
+        let mut calm = tallies(20, 1980, filled(0.29));
+        calm.counters.bounces = 100;
         let full_vents = vec![[1000, 9]; model.scene.vents.len()];
         let mut guards = Guards::new(&model.scene, plan, volumes.to_vec());
         let within = Shown { step, drift: 9e-6, clipped: &full_vents, ..shown(&calm) };
@@ -258,7 +267,10 @@ mod tests {
         let clipped = vec![[1000, 11]; model.scene.vents.len()];
         type Change<'a> = (Shown<'a>, Quantity, usize);
         let (many, dense) = (tallies(100, 1900, filled(0.29)), tallies(0, 0, filled(0.4)));
-        let cases: [Change<'_>; 5] = [
+        let mut busy = tallies(0, 0, Vec::new());
+        busy.counters.bounces = 101;
+        let cases: [Change<'_>; 6] = [
+            (Shown { step, ..shown(&busy) }, Quantity::WallHits, 1),
             (Shown { step, ..shown(&many) }, Quantity::LostCollisions, 1),
             (Shown { step, ..shown(&dense) }, Quantity::Occupancy, 1),
             (Shown { step: last, ..shown(&calm) }, Quantity::Halvings, 1),

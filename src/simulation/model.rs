@@ -52,6 +52,7 @@ impl Model {
             bounds_max,
             openings: found_openings(&scene, &vessel),
             smallest_gap: vessel.smallest_gap(),
+            wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
             probe_volumes: probe_volumes.clone(),
             vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
             heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),

@@ -2,17 +2,17 @@
 
 use std::f64::consts::PI;
 
-use crate::gas::kinetics::rigid_compressibility;
+use crate::gas::kinetics::{collision_time, rigid_compressibility};
 use crate::gpu::Device;
 use crate::plan::{Quantity, limit};
-use crate::scene::Method;
+use crate::scene::{Method, Shape};
 use crate::simulation::{Model, Options, audit_limits};
 use crate::study::StudyError;
 use crate::study::verify::collisions::{pressure_in, virial_error_of_cells, watched};
 use crate::study::verify::equilibrium::temperatures;
 use crate::study::verify::gas_box::{EDGE, EquilibriumBox, TEMPERATURE};
 use crate::study::verify::statistics::mean_of_series;
-use crate::study::verify::{Check, Run};
+use crate::study::verify::{Check, Run, model_from, scene_of};
 
 use super::{Effort, ROUNDS};
 
@@ -82,12 +82,12 @@ pub(super) fn of_any(model: &Model, run: &Run) -> Vec<Check> {
 /// Of gas at rest; `masses`: of each gas over the heaviest; `rigid`: p over n k T expected of rigid spheres.
 fn findings(
     device: &Device,
+    mut model: Model,
     gas: &EquilibriumBox<'_>,
     masses: &[f64],
     rigid: f64,
     hold_step: bool,
 ) -> Result<Vec<Check>, StudyError> {
-    let mut model = gas.model()?;
     let margin = gas.wall_layer();
     let core = |x: &f64| *x >= margin && *x <= EDGE - margin;
     let (mut visits, mut ends, mut time) = (0u64, 0u64, 0.0);
@@ -132,7 +132,7 @@ fn findings(
     if ends > 0 {
         let rate = ends as f64 / visits as f64 / expected;
         checks.push(Check::of("collision rate", 1.0, (rate, rate * (2.0 / ends as f64).sqrt()), RATE));
-    } else if model.plan.method == Method::Cell && masses.len() == 1 && gas.walls.is_empty() {
+    } else if model.plan.method == Method::Cell && masses.len() == 1 {
         let rate = 2.0 * run.outcome.collisions as f64 / (gas.particles as f64 * time) / expected;
         let error = rate / (run.outcome.collisions as f64).sqrt();
         checks.push(Check::of("collision rate", 1.0, (rate, error), RATE));
@@ -140,20 +140,25 @@ fn findings(
     Ok(checks)
 }
 
+/// One gas in its box, the step held.
+fn at_rest(device: &Device, gas: &EquilibriumBox<'_>, rigid: f64) -> Result<Vec<Check>, StudyError> {
+    findings(device, gas.model()?, gas, &[1.0], rigid, true)
+}
+
 pub(super) fn time_step(device: &Device, method: Method, x: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let gas = EquilibriumBox { step_over_tau: x, ..base(method, effort) };
-    findings(device, &lasting(gas, size(effort).1), &[1.0], rigid_pressure(), true)
+    at_rest(device, &lasting(gas, size(effort).1), rigid_pressure())
 }
 
 pub(super) fn rounds(device: &Device, method: Method, rounds: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let gas = EquilibriumBox { rounds: rounds as u32, ..base(method, effort) };
-    findings(device, &lasting(gas, size(effort).1), &[1.0], rigid_pressure(), true)
+    at_rest(device, &lasting(gas, size(effort).1), rigid_pressure())
 }
 
 /// Here rigid spheres are judged as a gas.
 pub(super) fn occupancy(device: &Device, method: Method, f: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let gas = EquilibriumBox { occupancy: f, ..base(method, effort) };
-    findings(device, &lasting(gas, size(effort).1), &[1.0], 1.0, true)
+    at_rest(device, &lasting(gas, size(effort).1), 1.0)
 }
 
 pub(super) fn particles(device: &Device, method: Method, count: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
@@ -161,22 +166,26 @@ pub(super) fn particles(device: &Device, method: Method, count: f64, effort: Eff
     let gas = EquilibriumBox { particles: count as u64, step_over_tau: 0.4, ..base(method, effort) };
     // As many collisions in all, within bounds.
     let longer = (usual as f64 / count).clamp(0.5, 20.0);
-    findings(device, &lasting(gas, collisions * longer), &[1.0], rigid_pressure(), true)
+    at_rest(device, &lasting(gas, collisions * longer), rigid_pressure())
 }
 
-/// A block over most of a wall, 2 cm thick, so that nothing collides through it.
+/// A box that is a slit: `width` diameters high.
 pub(super) fn gap(device: &Device, method: Method, width: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let plain = base(method, effort);
-    let slit = width * plain.diameter();
-    let (low, high) = (0.1 * EDGE, 0.9 * EDGE);
-    let walls = format!(
-        "[[wall]]\nname = \"block\"\nshape = \"box\"\nmin = [{low}, {low}, {slit:e}]\nmax = [{high}, {high}, {:e}]\n\
-         gas = \"outside\"\n[[surface]]\nname = \"slit\"\nwall = \"box\"\nface = \"-z\"\n",
-        slit + 0.02
-    );
-    let gas = EquilibriumBox { walls: &walls, ..plain };
-    let gas = lasting(gas, size(effort).1);
-    let checks = findings(device, &gas, &[1.0], rigid_pressure(), true)?;
+    let gas = lasting(base(method, effort), size(effort).1);
+    // n pi sigma^3 / 6 = f at a height of `width` sigma.
+    let diameter = EDGE * (6.0 * gas.occupancy * width / (PI * gas.particles as f64)).sqrt();
+    let height = width * diameter;
+    let mut scene = scene_of("slit", &gas.toml())?;
+    for wall in &mut scene.walls {
+        if let Shape::Box { max, .. } = &mut wall.shape {
+            max[2] = height;
+        }
+    }
+    let density = gas.particles as f64 / (EDGE * EDGE * height);
+    let step = gas.step_over_tau * collision_time(density, diameter, gas.thermal_speed().powi(2));
+    scene.model.time_step = Some(step);
+    scene.end_time = step * f64::from(gas.steps);
+    let checks = findings(device, model_from("slit", scene)?, &gas, &[1.0], rigid_pressure(), true)?;
     // Pairs do not meet behind walls, and there are many: their rate is no longer that of free space.
     Ok(checks.into_iter().filter(|check| check.quantity != "collision rate").collect())
 }
@@ -199,5 +208,5 @@ pub(super) fn mass_ratio(
     let longer = (0.5 * ratio.sqrt()).clamp(1.0, 4.0);
     let gas = lasting(gas, longer * size(effort).1);
     // Steps follow the light gas, as in any run.
-    findings(device, &gas, &[1.0 / ratio, 1.0], rigid_pressure(), false)
+    findings(device, gas.model()?, &gas, &[1.0 / ratio, 1.0], rigid_pressure(), false)
 }

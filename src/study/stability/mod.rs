@@ -207,7 +207,7 @@ pub const AXES: &[Axis] = &[
     Axis {
         name: "gap",
         what: "width of a slit over the collision diameter",
-        runs: "gas at rest around a block before a wall, and what presses the wall in the slit",
+        runs: "gas at rest in a slit, at the occupancy of time-step and x = 0.2",
         methods: COLLIDING,
         quick: &[2.0, 0.5],
         usual: &[2.0, 1.0, 0.5, 0.25],

@@ -8,7 +8,7 @@ use crate::plan::{LIMITS, significant};
 use crate::scene::Method;
 use crate::study::verify::Check;
 
-use super::{Axis, Point, State, first_broken};
+use super::{Axis, Effort, Point, State, first_broken};
 
 /// An axis and the points found along it.
 pub type Map<'a> = (&'a Axis, Vec<Point>);
@@ -32,6 +32,31 @@ pub fn csv(maps: &[Map<'_>]) -> String {
         }
     }
     text
+}
+
+/// The points of an axis in such a file; none where one of its runs is missing.
+pub fn points_of(csv: &str, axis: &Axis, effort: Effort) -> Option<Vec<Point>> {
+    let mut points: Vec<Point> = Vec::new();
+    for line in csv.lines().skip(1) {
+        let (before, after) = line.split_once(",\"")?;
+        let (quantity, figures) = after.split_once("\",")?;
+        let mut names = before.split(',');
+        if names.next()? != axis.name {
+            continue;
+        }
+        let method = names.next()?;
+        let method = axis.methods.iter().copied().find(|known| known.name() == method)?;
+        let value: f64 = names.next()?.parse().ok()?;
+        let figures: Vec<f64> = figures.split(',').take(4).map(str::parse).collect::<Result<_, _>>().ok()?;
+        let [reference, measured, error, tolerance] = figures[..] else { return None };
+        let check = Check::of(quantity, reference, (measured, error), tolerance);
+        match points.last_mut() {
+            Some(last) if (last.method, last.value) == (method, value) => last.checks.push(check),
+            _ => points.push(Point { method, value, checks: vec![check] }),
+        }
+    }
+    let wanted = axis.methods.iter().flat_map(|&method| axis.values(effort).iter().map(move |&value| (method, value)));
+    points.iter().map(|point| (point.method, point.value)).eq(wanted).then_some(points)
 }
 
 /// What a cell of a map says: the worst quantity and how many times its allowance it is off.
@@ -214,6 +239,14 @@ mod tests {
         let maps = [map];
         let csv = csv(&maps);
         assert!(csv.contains("time-step,cell,2,\"pressure, p/nkT\",1,1.032e0,1e-3,1e-2,broken,at most 2\n"), "{csv}");
+        let quick = format!("{csv}time-step,cell,0.2,\"a\",0,0,0,1,holds,\n");
+        assert!(points_of(&quick, axis, Effort::Quick).is_none(), "some runs are missing");
+        let of =
+            |method: &str, value| format!("time-step,{method},{value},\"pressure, p/nkT\",1,1.5e0,1e-3,1e-2,broken,\n");
+        let whole: String = axis.methods.iter().flat_map(|m| [of(m.name(), 0.2), of(m.name(), 2.0)]).collect();
+        let kept = points_of(&format!("head\n{whole}"), axis, Effort::Quick).unwrap();
+        assert_eq!((kept.len(), kept[5].method, kept[5].value), (6, Method::Cell, 2.0));
+        assert_eq!(kept[0].checks, [Check::of("pressure, p/nkT", 1.0, (1.5, 0.001), 0.01)]);
         let page = page(&maps, "corpuscle stability time-step", "a device");
         for part in [
             "| method | 0.5 | 2 |",
