@@ -28,10 +28,6 @@ pub enum Quantity {
     WallHits,
     /// The narrowest passage over the collision diameter; of cells, over their edge.
     Gap,
-    /// Heaviest over lightest gas.
-    MassRatio,
-    /// Of an orifice's jet.
-    Mach,
     /// What |v| dt of 99.9 % of the particles is at most, in cells.
     Flight,
     /// Halvings of the step that are left before the smallest.
@@ -54,8 +50,6 @@ impl Quantity {
             Quantity::ProbeParticles => "particles in it",
             Quantity::WallHits => "wall hits per particle and step",
             Quantity::Gap => "smallest passage over what collides across it",
-            Quantity::MassRatio => "mass ratio of the gases",
-            Quantity::Mach => "Mach number",
             Quantity::Flight => "cells flown in a step",
             Quantity::Halvings => "halvings of the step left",
             Quantity::EnergyDrift => "drift of the energy",

@@ -242,7 +242,7 @@ fn warnings_fire() {
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
     warns("wall hits", &|_, measured| measured.wall_area = 1e4);
-    warns("occupancy 0.", &|_, measured| measured.chamber_volumes = vec![2.304e-4, 0.057696]);
+    warns("chamber `inner box` at the start: occupancy 0.", &|scene, _| scene.chambers[0].pressure = 1e6);
     warns("lost", &|scene, _| {
         scene.model.rounds = Some(1);
         scene.model.time_step = Some(3e-7);

@@ -79,22 +79,6 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         let remedy = "a smaller `time_step`";
         found.push(table(Quantity::Flight, "the time step", resolution.flight_over_cell, remedy));
     }
-    found.push(unequal_masses(scene, decided));
-    found.extend(
-        scene
-            .orifices
-            .iter()
-            .filter_map(|orifice| {
-                let subject = format!("the jet of orifice `{}`", orifice.name);
-                table(
-                    Quantity::Mach,
-                    &subject,
-                    orifice.jet?.mach,
-                    "a wider orifice with a slower jet of the same enthalpy",
-                )
-            })
-            .map(Some),
-    );
     found.into_iter().flatten().map(|warning| warning.text).collect()
 }
 
@@ -165,16 +149,6 @@ fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
     let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
     let hits = flown * measured.wall_area / (4.0 * measured.gas_volume);
     Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
-}
-
-/// Heaviest over lightest of the gases that are there.
-fn unequal_masses(scene: &Scene, decided: &Decided<'_>) -> Option<Warning> {
-    let initial = scene.chambers.iter().flat_map(|chamber| &chamber.mixture.0);
-    let injected = scene.orifices.iter().flat_map(|orifice| &orifice.mixture.0);
-    let masses = initial.chain(injected).map(|&(gas, _)| scene.gases[gas].molar_mass);
-    let (low, high) = masses.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), m| (low.min(m), high.max(m)));
-    let remedy = "smaller steps, and longer runs before temperatures are compared";
-    Warning::by_table(Quantity::MassRatio, decided.method, "the mixture", high / low, remedy)
 }
 
 /// Free flight is right where molecules do not meet either: their mean free path k T / (sqrt2 pi p d^2) over the
