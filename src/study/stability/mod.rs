@@ -33,6 +33,9 @@ pub enum Effort {
     Full,
 }
 
+/// A run of a method with a value of the axis.
+type Runner = fn(&Device, Method, f64, Effort) -> Result<Vec<Check>, StudyError>;
+
 /// What is varied, and what a run with a value of it shows.
 pub struct Axis {
     pub name: &'static str,
@@ -46,7 +49,7 @@ pub struct Axis {
     full: &'static [f64],
     /// That which guards runs.
     limit: fn(Method) -> Option<Bound>,
-    run: fn(&Device, Method, f64, Effort) -> Result<Vec<Check>, StudyError>,
+    run: Runner,
 }
 
 impl Axis {
