@@ -56,6 +56,8 @@ pub enum Verb {
     Verify(VerifyArguments),
     /// Chart error against device time over methods and settings, for a case with a known answer
     Pareto(ParetoArguments),
+    /// Map where the methods fail: which quantity breaks first along an axis, and by how much
+    Stability(StabilityArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -125,6 +127,9 @@ pub struct ExecutionArguments {
     /// Stop after that many steps since the start of the run, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
+    /// Stop at the first warning, of the plan or of the run, as an error
+    #[arg(long)]
+    pub strict: bool,
     /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
     #[arg(long, value_name = "STEPS|WALLTIME")]
     pub checkpoint_every: Option<CheckpointEvery>,
@@ -352,12 +357,47 @@ pub enum MethodName {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct StabilityArguments {
+    /// The axes to map, or `all`
+    #[arg(value_name = "CASE", required_unless_present = "list")]
+    pub cases: Vec<String>,
+    /// Few values, known badly: to see that it works
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// More values and more particles: hours on a CPU
+    #[arg(long)]
+    pub full: bool,
+    /// Only say which axes there are
+    #[arg(long, conflicts_with_all = ["cases", "quick", "full", "markdown", "gpu", "out", "go_on"])]
+    pub list: bool,
+    /// Keep the axes that the folder's stability.csv has whole: after an interruption
+    #[arg(long)]
+    pub go_on: bool,
+    /// Also write the maps as a page in Markdown
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub markdown: Option<PathBuf>,
+    /// The folder for the results [default: results/stability]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Write into a folder that holds more than earlier results
+    #[arg(long)]
+    pub force: bool,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+}
+
+#[derive(Debug, Args)]
 pub struct PlanArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// As TOML, with everything that is in the plan.toml of a run
     #[arg(long)]
     pub toml: bool,
+    /// Warnings are errors
+    #[arg(long)]
+    pub strict: bool,
 }
 
 #[derive(Debug, Args)]

@@ -99,6 +99,12 @@ pub enum CliError {
         "FAIL: off by more than the tolerance; UNCLEAR: the run knows too little. Please report it with the adapter and driver"
     ))]
     Verification { failed: usize, checks: usize },
+    #[error("{}: --strict, and the plan warns:{}", scene.display(), list(warnings))]
+    #[diagnostic(help("each warning says what to change; without --strict the run would start"))]
+    PlanWarnings { scene: PathBuf, warnings: Vec<String> },
+    #[error("--strict, and the run warns:{}", list(warnings))]
+    #[diagnostic(help("the results are written; without --strict this would be no error"))]
+    RunWarnings { warnings: Vec<String> },
     #[error("the audit failed:{}", list(failures))]
     #[diagnostic(help("the results are written, and cannot be trusted; please report it with the scene"))]
     Audit { failures: Vec<String> },
@@ -123,8 +129,11 @@ impl CliError {
                 SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
             ) => DEVICE_TROUBLE,
             CliError::Audit { .. }
+            | CliError::RunWarnings { .. }
             | CliError::Verification { .. }
-            | CliError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
+            | CliError::Simulation(
+                SimulationError::Lost { .. } | SimulationError::Ladder { .. } | SimulationError::Guard { .. },
+            ) => AUDIT_FAILED,
             CliError::Simulation(
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)
@@ -139,6 +148,7 @@ impl CliError {
             | CliError::Scene(_)
             | CliError::Model { .. }
             | CliError::Check { .. }
+            | CliError::PlanWarnings { .. }
             | CliError::Output(_)
             | CliError::Checkpoint(_)
             | CliError::Refine(_)

@@ -17,6 +17,7 @@ mod resume;
 mod run;
 mod schema;
 mod settings;
+mod stability;
 mod sweep;
 mod terminal;
 mod verify;
@@ -61,6 +62,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Verify(raw) => verify::verify(raw),
         Verb::Pareto(raw) => pareto::pareto(raw),
+        Verb::Stability(raw) => stability::stability(raw),
         Verb::Check(raw) => check::check(raw),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),

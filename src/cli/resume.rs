@@ -36,7 +36,7 @@ pub fn resume(raw: ResumeArguments, quiet: bool) -> Result<(), CliError> {
             return Err(CliError::StepsDone { asked, done });
         }
         let folder = run_folder(&raw.from, checkpoint.path());
-        let settings = RunSettings { model, folder, force: false, execution };
+        let settings = RunSettings { scene, model, folder, force: false, execution };
         launch(&settings, Some(Beginning::new(checkpoint)?), comm, quiet, started)
     })
 }

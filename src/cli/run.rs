@@ -70,6 +70,10 @@ pub fn launch(
         return Err(CliError::SubdomainsOfRanks { asked: subdomains, ranks: comm.size() });
     }
     let model = &settings.model;
+    if execution.strict && !model.plan.warnings.is_empty() {
+        let (scene, warnings) = (settings.scene.clone(), model.plan.warnings.clone());
+        return Err(CliError::PlanWarnings { scene, warnings });
+    }
     if comm.rank() == 0 {
         for warning in &model.plan.warnings {
             tracing::warn!("{warning}");
@@ -139,6 +143,7 @@ impl Job<'_> {
         let options = Options {
             batch: execution.batch,
             stop_after_steps: execution.stop_after_steps,
+            strict: execution.strict,
             checkpoint_at_stop: execution.checkpoints.every.is_some(),
             halo: execution.sharing.halo,
             balance: execution.sharing.balance,
@@ -150,8 +155,11 @@ impl Job<'_> {
         };
         let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         if comm.rank() > 0 {
-            let outcome = simulation.run(&mut checkpoints)?;
-            timing::of_ranks(comm, &outcome)?;
+            match simulation.run(&mut checkpoints) {
+                // All ranks stop there alike; rank 0 says it.
+                Err(SimulationError::Guard { .. }) => {}
+                done => drop(timing::of_ranks(comm, &done?)?),
+            }
             return Ok(());
         }
         let adapter = record(device);
@@ -171,7 +179,7 @@ impl Job<'_> {
         recorder.finish(&outcome)?;
         timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         if outcome.time >= model.plan.end_time {
-            folder.end(&format!("{}\n{}", outcome.audit.render(), totals(&outcome)))?;
+            folder.end(&format!("{}\n{}{}", outcome.audit.render(), totals(&outcome), warned(&outcome)))?;
         }
         self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
     }
@@ -200,7 +208,8 @@ impl Job<'_> {
 
     fn tell(&self, outcome: &Outcome, set_up: Duration, folder: &OutputFolder, stopped: bool) -> Result<(), CliError> {
         let limits = audit_limits(&self.settings.model.plan);
-        for warning in outcome.audit.warnings(&limits) {
+        let warnings = outcome.audit.warnings(&limits);
+        for warning in &warnings {
             tracing::warn!("{warning}");
         }
         if !self.quiet {
@@ -218,7 +227,13 @@ impl Job<'_> {
         }
         say(&format!("{}\n", folder.path().display()))?;
         let failures = outcome.audit.verdict(&limits);
-        if failures.is_empty() { Ok(()) } else { Err(CliError::Audit { failures }) }
+        if !failures.is_empty() {
+            return Err(CliError::Audit { failures });
+        }
+        if self.settings.execution.strict && !warnings.is_empty() {
+            return Err(CliError::RunWarnings { warnings });
+        }
+        Ok(())
     }
 }
 
@@ -275,6 +290,11 @@ fn totals(outcome: &Outcome) -> String {
     )
 }
 
+/// What has left its limits, a line each.
+fn warned(outcome: &Outcome) -> String {
+    outcome.warnings.iter().map(|told| format!("warning {told}\n")).collect()
+}
+
 /// The audit, the phase table and the totals.
 fn summary(outcome: &Outcome) -> String {
     let mut text = format!("\n{}\n", outcome.audit.render());
@@ -285,6 +305,7 @@ fn summary(outcome: &Outcome) -> String {
     }
     text += "\n";
     text += &totals(outcome);
+    text += &warned(outcome);
     if outcome.repeated > 0 {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{} intervals were run again with longer neighbour lists", outcome.repeated);

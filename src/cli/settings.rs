@@ -32,6 +32,8 @@ pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
 
 /// A run as it will be done.
 pub struct RunSettings {
+    /// The file that it is from, for messages.
+    pub scene: PathBuf,
     pub model: Model,
     pub folder: PathBuf,
     pub force: bool,
@@ -47,15 +49,17 @@ pub struct Execution {
     pub batch: Option<u32>,
     /// Since the start of the run.
     pub stop_after_steps: Option<u64>,
+    /// Warnings are errors.
+    pub strict: bool,
     pub sharing: Sharing,
     pub checkpoints: Wanted,
 }
 
 impl Execution {
     pub fn new(raw: ExecutionArguments) -> Result<Execution, CliError> {
-        let ExecutionArguments { gpu, batch, steps, checkpoint_every, stop_after, sharing } = raw;
+        let ExecutionArguments { gpu, batch, steps, strict, checkpoint_every, stop_after, sharing } = raw;
         let checkpoints = Wanted { every: checkpoint_every, stop_after };
-        Ok(Execution { gpu, batch, stop_after_steps: steps, sharing: Sharing::new(&sharing)?, checkpoints })
+        Ok(Execution { gpu, batch, stop_after_steps: steps, strict, sharing: Sharing::new(&sharing)?, checkpoints })
     }
 }
 
@@ -113,7 +117,7 @@ impl RunSettings {
         let model = model_of(path, scene_of(&raw.scene)?)?;
         let folder = raw.out.unwrap_or_else(|| default_folder(path));
         let execution = Execution::new(raw.execution)?;
-        Ok(RunSettings { model, folder, force: raw.force, execution })
+        Ok(RunSettings { scene: path.clone(), model, folder, force: raw.force, execution })
     }
 }
 

@@ -9,6 +9,7 @@ mod blocks;
 mod cell_gas;
 mod closed;
 mod error;
+mod gaps;
 mod grid;
 mod lines;
 mod mesh_file;

@@ -30,6 +30,9 @@ pub const PARETO_TABLE_FILE: &str = "pareto.txt";
 pub const PARETO_CHART_FILE: &str = "pareto.svg";
 /// Mean and spread over the seeds of a repeated run.
 pub const HISTORY_MEAN_FILE: &str = "history_mean.csv";
+pub const STABILITY_FILE: &str = "stability.csv";
+pub const STABILITY_TABLE_FILE: &str = "stability.txt";
+pub const STABILITY_CHART_FILE: &str = "stability.svg";
 pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
@@ -37,7 +40,7 @@ pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run or a study writes at the top of its folder, apart from the snapshots and checkpoints.
-const RESULT_FILES: [&str; 18] = [
+const RESULT_FILES: [&str; 21] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
@@ -56,6 +59,9 @@ const RESULT_FILES: [&str; 18] = [
     PARETO_TABLE_FILE,
     PARETO_CHART_FILE,
     HISTORY_MEAN_FILE,
+    STABILITY_FILE,
+    STABILITY_TABLE_FILE,
+    STABILITY_CHART_FILE,
 ];
 
 const SEED_PREFIX: &str = "seed-";

@@ -14,6 +14,7 @@ mod environment;
 mod error;
 mod folder;
 mod history;
+mod map;
 mod phases;
 mod progress;
 mod scatter;
@@ -38,10 +39,11 @@ pub use error::OutputError;
 pub use folder::{
     AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, OutputFolder,
     PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
-    SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE,
-    seed_folder,
+    STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE, SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE,
+    SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE, seed_folder,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
+pub use map::{MapCell, MapRow, map_chart};
 pub use phases::PhaseTable;
 pub use progress::Progress;
 pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};

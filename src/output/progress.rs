@@ -88,6 +88,14 @@ impl Progress {
         }
     }
 
+    /// As [`Progress::note`], of what has gone wrong.
+    pub fn warn(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| tracing::warn!("{text}")),
+            None => tracing::warn!("{text}"),
+        }
+    }
+
     /// Ends the display and states this process's steps and rates.
     pub fn finish(&mut self, time: f64, steps: u64, particle_steps: u64) {
         if let Some(bar) = &self.bar {

@@ -9,7 +9,7 @@ use super::population::{Population, openings, wanted};
 use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
-use super::warnings::warnings;
+use super::warnings::{Decided, warnings};
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::{Species, kinetics};
 use crate::geometry::Grid;
@@ -71,7 +71,16 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         })
         .collect();
     let occupancy = kinetics::occupancy(number_density, resolution.diameter);
-    let mut warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
+    let chambers = chambers(scene, measured, population.initial);
+    let decided = Decided {
+        method,
+        particles,
+        number_density,
+        resolution: &resolution,
+        chambers: &chambers,
+        openings: &openings,
+    };
+    let mut warnings = warnings(scene, measured, &decided);
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, &vents, measured));
     warnings.extend(motion::warnings(scene, &species, measured));
@@ -98,7 +107,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         end_time: scene.end_time,
         estimated_steps: resolution.steps as f64,
         grid,
-        chambers: chambers(scene, measured, population.initial),
+        chambers,
         gases,
         openings,
         vents,

@@ -18,6 +18,7 @@ mod control_volume;
 mod decide;
 mod error;
 mod heat;
+mod limits;
 mod motion;
 mod population;
 mod render;
@@ -32,6 +33,8 @@ use serde::Serialize;
 
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
+pub use limits::{Bound, LIMITS, Limit, Quantity, Warning, limit, step_limit};
+pub use render::significant;
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +48,12 @@ pub struct Measured {
     pub bounds_max: [f64; 3],
     /// The openings found from the holes of the walls; those declared in the scene are added.
     pub openings: Vec<Opening>,
-    /// The narrowest passage of the gas, m, where it is known.
+    /// The narrowest passage of the gas between walls that face each other, m, where one was found.
     pub smallest_gap: Option<f64>,
+    /// m2, of all walls.
+    pub wall_area: f64,
+    /// m3 of gas, one per probe of the scene.
+    pub probe_volumes: Vec<f64>,
     /// Of each vent of the scene.
     pub vents: Vec<MeasuredVent>,
     /// Indices of a wall that exchanges heat and of a chamber that it borders on.

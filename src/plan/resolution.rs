@@ -1,6 +1,7 @@
 //! Diameter, rounds, time step and cell edge.
 
 use super::error::MOST_ROUNDS;
+use super::limits::step_limit;
 use super::render::significant;
 use super::{PlanError, Reason};
 use crate::gas::kinetics;
@@ -10,8 +11,6 @@ use crate::scene::{Method, ModelRequest};
 const PER_CELL: f64 = 6.0;
 /// In thin gas: one thread collides all of a cell.
 const MOST_PER_CELL: f64 = 20.0;
-/// Largest x of the method `cell`.
-const CELL_LIMIT: f64 = 2.0;
 /// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
 const DEFAULT_OCCUPANCY: f64 = 0.12;
 /// Of rigid spheres, whose pressure is 4 % off there.
@@ -60,21 +59,6 @@ pub struct Resolution {
     pub flight_over_cell: f64,
 }
 
-/// Largest x with at most 2 % of the events lost: specification, section 2, for up to four rounds; for
-/// eight, measured in `tests/verification`; between them by steps.
-fn collision_limit(rounds: u32) -> f64 {
-    match rounds {
-        1 => 0.02,
-        2 => 0.1,
-        3 => 0.2,
-        4 => 0.3,
-        5 => 0.35,
-        6 => 0.4,
-        7 => 0.45,
-        _ => 0.5,
-    }
-}
-
 impl Resolution {
     /// `states`: the mean states at the start and the end; sizes follow that at the end.
     pub fn choose(
@@ -116,7 +100,7 @@ impl Resolution {
         if rounds == 0 || rounds > MOST_ROUNDS {
             return Err(PlanError::Rounds { found: rounds, limit: MOST_ROUNDS });
         }
-        let limit = collision_limit(rounds);
+        let limit = step_limit(method, rounds);
         let why = match request.rounds {
             Some(_) => format!("asked for; at most 2 % of collisions are lost up to dt = {limit} tau"),
             None => format!(
@@ -176,6 +160,7 @@ impl Resolution {
         let mut because = |quantity: &str, value: String, why: String| {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
+        let limit = step_limit(Method::Cell, 0);
         let density = states[1].number_density;
         let (diameter, why) = diameter(Method::Cell, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
@@ -196,25 +181,24 @@ impl Resolution {
             .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
             .fold(f64::INFINITY, f64::min);
         let speed = FAST_PARTICLE * extreme.0.sqrt();
-        let (by_cell, by_rate) = (cell / (SURELY_FAST * extreme.0.sqrt()), CELL_LIMIT * tau);
+        let (by_cell, by_rate) = (cell / (SURELY_FAST * extreme.0.sqrt()), limit * tau);
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None if by_cell <= by_rate => {
                 (by_cell, "99.97 % of the hottest particles fly no further than a cell".to_string())
             }
-            None => (by_rate, format!("{CELL_LIMIT} mean collision times")),
+            None => (by_rate, format!("{limit} mean collision times")),
         };
         let (time_step, steps) = divide(end_time, wanted);
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
         let collisions_per_step = time_step / tau;
         let in_cell = 0.5 * density * cell * cell * cell * collisions_per_step;
-        let why =
-            format!("expected in a step; {} per particle, {CELL_LIMIT} at most", significant(collisions_per_step));
+        let why = format!("expected in a step; {} per particle, {limit} at most", significant(collisions_per_step));
         because("collisions per cell", significant(in_cell), why);
         Self {
             diameter,
             rounds: 0,
-            collision_limit: CELL_LIMIT,
+            collision_limit: limit,
             time_step,
             steps,
             cell,

@@ -49,6 +49,8 @@ fn tank() -> (Scene, Measured) {
         bounds_max: [0.4, 0.4, 0.4],
         openings: vec![hole],
         smallest_gap: None,
+        wall_area: 1.0,
+        probe_volumes: vec![],
         vents: vec![],
         heated: vec![],
         motion: None,
@@ -171,7 +173,15 @@ fn particles_are_chosen_by_noise_or_resolution() {
 fn free_flight_has_no_collisions() {
     let plan = planned(|scene, _| scene.model.method = Some(Method::None)).unwrap();
     assert_eq!((plan.diameter, plan.rounds, plan.occupancy), (0.0, 0, 0.0));
-    assert!(plan.mean_free_path.is_infinite() && plan.warnings.is_empty());
+    assert!(plan.mean_free_path.is_infinite());
+    // At the pressure of the atmosphere molecules do collide.
+    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("Knudsen number 1.641e-6"), "{:?}", plan.warnings);
+    let thin = planned(|scene, _| {
+        scene.model.method = Some(Method::None);
+        scene.orifices.clear();
+        scene.chambers.iter_mut().for_each(|chamber| chamber.pressure = 1e-2);
+    });
+    assert_eq!(thin.unwrap().warnings, Vec::<String>::new());
     assert!(near(plan.grid.cell, kinetics::mean_spacing(plan.particles as f64 / 0.06), 1e-12));
     let speed = 4.0 * kinetics::thermal_square(980.0, 0.0280134).sqrt();
     assert!(speed * plan.time_step < plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
@@ -233,6 +243,8 @@ fn warnings_fire() {
     warns("smallest passage", &|_, measured| measured.openings[0].length = 2e-3);
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
+    warns("wall hits", &|_, measured| measured.wall_area = 1e4);
+    warns("chamber `inner box` at the start: occupancy 0.", &|scene, _| scene.chambers[0].pressure = 1e6);
     warns("lost", &|scene, _| {
         scene.model.rounds = Some(1);
         scene.model.time_step = Some(3e-7);
@@ -241,7 +253,7 @@ fn warnings_fire() {
         scene.model.method = Some(Method::None);
         scene.model.time_step = Some(3e-6);
     });
-    for part in ["fly", "mean collision times"] {
+    for part in ["fly", "over collision time"] {
         warns(part, &|scene, _| {
             scene.model.method = Some(Method::Cell);
             scene.model.time_step = Some(3e-5);

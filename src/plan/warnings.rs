@@ -1,15 +1,16 @@
-//! What a plan will do less well than its user may expect.
+//! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
-use super::population::WANTED_KNUDSEN;
+use super::limits::{Bound, Quantity, Warning, step_limit};
 use super::render::significant;
 use super::resolution::Resolution;
-use super::{Measured, OpeningPlan};
+use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
-use crate::scene::Method;
+use crate::scene::{Method, Scene};
 
-const FEW_PARTICLES: u64 = 1000;
-const MOST_LOST: f64 = 0.03;
-const DENSE: f64 = 0.3;
+/// Of an air molecule as a rigid sphere, m (nitrogen 3.7e-10; helium 2.2e-10, SF6 5.5e-10: handbooks, from viscosities).
+const MOLECULE: f64 = 3.7e-10;
+/// J/K.
+const BOLTZMANN: f64 = 1.380_649e-23;
 
 /// Share of collision events lost, by x = dt/tau (first column) for 1 to 4 rounds (specification,
 /// section 2; measured at f = .1, +-.01; gains taken as zero).
@@ -37,80 +38,127 @@ pub fn lost_events(collisions_per_step: f64, rounds: u32) -> f64 {
     share * LOST[5][column]
 }
 
-pub fn warnings(
-    method: Method,
-    particles: u64,
-    occupancy: f64,
-    resolution: &Resolution,
-    openings: &[OpeningPlan],
-    measured: &Measured,
-) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if particles < FEW_PARTICLES {
-        warnings.push(format!("{particles} particles are few: pressures will be noise; {FEW_PARTICLES} is a start"));
-    }
-    let collides = method != Method::None;
-    for opening in openings.iter().filter(|opening| collides && opening.knudsen > WANTED_KNUDSEN) {
-        warnings.push(format!(
-            "opening `{}` has a Knudsen number of {}: its flow is off by 7 % or more; {WANTED_KNUDSEN} takes {:.1} \
-             times the particles",
-            opening.name,
-            significant(opening.knudsen),
+/// What has been decided so far.
+pub struct Decided<'a> {
+    pub method: Method,
+    pub particles: u64,
+    /// Particles per m3 at the end.
+    pub number_density: f64,
+    pub resolution: &'a Resolution,
+    pub chambers: &'a [ChamberPlan],
+    pub openings: &'a [OpeningPlan],
+}
+
+pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Vec<String> {
+    let Decided { method, particles, number_density, resolution, openings, .. } = *decided;
+    let table =
+        |quantity, subject: &str, value, remedy: &str| Warning::by_table(quantity, method, subject, value, remedy);
+    let mut found = Vec::new();
+    found.push(table(Quantity::Particles, "the run", particles as f64, "more `particles`"));
+    if method == Method::None {
+        found.extend(free_molecules(scene, measured, openings));
+    } else {
+        found.extend(openings.iter().map(|opening| {
+            let wanted = super::limits::limit(Quantity::Knudsen, method).map_or(f64::NAN, |l| l.bound.value());
             // lambda ~ d at fixed occupancy, d ~ N^(-1/3).
-            (opening.knudsen / WANTED_KNUDSEN).powi(3)
-        ));
+            let times = (opening.knudsen / wanted).powi(3);
+            let remedy = format!("{times:.1} times the particles, or a modelled vent");
+            table(Quantity::Knudsen, &format!("opening `{}`", opening.name), opening.knudsen, &remedy)
+        }));
+        found.push(dense(decided));
+        found.push(narrow(measured, decided));
     }
-    let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
-    if method == Method::HardSphere {
-        warnings.push(format!(
-            "rigid spheres at occupancy {} press {:.1} % harder than the ideal gas (Carnahan-Starling), more in denser gas: \
-             `hard-sphere` is for comparison with legacy results only",
-            significant(occupancy),
+    found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
+        let count = number_density * volume;
+        let remedy = "a larger region, or more `particles`";
+        table(Quantity::ProbeParticles, &format!("probe `{}` at the end of the run", probe.name), count, remedy)
+    }));
+    found.push(long_steps(decided));
+    found.push(busy_walls(measured, decided));
+    if !method.has_rounds() {
+        let remedy = "a smaller `time_step`";
+        found.push(table(Quantity::Flight, "the time step", resolution.flight_over_cell, remedy));
+    }
+    found.into_iter().flatten().map(|warning| warning.text).collect()
+}
+
+/// The densest state that is known: the mean at the end, or a chamber at the start.
+fn dense(decided: &Decided<'_>) -> Option<Warning> {
+    let Decided { method, resolution, .. } = *decided;
+    let of_chamber = |chamber: &ChamberPlan| {
+        let density = chamber.particles.iter().sum::<u64>() as f64 / chamber.volume;
+        (density, format!("chamber `{}` at the start", chamber.name))
+    };
+    let at_end = (decided.number_density, "the gas at the end".to_string());
+    let (density, subject) =
+        decided.chambers.iter().map(of_chamber).fold(at_end, |most, next| if next.0 > most.0 { next } else { most });
+    let occupancy = kinetics::occupancy(density, resolution.diameter);
+    let remedy = match method {
+        // Carnahan and Starling's formula has a pole at 1.
+        Method::HardSphere if occupancy < 0.7 => format!(
+            "they press {:.1} % harder (Carnahan-Starling); `hard-sphere` is for comparison with legacy results only",
             100.0 * (kinetics::rigid_compressibility(occupancy) - 1.0)
-        ));
+        ),
+        _ => "a smaller `occupancy` or `diameter`".to_string(),
+    };
+    Warning::by_table(Quantity::Occupancy, method, &subject, occupancy, &remedy)
+}
+
+/// Passages that gas collides across as if they were not there.
+fn narrow(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
+    let Decided { method, resolution, openings, .. } = *decided;
+    let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
+    let (length, what) = match method {
+        Method::Cell => (resolution.cell, "cell"),
+        _ => (resolution.diameter, "collision diameter"),
+    };
+    let subject = format!(
+        "the smallest passage, {} mm, with a {what} of {} mm",
+        significant(1e3 * smallest),
+        significant(1e3 * length)
+    );
+    Warning::by_table(Quantity::Gap, method, &subject, smallest / length, "more `particles`, or a modelled vent")
+}
+
+/// The largest of the ladder; a run takes shorter steps where it must.
+fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
+    let Decided { method, resolution, .. } = *decided;
+    if method == Method::None {
+        return None;
     }
-    if method.has_rounds() && resolution.diameter > smallest {
-        warnings.push(format!(
-            "the collision diameter of {} mm is larger than the smallest passage, {} mm: gas on its two sides will \
-             collide through it",
-            significant(1e3 * resolution.diameter),
-            significant(1e3 * smallest)
-        ));
+    let x = resolution.collisions_per_step;
+    let limit = step_limit(method, resolution.rounds);
+    let (effect, remedy) = if method.has_rounds() {
+        let lost = 100.0 * lost_events(x, resolution.rounds);
+        let effect = format!("about {lost:.0} % of the collisions of {} rounds would be lost", resolution.rounds);
+        (effect, "the run takes shorter ones; a smaller `time_step`, or more `rounds`")
+    } else {
+        ("the gas of a cell changes within the step".to_string(), "the run takes shorter ones; a smaller `time_step`")
+    };
+    // A step that is the limit by the plan's own choice may be rounded beyond it.
+    let bound = Bound::AtMost(limit);
+    if x <= limit * (1.0 + 1e-9) {
+        return None;
     }
-    if occupancy > DENSE {
-        warnings.push(format!("an occupancy of {} costs search time and buys no resolution", significant(occupancy)));
-    }
-    if method.has_rounds() {
-        let lost = lost_events(resolution.collisions_per_step, resolution.rounds);
-        if lost > MOST_LOST {
-            warnings.push(format!(
-                "about {:.0} % of the collisions will be lost: the time step is {} of the collision time, the limit \
-                 for {} rounds {}",
-                100.0 * lost,
-                significant(resolution.collisions_per_step),
-                resolution.rounds,
-                resolution.collision_limit
-            ));
-        }
-    } else if resolution.flight_over_cell > 1.0001 {
-        warnings.push(format!(
-            "the time step lets particles fly {} cells at once",
-            significant(resolution.flight_over_cell)
-        ));
-    }
-    if method == Method::Cell && resolution.collisions_per_step > resolution.collision_limit {
-        warnings.push(format!(
-            "the time step is {} mean collision times, the limit of `cell` is {}: shorter ones will be taken",
-            significant(resolution.collisions_per_step),
-            resolution.collision_limit
-        ));
-    }
-    if method == Method::Cell && resolution.cell > smallest {
-        warnings.push(format!(
-            "a cell of {} mm is larger than the smallest passage, {} mm: the gas in it is not resolved",
-            significant(1e3 * resolution.cell),
-            significant(1e3 * smallest)
-        ));
-    }
-    warnings
+    Warning::beyond(Quantity::Step, bound, "the time step", x, &effect, remedy)
+}
+
+/// cbar dt S / (4 V), with cbar tau the mean free path.
+fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
+    let Decided { method, number_density, resolution, .. } = *decided;
+    let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
+    let hits = flown * measured.wall_area / (4.0 * measured.gas_volume);
+    Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
+}
+
+/// Free flight is right where molecules do not meet either: their mean free path k T / (sqrt2 pi p d^2) over the
+/// smallest passage, or the size of the vessel.
+fn free_molecules(scene: &Scene, measured: &Measured, openings: &[OpeningPlan]) -> Option<Option<Warning>> {
+    let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
+    let length = smallest.min(libm::cbrt(measured.gas_volume));
+    let dense = |chamber: &crate::scene::Chamber| chamber.pressure / chamber.temperature;
+    let densest = scene.chambers.iter().max_by(|a, b| dense(a).total_cmp(&dense(b)))?;
+    let path = BOLTZMANN / (std::f64::consts::SQRT_2 * std::f64::consts::PI * dense(densest) * MOLECULE * MOLECULE);
+    let subject = format!("the molecules of chamber `{}`", densest.name);
+    Some(Warning::by_table(Quantity::Knudsen, Method::None, &subject, path / length, "another `method`"))
 }

@@ -78,6 +78,11 @@ impl AccountState {
     pub fn left(&self) -> u64 {
         self.left
     }
+
+    /// Of each vent: hits that let a particle out, and hits whose probability was clipped.
+    pub fn clipped(&self) -> &[[u64; 2]] {
+        &self.clipped
+    }
 }
 
 impl Account {
@@ -173,8 +178,8 @@ impl Account {
         (energy as f64 * unit, tallied as f64 * unit)
     }
 
-    /// What must hold after every interval, of all ranks together.
-    pub fn check(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval) -> Result<(), String> {
+    /// What must hold after every interval, of all ranks together; how far the energy is off, relative.
+    pub fn check(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval) -> Result<f64, String> {
         let counters = &tallies.counters;
         let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
         let expected = i128::from(interval.particles) - i128::from(self.counted.left + left(tallies));
@@ -199,12 +204,14 @@ impl Account {
         self.counted.energy_lost += lost;
         let energy = self.totals(tallies).energy;
         // Of all that there ever was, since little may be left.
-        if (energy - expected).abs() > ENERGY_ERROR * had.max(expected) {
+        let scale = had.max(expected);
+        if (energy - expected).abs() > ENERGY_ERROR * scale {
             return Err(format!(
                 "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
             ));
         }
-        Ok(())
+        // An interval of few steps may have no sample.
+        Ok(if scale > 0.0 { (energy - expected) / scale } else { 0.0 })
     }
 
     pub fn add(

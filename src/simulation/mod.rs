@@ -12,6 +12,7 @@ mod coats;
 mod conditions;
 mod decomposition;
 mod exchange;
+mod guards;
 mod interrupt;
 mod interval;
 mod ladder;
@@ -36,6 +37,7 @@ pub use clock::{Clock, ClockState};
 pub use coats::{Coat, Coats, VentPlace};
 pub use conditions::{Conditions, ConditionsState, Seen, Wanted};
 pub use exchange::Traffic;
+pub use guards::{GuardState, Told};
 pub use interrupt::{Interrupt, Request};
 pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
@@ -87,6 +89,10 @@ pub enum SimulationError {
     NoParticles,
     #[error("at {time:.6} s: {source}")]
     Ladder { time: f64, source: LadderError },
+    /// Of a run for which warnings are errors.
+    #[error("--strict, and the run warns {told}")]
+    #[diagnostic(help("what was written until then stays; without --strict the run would have gone on"))]
+    Guard { told: Box<Told> },
     #[error("at {time:.6} s: {what}")]
     #[diagnostic(help("the run cannot be trusted beyond this point; please report it with the scene"))]
     Lost { time: f64, what: String },

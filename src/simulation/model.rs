@@ -14,6 +14,8 @@ pub struct Model {
     pub coats: Coats,
     /// The walls that move; `vessel` has them as they are drawn.
     pub moving: Moving,
+    /// m3 of gas in each probe.
+    pub probe_volumes: Vec<f64>,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -70,6 +72,7 @@ impl Model {
         let moving = Moving::new(&scene, &vessel)?;
         let (bounds_min, bounds_max) = moving.bounds(&vessel);
         let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
+        let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
         let measured = Measured {
             gas_volume: vessel.gas_volume(),
             motion: moving.measured(&chamber_volumes),
@@ -77,12 +80,14 @@ impl Model {
             bounds_min,
             bounds_max,
             openings: found_openings(&scene, &vessel),
-            smallest_gap: None,
+            smallest_gap: vessel.smallest_gap(),
+            wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
+            probe_volumes: probe_volumes.clone(),
             vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
             heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
         };
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan, coats, moving })
+        Ok(Model { scene, vessel, plan, coats, moving, probe_volumes })
     }
 }
 

@@ -8,12 +8,13 @@ use super::SimulationError;
 use super::averages::Row;
 use super::balance::{BalanceOptions, BalanceRecord};
 use super::exchange::Traffic;
+use super::guards::Told;
 use super::interrupt::Request;
 use super::run_state::RunState;
 use super::setup::Shuffle;
 use super::tuning::HaloOptions;
 
-/// What does not change a result.
+/// What does not change a result (but for `hold_step`).
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
     /// Steps per submission; `None` for a whole interval.
@@ -24,6 +25,10 @@ pub struct Options<'a> {
     pub stop_after_steps: Option<u64>,
     /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
     pub checkpoint_at_stop: bool,
+    /// The first warning stops the run.
+    pub strict: bool,
+    /// The step stays the plan's, whatever the state asks for: for studies of steps that are too long.
+    pub hold_step: bool,
     /// What is not given of it is tried out.
     pub halo: HaloOptions,
     pub balance: BalanceOptions,
@@ -57,6 +62,9 @@ pub trait Observer {
     fn balance(&mut self, _record: &BalanceRecord) -> Result<(), SimulationError> {
         Ok(())
     }
+
+    /// Something has left its limits; each is told once.
+    fn warning(&mut self, _told: &Told) {}
 
     /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
     fn request(&mut self, _steps: u64) -> Request {
@@ -101,6 +109,8 @@ pub struct Outcome {
     /// The rank that owned each of them.
     pub owners: Vec<u32>,
     pub audit: Audit,
+    /// What has left its limits, and when, since the start of the run.
+    pub warnings: Vec<Told>,
     pub phases: PhaseTable,
     pub steps: u64,
     pub particle_steps: u64,

@@ -22,6 +22,7 @@ use super::clock::Clock;
 use super::conditions::{Conditions, Seen};
 use super::decomposition::Decomposition;
 use super::exchange::Exchange;
+use super::guards::Guards;
 use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine};
 use super::ladder::{Demand, Ladder};
@@ -67,6 +68,7 @@ pub struct Simulation<'a> {
     ladder: Ladder,
     averages: Averages,
     account: Account,
+    guards: Guards<'a>,
     timer: Option<PhaseTimer>,
     flying: VecDeque<InFlight>,
     /// What the states read so far ask of the step and no interval has followed yet, oldest first.
@@ -159,6 +161,7 @@ impl<'a> Simulation<'a> {
             ladder: Ladder::new(plan, setup.volumes.to_vec()),
             averages: Averages::new(plan, setup.layout.clone(), setup.patches),
             account: Account::new(plan),
+            guards: Guards::new(&model.scene, plan, setup.volumes.to_vec()),
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
             demands: VecDeque::new(),
@@ -202,6 +205,7 @@ impl<'a> Simulation<'a> {
         simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
         simulation.demands = state.demands.iter().copied().collect();
         simulation.conditions.restore(&state.conditions)?;
+        simulation.guards.restore(&state.guards);
         simulation.seen = state.seen.iter().cloned().collect();
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
@@ -221,6 +225,7 @@ impl<'a> Simulation<'a> {
             inflow: self.inflow.state(),
             demands: self.demands.iter().copied().collect(),
             conditions: self.conditions.state().clone(),
+            guards: self.guards.state().clone(),
             seen: self.seen.iter().cloned().collect(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
@@ -253,7 +258,9 @@ impl<'a> Simulation<'a> {
         self.account.start(&at_start);
         self.conditions.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
-        self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
+        if !self.options.hold_step {
+            self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
+        }
         self.snapshot(observer)?;
         self.began = Instant::now();
         Ok(())
@@ -312,6 +319,7 @@ impl<'a> Simulation<'a> {
             traffic: self.exchange.traffic(),
             balance: self.balance.into_records(),
             audit,
+            warnings: self.guards.told().to_vec(),
             phases: self.account.phases(),
             steps: self.clock.steps,
             particle_steps: self.account.state().particle_steps,
@@ -370,7 +378,9 @@ impl<'a> Simulation<'a> {
             && let Some(demand) = self.demands.pop_front()
         {
             let time = self.clock.time();
-            self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+            if !self.options.hold_step {
+                self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+            }
             if let Some((seen, left)) = self.seen.pop_front() {
                 self.conditions.follow(seen);
                 let entered = self.inflow.entered_by_gas().iter().sum::<u64>();

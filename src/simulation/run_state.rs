@@ -9,6 +9,7 @@ use super::audit::AccountState;
 use super::averages::AveragesState;
 use super::clock::ClockState;
 use super::conditions::{ConditionsState, Seen};
+use super::guards::GuardState;
 use super::ladder::{Demand, LadderState};
 use crate::gas::{InflowState, InflowStateError};
 use crate::output::{Checkpoint, CheckpointError};
@@ -37,6 +38,7 @@ pub struct RunState {
     /// What states read so far ask of the step and no interval has followed yet, oldest first.
     pub demands: Vec<Demand>,
     pub conditions: ConditionsState,
+    pub guards: GuardState,
     /// What the walls have seen of the same states, and how many particles had left by then.
     pub seen: Vec<(Seen, u64)>,
     /// Intervals so far.
@@ -205,6 +207,7 @@ mod tests {
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
             conditions: ConditionsState::default(),
+            guards: GuardState::default(),
             seen: vec![(Seen::default(), 7)],
             submitted: 5,
             next_row: 1.0 / 3.0,

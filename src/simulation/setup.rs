@@ -148,8 +148,7 @@ fn zones(model: &Model) -> Vec<GpuZone> {
 }
 
 fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, coats, moving } = model;
-    let probe_volumes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
+    let Model { scene, vessel, plan, coats, moving, probe_volumes } = model;
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
         let triangles = vessel.triangles.iter().filter(|triangle| (triangle.wall, triangle.face) == (wall, face));
@@ -179,7 +178,7 @@ fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
         vents: scene.vents.len(),
         coats: coats.coats.len(),
         motions: moving.count(),
-        volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes).collect(),
+        volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes.iter().copied()).collect(),
         chambers: scene.chambers.len(),
         surfaces: surfaces.collect(),
     }

@@ -9,6 +9,7 @@ pub mod launched;
 pub mod modelled;
 pub mod pareto;
 pub mod report;
+pub mod stability;
 pub mod state;
 pub mod stopwatch;
 pub mod verify;

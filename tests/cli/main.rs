@@ -3,6 +3,9 @@
 //! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
 //! whatever adapter the machine has.
 
+mod stability;
+mod strict;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -73,13 +76,14 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 12] = [
+const VERBS: [&str; 13] = [
     "run",
     "resume",
     "refine",
     "sweep",
     "verify",
     "pareto",
+    "stability",
     "plan",
     "check",
     "schema",

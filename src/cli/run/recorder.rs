@@ -6,7 +6,9 @@ use crate::output::{
     BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
     SUBDOMAIN_CHART_FILE, SnapshotWriter, over_mean, subdomain_chart,
 };
-use crate::simulation::{BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, imbalance};
+use crate::simulation::{
+    BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, Told, imbalance,
+};
 use crate::subdomain::{GpuParticle, Scales};
 
 use super::checkpoints::Checkpoints;
@@ -235,6 +237,13 @@ impl Observer for Recorder<'_> {
         match &mut self.among {
             Some(among) => among.balance.row(&balance_row(record)).map_err(stop),
             None => Ok(()),
+        }
+    }
+
+    fn warning(&mut self, told: &Told) {
+        match &self.progress {
+            Some(progress) => progress.warn(&told.to_string()),
+            None => tracing::warn!("{told}"),
         }
     }
 

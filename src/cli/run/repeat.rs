@@ -22,7 +22,7 @@ pub fn repeat(
     quiet: bool,
     started: Instant,
 ) -> Result<(), CliError> {
-    let RunSettings { model, folder: path, force, execution } = settings;
+    let RunSettings { scene: file, model, folder: path, force, execution } = settings;
     let first = model.scene.seed;
     if model.plan.method == Method::ControlVolume {
         return Err(CliError::NothingToRepeat);
@@ -48,6 +48,7 @@ pub fn repeat(
         let mut scene = model.scene.clone();
         scene.seed = seed;
         let of_seed = RunSettings {
+            scene: file.clone(),
             model: model_of(&name, scene)?,
             folder: path.join(seed_folder(seed)),
             force: false,

@@ -15,7 +15,7 @@ use super::recorder::Recorder;
 use super::reference::Reference;
 
 pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), CliError> {
-    let RunSettings { model, folder, force, execution } = settings;
+    let RunSettings { model, folder, force, execution, .. } = settings;
     if execution.stop_after_steps.is_some() || execution.checkpoints.every.is_some() {
         tracing::warn!("a control volume takes no steps: it is not stopped after some, and writes no checkpoints");
     }

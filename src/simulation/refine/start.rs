@@ -10,6 +10,7 @@ use crate::plan::Plan;
 use crate::simulation::audit::Account;
 use crate::simulation::averages::AveragesState;
 use crate::simulation::clock::Clock;
+use crate::simulation::guards::GuardState;
 use crate::simulation::ladder::{Ladder, LadderError};
 use crate::simulation::model::Model;
 use crate::simulation::run_state::RunState;
@@ -42,6 +43,7 @@ pub fn state(
         inflow: inflow.state(),
         demands: Vec::new(),
         conditions: parent.conditions.clone(),
+        guards: GuardState::default(),
         seen: Vec::new(),
         submitted: 0,
         next_row: parent.next_row,

@@ -4,6 +4,7 @@
 use crate::simulation::SimulationError;
 use crate::simulation::balance::Load;
 use crate::simulation::exchange::Traffic;
+use crate::simulation::guards::{Shown, Told};
 use crate::simulation::interrupt::Request;
 use crate::simulation::interval::{InFlight, Interval, Pending};
 use crate::simulation::observer::Observer;
@@ -80,10 +81,16 @@ impl Simulation<'_> {
         self.read_until += duration;
         let plan = &self.model.plan;
         let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
-        self.account.check(plan, &tallies, &interval).map_err(lost)?;
+        let drift = self.account.check(plan, &tallies, &interval).map_err(lost)?;
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
+        let particle_steps = interval.particles * u64::from(interval.steps);
+        let clipped = self.account.state().clipped();
+        let shown =
+            Shown { time: self.read_until, step: interval.dt, tallies: &tallies, particle_steps, drift, clipped };
+        let told = self.guards.interval(&shown);
+        self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];
         let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes);
         self.seen.push_back((seen, self.account.state().left()));
@@ -116,11 +123,42 @@ impl Simulation<'_> {
         for (state, [moved, velocity]) in row.motions.iter_mut().zip(self.model.moving.courses(row.time)) {
             (state.displacement, state.velocity) = (moved, velocity);
         }
+        let told = self.guards.row(&row);
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
         while self.next_row <= self.read_until * (1.0 + 1e-9) {
             self.next_row += spacing;
         }
-        observer.row(&row)
+        observer.row(&row)?;
+        self.tell(&told, observer)
+    }
+
+    /// Tells what has left its limits; a strict run ends there, on all ranks alike.
+    fn tell(&mut self, told: &[Told], observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        for told in told {
+            observer.warning(told);
+        }
+        match told.first() {
+            Some(first) if self.options.strict => {
+                self.abandon()?;
+                // Nobody leaves before rank 0 has written what it had to.
+                self.ranks.comm().sum(vec![0])?;
+                Err(SimulationError::Guard { told: Box::new(first.clone()) })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Waits for what is under way, and drops it.
+    fn abandon(&mut self) -> Result<Vec<(Interval, Remembered)>, SimulationError> {
+        let mut dropped = Vec::new();
+        for flight in std::mem::take(&mut self.flying) {
+            match flight.tallies {
+                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
+                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
+            }
+            dropped.push((flight.interval, flight.before));
+        }
+        Ok(dropped)
     }
 
     /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
@@ -135,14 +173,7 @@ impl Simulation<'_> {
         self.repeated += 1;
         self.tuner.disturbed();
         tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
-        let mut later = Vec::new();
-        for flight in std::mem::take(&mut self.flying) {
-            match flight.tallies {
-                Pending::OnDevice(readback) => drop(self.subdomain.finish_readback(self.device, readback)?),
-                Pending::Reducing(_, _, reduction) => drop(self.ranks.comm().finish_reduction(reduction)?),
-            }
-            later.push((flight.interval, flight.before));
-        }
+        let later = self.abandon()?;
         self.subdomain.restore(self.device, &before);
         self.subdomain.make_room(self.device, 0, 0, wanted)?;
         if let Some(decomposition) = &mut self.decomposition {

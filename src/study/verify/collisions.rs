@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use crate::gpu::Device;
-use crate::simulation::{Options, Outcome, Simulation};
+use crate::simulation::{Model, Options, Outcome, Row, Simulation};
 use crate::study::StudyError;
+use crate::subdomain::{GpuFlight, GpuParticle};
 
 use super::gas_box::{EDGE, EquilibriumBox, GAS_CONSTANT, TEMPERATURE};
-use super::{Check, Effort, Findings, Witness, run};
+use super::{Check, Effort, Findings, Run, Witness, run};
 
 /// Wall pressure over n k T of one run.
 #[derive(Debug, Clone, Copy)]
@@ -28,15 +29,19 @@ pub fn pressure_ratio(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Press
     // The temperature of every step: it moves as translation and spin exchange energy.
     model.plan.tally_every = 1;
     let run = run(device, &model, Options::default())?;
-    let row = &run.rows[0];
+    Ok(pressure_in(&model, gas, &run.rows[0]))
+}
+
+/// Of one row of a run that tallied every step.
+pub fn pressure_in(model: &Model, gas: &EquilibriumBox<'_>, row: &Row) -> PressureRatio {
     let moles = model.plan.particles as f64 * model.plan.moles_per_particle;
-    let ideal = moles * GAS_CONSTANT * row.chambers[0].temperature / EDGE.powi(3);
+    let ideal = moles * GAS_CONSTANT * row.chambers[0].temperature / model.plan.chambers[0].volume;
     let window = row.window[1] - row.window[0];
-    Ok(PressureRatio {
+    PressureRatio {
         ratio: row.surfaces[0].pressure / ideal,
         error: (2.0 / gas.particles as f64).sqrt() / 6.0 * EDGE / (gas.thermal_speed() * window),
         of_hits: 1.13 / (row.surfaces[0].hits as f64).sqrt(),
-    })
+    }
 }
 
 /// Of the method `cell` a collision changes the virial by that of a random vector of a cell's length: over the s
@@ -122,32 +127,48 @@ pub struct Rate {
     pub outcome: Outcome,
 }
 
+/// A run in intervals of one step, each of which is shown.
+///
+/// # Errors
+/// If the run fails.
+pub fn watched(
+    device: &Device,
+    model: &mut Model,
+    options: Options<'_>,
+    mut watch: impl FnMut(&Model, &[GpuParticle], &[(u32, GpuFlight)]),
+) -> Result<Run, StudyError> {
+    model.plan.steps_per_interval = 1;
+    model.plan.tally_every = 1;
+    let mut witness = Witness::default();
+    let mut simulation = Simulation::new(model, device, options)?;
+    simulation.begin(&mut witness)?;
+    while simulation.advance(&mut witness)? {
+        watch(model, &simulation.particles()?, &simulation.flights()?);
+    }
+    let outcome = simulation.finish(&mut witness)?;
+    Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })
+}
+
 /// Counted from the flights of single steps. The ideal-gas measure is stationary, so n is (N - 1)/V wherever one looks.
 ///
 /// # Errors
 /// If the run fails.
 pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate, StudyError> {
     let mut model = gas.model()?;
-    // Intervals of one step, so that every step's flights can be read, and no finer steps.
-    model.plan.steps_per_interval = 1;
-    model.plan.tally_every = 1;
+    // No finer steps.
     model.plan.collision_limit = 1.0;
-    let margin = 2.0 * gas.diameter() + gas.mean_free_path();
-    let mut witness = Witness::default();
-    let mut simulation = Simulation::new(&model, device, Options::default())?;
-    simulation.begin(&mut witness)?;
+    let margin = gas.wall_layer();
     let (mut visits, mut ends) = ([0u64; 2], [0u64; 2]);
-    while simulation.advance(&mut witness)? {
-        let places = simulation.particles()?;
-        for (particle, (_, flight)) in places.iter().zip(simulation.flights()?) {
+    let seen = watched(device, &mut model, Options::default(), |model, places, flights| {
+        for (particle, (_, flight)) in places.iter().zip(flights) {
             let place = model.plan.grid.to_metres(particle.position);
             let layer = usize::from(place.iter().any(|x| *x < margin || *x > EDGE - margin));
             visits[layer] += 1;
             ends[layer] += u64::from(flight.collisions);
         }
-    }
-    let outcome = simulation.finish(&mut witness)?;
-    let temperature = witness.rows[0].chambers[0].temperature / TEMPERATURE;
+    })?;
+    let Run { rows, outcome, .. } = seen;
+    let temperature = rows[0].chambers[0].temperature / TEMPERATURE;
     let gbar = (16.0 / PI * temperature).sqrt() * gas.thermal_speed();
     let density = (gas.particles - 1) as f64 / EDGE.powi(3);
     let expected = density * PI * model.plan.diameter.powi(2) * gbar * gas.time_step();

@@ -84,6 +84,11 @@ impl EquilibriumBox<'_> {
         self.mean_free_path() / (self.thermal_speed() * (8.0 / PI).sqrt())
     }
 
+    /// What of the gas does not collide as in free space, m from the walls: near one a pair does not meet behind it.
+    pub fn wall_layer(&self) -> f64 {
+        2.0 * self.diameter() + self.mean_free_path()
+    }
+
     pub fn time_step(&self) -> f64 {
         self.step_over_tau * self.collision_time()
     }

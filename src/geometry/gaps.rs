@@ -1,0 +1,139 @@
+//! The narrowest passage of the gas between walls that face each other.
+//!
+//! From points within each triangle a ray goes along the normal into the gas until it meets the next triangle. Where that
+//! one faces back within 45 degrees, and has no corner in common with the first, the ray's length is a passage. Every
+//! passage found is there, so the least of them is never below the narrowest; between two flat walls it is exact. A passage
+//! that no ray meets is missed: one narrower than the triangles around it are far apart, as at the foot of a wedge.
+
+use super::Vessel;
+use super::sampling::map;
+use glam::DVec3;
+
+/// Pairs of a ray and a triangle that are tried at most: of larger meshes fewer triangles send out rays.
+const MOST_TRIALS: usize = 100_000_000;
+/// Barycentric places of the rays in a triangle.
+const PLACES: [[f64; 3]; 4] = [[1.0 / 3.0; 3], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8]];
+/// Cosine of the largest angle between a ray and the wall that it meets.
+const FACING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Of the vessel's size: what is nearer touches.
+const ROUNDING: f64 = 1e-9;
+
+struct Facet {
+    corners: [DVec3; 3],
+    normal: DVec3,
+}
+
+impl Facet {
+    /// Where along the ray it is met from the side of the gas, or from behind.
+    fn met(&self, from: DVec3, along: DVec3) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        let (u, v) = (b - a, c - a);
+        let p = along.cross(v);
+        let determinant = u.dot(p);
+        if determinant == 0.0 {
+            return None;
+        }
+        let s = from - a;
+        let q = s.cross(u);
+        let (x, y) = (s.dot(p) / determinant, along.dot(q) / determinant);
+        // An edge belongs to both sides: a ray must not slip through.
+        (x >= -1e-9 && y >= -1e-9 && x + y <= 1.0 + 1e-9).then(|| v.dot(q) / determinant)
+    }
+}
+
+impl Vessel {
+    /// m; none where no two walls face each other across gas.
+    pub fn smallest_gap(&self) -> Option<f64> {
+        let place = |index: u32| DVec3::from(self.vertices[index as usize]);
+        let facets: Vec<Facet> = self
+            .triangles
+            .iter()
+            .map(|triangle| {
+                let corners = triangle.vertices.map(place);
+                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+                Facet { corners, normal }
+            })
+            .collect();
+        let size = DVec3::from(self.bounds.1).distance(DVec3::from(self.bounds.0));
+        let every = (facets.len() * facets.len() * PLACES.len()).div_ceil(MOST_TRIALS).max(1);
+        let found = map(facets.len().div_ceil(every), |index, _| {
+            let own = &facets[index * every];
+            PLACES.iter().filter_map(|place| self.gap_from(&facets, own, place, ROUNDING * size)).reduce(f64::min)
+        });
+        found.into_iter().flatten().reduce(f64::min)
+    }
+
+    /// The passage that a ray from a place of a facet measures.
+    fn gap_from(&self, facets: &[Facet], own: &Facet, place: &[f64; 3], least: f64) -> Option<f64> {
+        let from: DVec3 = own.corners.iter().zip(place).map(|(corner, weight)| *weight * *corner).sum();
+        let hits = facets.iter().filter_map(|facet| {
+            let distance = facet.met(from, own.normal)?;
+            (distance > least).then_some((distance, facet))
+        });
+        let (distance, other) = hits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let apart = own.corners.iter().all(|a| other.corners.iter().all(|b| a.distance(*b) > least));
+        let gas = |share: f64| self.is_gas((from + share * distance * own.normal).to_array());
+        // Of walls that overlap, what is hidden in another faces no gas.
+        (apart && other.normal.dot(own.normal) < -FACING && gas(0.01) && gas(0.5)).then_some(distance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn gap(walls: &str) -> Option<f64> {
+        let text = format!(
+            "end_time = 1.0\n[[gas]]\nname = \"n2\"\nmolar_mass = 0.028\ngamma = 1.4\n{walls}\n\
+             [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"n2\"\n"
+        );
+        let scene = crate::scene::parse(&text, "test.toml", Path::new("")).unwrap();
+        Vessel::build(&scene.walls).unwrap().smallest_gap()
+    }
+
+    const TANK: &str =
+        "[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [1.0, 0.5, 0.5]\ngas = \"inside\"\n";
+
+    fn near(found: Option<f64>, expected: f64) -> bool {
+        found.is_some_and(|found| (found / expected - 1.0).abs() < 1e-6)
+    }
+
+    /// Of an empty box its shorter side; a block before a wall leaves its distance; a hole its width; of a round vessel
+    /// about the diameter.
+    #[test]
+    fn the_narrowest_passage_is_found() {
+        assert!(near(gap(TANK), 0.5), "{:?}", gap(TANK));
+        let block = |low: f64| {
+            gap(&format!(
+                "{TANK}[[wall]]\nname = \"block\"\nshape = \"box\"\nmin = [0.2, 0.1, {low}]\nmax = [0.6, 0.3, 0.3]\ngas = \"outside\"\n"
+            ))
+        };
+        for low in [0.003, 0.05] {
+            assert!(near(block(low), low), "{:?}", block(low));
+        }
+        let shell = "[[wall]]\nname = \"shell\"\nshape = \"box\"\nmin = [0.2, 0.15, 0.15]\nmax = [0.4, 0.35, 0.35]\n\
+             thickness = 0.01\nhole = [{ name = \"slit\", face = \"+x\", center = [0.25, 0.25], size = [0.1, 0.004] }]\n";
+        assert!(near(gap(&format!("{TANK}{shell}")), 0.004));
+        let ball = gap(
+            "[[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\ngas = \"inside\"\n",
+        );
+        assert!(ball.is_some_and(|gap| (0.17..0.21).contains(&gap)), "{ball:?}");
+    }
+
+    /// The thickness of a plate is no passage, nor what a plate let into a wall hides.
+    #[test]
+    fn a_solid_is_no_passage() {
+        let plate = |z: f64| {
+            gap(&format!(
+                "{TANK}[[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.5, 0.25, {z}]\nnormal = [0.0, 0.0, 1.0]\n\
+                 u = [1.0, 0.0, 0.0]\nsize = [0.4, 0.2]\nthickness = 0.001\n"
+            ))
+        };
+        let free = plate(0.2);
+        assert!(free.is_some_and(|gap| gap > 0.14), "{free:?}");
+        // Half a thickness within the floor.
+        let hidden = plate(0.0);
+        assert!(hidden.is_some_and(|gap| gap > 0.14), "{hidden:?}");
+    }
+}

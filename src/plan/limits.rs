@@ -1,0 +1,254 @@
+//! The limits within which a run of particles is right: one table. The plan and the guards of a run (`simulation/guards.rs`)
+//! warn beyond them, and `corpuscle stability` measures where they lie ([docs/limits.md](../../docs/limits.md)).
+//!
+//! A limit is of a quantity and of one method, or of all that have no limit of their own. What is not in the table was
+//! not found to break anything.
+
+use super::render::significant;
+use crate::scene::Method;
+use serde::{Deserialize, Serialize};
+
+/// What a limit is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Quantity {
+    /// x = dt/tau.
+    Step,
+    /// Collisions lost over those that should be.
+    LostCollisions,
+    /// n pi sigma^3 / 6.
+    Occupancy,
+    /// Of a resolved opening; of free flight that of the molecules themselves.
+    Knudsen,
+    /// Of the whole run.
+    Particles,
+    /// In the cube of an opening's length.
+    OpeningParticles,
+    ProbeParticles,
+    /// Hits on walls of a mean particle in a step.
+    WallHits,
+    /// The narrowest passage over the collision diameter; of cells, over their edge.
+    Gap,
+    /// What |v| dt of 99.9 % of the particles is at most, in cells.
+    Flight,
+    /// Halvings of the step that are left before the smallest.
+    Halvings,
+    /// Energy found over that which should be there, less 1.
+    EnergyDrift,
+    /// Hits on a vent whose probability of passing would be above one, over what passed.
+    ClippedHits,
+}
+
+impl Quantity {
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Step => "time step over collision time",
+            Quantity::LostCollisions => "share of collisions lost",
+            Quantity::Occupancy => "occupancy",
+            Quantity::Knudsen => "Knudsen number",
+            Quantity::Particles => "particles",
+            Quantity::OpeningParticles => "particles in the cube of its length",
+            Quantity::ProbeParticles => "particles in it",
+            Quantity::WallHits => "wall hits per particle and step",
+            Quantity::Gap => "smallest passage over what collides across it",
+            Quantity::Flight => "cells flown in a step",
+            Quantity::Halvings => "halvings of the step left",
+            Quantity::EnergyDrift => "drift of the energy",
+            Quantity::ClippedHits => "share of clipped hits",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    AtMost(f64),
+    AtLeast(f64),
+}
+
+impl Bound {
+    pub fn value(self) -> f64 {
+        match self {
+            Bound::AtMost(value) | Bound::AtLeast(value) => value,
+        }
+    }
+
+    /// False for a NaN.
+    pub fn holds(self, found: f64) -> bool {
+        match self {
+            Bound::AtMost(limit) => found <= limit,
+            Bound::AtLeast(limit) => found >= limit,
+        }
+    }
+
+    pub fn words(self) -> String {
+        match self {
+            Bound::AtMost(limit) => format!("at most {}", significant(limit)),
+            Bound::AtLeast(limit) => format!("at least {}", significant(limit)),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    pub quantity: Quantity,
+    /// `None`: of all methods that have none of their own.
+    pub method: Option<Method>,
+    pub bound: Bound,
+    /// What is wrong beyond it.
+    pub effect: &'static str,
+}
+
+const fn limit_of(quantity: Quantity, method: Option<Method>, bound: Bound, effect: &'static str) -> Limit {
+    Limit { quantity, method, bound, effect }
+}
+
+use Bound::{AtLeast, AtMost};
+
+/// All limits. That of the step depends on the rounds: [`step_limit`].
+pub const LIMITS: &[Limit] = &[
+    limit_of(
+        Quantity::LostCollisions,
+        None,
+        AtMost(0.03),
+        "the gas is too viscous, and spin and translation part (specification, section 2)",
+    ),
+    limit_of(Quantity::Occupancy, None, AtMost(0.3), "it costs search time and buys no resolution"),
+    // Carnahan and Starling: 1 % at f = .0025.
+    limit_of(Quantity::Occupancy, Some(Method::HardSphere), AtMost(0.0025), "rigid spheres press harder than a gas"),
+    limit_of(Quantity::Knudsen, None, AtMost(0.1), "its flow is off by 7 % or more"),
+    limit_of(
+        Quantity::Knudsen,
+        Some(Method::None),
+        AtLeast(1.0),
+        "its molecules collide, and free flight is wrong by up to a quarter",
+    ),
+    limit_of(Quantity::Particles, None, AtLeast(1000.0), "they are few: pressures will be noise"),
+    // Spacing of half the length: its flow is that at a Knudsen number of .3.
+    limit_of(Quantity::OpeningParticles, None, AtLeast(8.0), "the flow through it is not resolved"),
+    // Noise of a sample's pressure, sqrt(2/(3 N)), of 8 %.
+    limit_of(Quantity::ProbeParticles, None, AtLeast(100.0), "what it shows is mostly noise"),
+    limit_of(Quantity::Gap, None, AtLeast(1.0), "what lies across the smallest passage is not resolved"),
+    // Measured: T_int/T_tr .95 at .19 (thin gas at x = .2 in a small box), 1 within 2 % at .075.
+    limit_of(
+        Quantity::WallHits,
+        Some(Method::ClosestApproach),
+        AtMost(0.1),
+        "a pair does not meet after a wall in the same step, and spin falls behind translation",
+    ),
+    limit_of(
+        Quantity::WallHits,
+        Some(Method::HardSphere),
+        AtMost(0.1),
+        "a pair does not meet after a wall in the same step, and spin falls behind translation",
+    ),
+    limit_of(Quantity::Flight, None, AtMost(1.0001), "the time step lets particles fly past whole cells"),
+    limit_of(
+        Quantity::Halvings,
+        None,
+        AtLeast(1.0),
+        "the step is the smallest: gas that becomes denser or hotter stops the run",
+    ),
+    // A tenth of what the audit lets pass.
+    limit_of(Quantity::EnergyDrift, None, AtMost(1e-5), "the energy is not kept as it should be"),
+    limit_of(Quantity::ClippedHits, None, AtMost(0.01), "it passes too little, or with less than its enthalpy"),
+];
+
+/// The limit of a quantity; none where nothing was found to break.
+pub fn limit(quantity: Quantity, method: Method) -> Option<&'static Limit> {
+    let of = |asked: Option<Method>| LIMITS.iter().find(|limit| limit.quantity == quantity && limit.method == asked);
+    of(Some(method)).or_else(|| of(None))
+}
+
+/// Largest x = dt/tau with at most 2 % of the events lost: specification, section 2, for up to four rounds; for eight,
+/// measured in `tests/verification`; between them by steps. Without rounds that of the method `cell`.
+pub fn step_limit(method: Method, rounds: u32) -> f64 {
+    match (method.has_rounds(), rounds) {
+        (false, _) => 2.0,
+        (true, 0 | 1) => 0.02,
+        (true, 2) => 0.1,
+        (true, 3) => 0.2,
+        (true, 4) => 0.3,
+        (true, 5) => 0.35,
+        (true, 6) => 0.4,
+        (true, 7) => 0.45,
+        (true, _) => 0.5,
+    }
+}
+
+/// Something is beyond its limit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    pub quantity: Quantity,
+    pub value: f64,
+    pub limit: f64,
+    /// Names quantity, value, limit and remedy.
+    pub text: String,
+}
+
+impl Warning {
+    /// None within the bound.
+    pub fn beyond(
+        quantity: Quantity,
+        bound: Bound,
+        subject: &str,
+        value: f64,
+        effect: &str,
+        remedy: &str,
+    ) -> Option<Warning> {
+        let text = || {
+            let found = significant(value);
+            format!("{subject}: {} {found}, {}: {effect}; {remedy}", quantity.name(), bound.words())
+        };
+        (!bound.holds(value)).then(|| Warning { quantity, value, limit: bound.value(), text: text() })
+    }
+
+    /// By the table; none where it has no such limit, too.
+    pub fn by_table(quantity: Quantity, method: Method, subject: &str, value: f64, remedy: &str) -> Option<Warning> {
+        let Limit { bound, effect, .. } = limit(quantity, method)?;
+        Warning::beyond(quantity, *bound, subject, value, effect, remedy)
+    }
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At its limit a quantity is within it, a little beyond it is not; nor is what is not a number.
+    #[test]
+    fn limits_hold_up_to_themselves() {
+        for entry in LIMITS {
+            let method = entry.method.unwrap_or(Method::ClosestApproach);
+            let found = |value: f64| Warning::by_table(entry.quantity, method, "it", value, "mend it");
+            let (value, sign) = match entry.bound {
+                AtMost(value) => (value, 1.0),
+                AtLeast(value) => (value, -1.0),
+            };
+            assert_eq!(found(value), None, "{entry:?}");
+            assert_eq!(found(value - sign * 0.1 * value), None, "{entry:?}");
+            let beyond = found(value + sign * 1e-9 * value).unwrap();
+            assert_eq!((beyond.quantity, beyond.limit), (entry.quantity, value));
+            for part in ["it: ", entry.quantity.name(), &entry.bound.words(), entry.effect, "mend it"] {
+                assert!(beyond.text.contains(part), "{part} is not in {}", beyond.text);
+            }
+            assert!(found(f64::NAN).is_some());
+        }
+    }
+
+    /// A method's own limit goes before that of all; each is there once.
+    #[test]
+    fn a_method_may_have_a_limit_of_its_own() {
+        let of = |method| limit(Quantity::Knudsen, method).map(|limit| limit.bound);
+        assert_eq!(of(Method::Cell), Some(AtMost(0.1)));
+        assert_eq!(of(Method::None), Some(AtLeast(1.0)));
+        for (index, one) in LIMITS.iter().enumerate() {
+            let twice = LIMITS[index + 1..].iter().any(|o| (o.quantity, o.method) == (one.quantity, one.method));
+            assert!(!twice, "{one:?}");
+        }
+        assert!((1..8).all(|r| step_limit(Method::HardSphere, r) < step_limit(Method::HardSphere, r + 1)));
+    }
+}

@@ -1,0 +1,339 @@
+//! Where the methods fail: along axes such as the time step or the Knudsen number of a hole, which quantity leaves its
+//! allowance first, and by how much.
+//!
+//! An [`Axis`] has a run for each of its values and each method; a run gives [`Check`]s as the reference cases do
+//! ([`verify`](super::verify)), of quantities that a law knows: energy, pressure, equipartition, collision rate, lost
+//! collisions, tightness of the walls, flow, density profile. Allowances are fixed beforehand. Another axis is another
+//! entry of [`AXES`].
+
+mod at_rest;
+mod flows;
+pub mod report;
+
+use crate::gpu::Device;
+use crate::plan::{Bound, Quantity, limit, step_limit};
+use crate::scene::Method;
+use crate::simulation::SimulationError;
+use crate::study::StudyError;
+use crate::study::verify::Check;
+
+/// Standard errors by which a quantity must be beyond its allowance to be broken, and within which one must know it.
+const SURE: f64 = 2.0;
+/// Rounds of the runs, where the axis is another: the default of plans.
+pub(crate) const ROUNDS: u32 = 8;
+
+/// How much a map takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Two values of each axis, known badly: to see that it works.
+    Quick,
+    /// What `docs/limits.md` is made with.
+    Usual,
+    /// More values, more particles.
+    Full,
+}
+
+/// A run of a method with a value of the axis.
+type Runner = fn(&Device, Method, f64, Effort) -> Result<Vec<Check>, StudyError>;
+
+/// What is varied, and what a run with a value of it shows.
+pub struct Axis {
+    pub name: &'static str,
+    pub what: &'static str,
+    /// The scene of the runs.
+    pub runs: &'static str,
+    pub methods: &'static [Method],
+    /// From safe to risky.
+    quick: &'static [f64],
+    usual: &'static [f64],
+    full: &'static [f64],
+    /// That which guards runs.
+    limit: fn(Method) -> Option<Bound>,
+    run: Runner,
+}
+
+impl Axis {
+    pub fn values(&self, effort: Effort) -> &'static [f64] {
+        match effort {
+            Effort::Quick => self.quick,
+            Effort::Usual => self.usual,
+            Effort::Full => self.full,
+        }
+    }
+
+    pub fn limit(&self, method: Method) -> Option<Bound> {
+        (self.limit)(method)
+    }
+
+    /// # Errors
+    /// If a run fails but for what the method is to blame for.
+    pub fn run(&self, device: &Device, method: Method, value: f64, effort: Effort) -> Result<Point, StudyError> {
+        let checks = match (self.run)(device, method, value, effort) {
+            // A run that its own checks stop: what it knows is no number.
+            Err(StudyError::Simulation(error @ (SimulationError::Lost { .. } | SimulationError::Ladder { .. }))) => {
+                vec![Check::of(format!("run stopped, {error}"), 0.0, (f64::NAN, 0.0), 1.0)]
+            }
+            done => done?,
+        };
+        Ok(Point { method, value, checks })
+    }
+}
+
+/// What came of a run.
+pub struct Point {
+    pub method: Method,
+    pub value: f64,
+    pub checks: Vec<Check>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum State {
+    Holds,
+    Broken,
+    /// The run knows too little.
+    Unclear,
+}
+
+impl State {
+    pub fn of(check: &Check) -> State {
+        let off = (check.measured - check.reference).abs();
+        if off.is_nan() || check.error.is_nan() || off > check.tolerance + SURE * check.error {
+            State::Broken
+        } else if SURE * check.error <= check.tolerance {
+            State::Holds
+        } else {
+            State::Unclear
+        }
+    }
+
+    pub fn word(self) -> &'static str {
+        match self {
+            State::Holds => "holds",
+            State::Broken => "BROKEN",
+            State::Unclear => "unclear",
+        }
+    }
+}
+
+impl Point {
+    /// The broken quantity that is farthest beyond its allowance.
+    pub fn worst(&self) -> Option<&Check> {
+        let times = |check: &Check| {
+            let off = (check.measured - check.reference).abs() / check.tolerance;
+            if off.is_nan() { f64::INFINITY } else { off }
+        };
+        let broken = self.checks.iter().filter(|check| State::of(check) == State::Broken);
+        broken.max_by(|a, b| times(a).total_cmp(&times(b)))
+    }
+
+    pub fn state(&self) -> State {
+        let is = |state: State| self.checks.iter().any(|check| State::of(check) == state);
+        if is(State::Broken) {
+            State::Broken
+        } else if is(State::Unclear) {
+            State::Unclear
+        } else {
+            State::Holds
+        }
+    }
+}
+
+/// Of one method along an axis.
+pub struct Found<'a> {
+    /// The last value before the first broken one, and the first broken one with what broke.
+    pub held: Option<f64>,
+    pub broken: Option<(f64, &'a Check)>,
+}
+
+/// What broke first of a method, of points in the order of the axis.
+pub fn first_broken(points: &[Point], method: Method) -> Found<'_> {
+    let own = || points.iter().filter(|point| point.method == method);
+    let broken = own().find_map(|point| point.worst().map(|check| (point.value, check)));
+    let until = own().take_while(|point| point.state() != State::Broken);
+    Found { held: until.last().map(|point| point.value), broken }
+}
+
+const COLLIDING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell];
+const ALL: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
+
+fn of_table(quantity: Quantity) -> impl Fn(Method) -> Option<Bound> {
+    move |method| limit(quantity, method).map(|limit| limit.bound)
+}
+
+/// All axes, in the order of the maps.
+pub const AXES: &[Axis] = &[
+    Axis {
+        name: "time-step",
+        what: "x = dt/tau, 8 rounds",
+        runs: "gas at rest in a box at occupancy 0.1 (rigid spheres 0.03, against Carnahan and Starling's pressure), the step held against the ladder",
+        methods: COLLIDING,
+        quick: &[0.2, 2.0],
+        usual: &[0.1, 0.3, 1.0, 2.0],
+        full: &[0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0],
+        limit: |method| Some(Bound::AtMost(step_limit(method, ROUNDS))),
+        run: at_rest::time_step,
+    },
+    Axis {
+        name: "rounds",
+        what: "rounds R at x = 0.2",
+        runs: "as time-step",
+        methods: &[Method::ClosestApproach],
+        quick: &[4.0, 1.0],
+        usual: &[8.0, 3.0, 2.0, 1.0],
+        full: &[8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0],
+        // The fewest rounds whose limit is x = .2.
+        limit: |method| (1..=8).find(|&r| step_limit(method, r) >= 0.2).map(|r| Bound::AtLeast(f64::from(r))),
+        run: at_rest::rounds,
+    },
+    Axis {
+        name: "occupancy",
+        what: "occupancy f",
+        runs: "gas at rest in a box at x = 0.2",
+        methods: COLLIDING,
+        quick: &[0.1, 0.3],
+        usual: &[0.0025, 0.01, 0.1, 0.3],
+        full: &[0.001, 0.0025, 0.005, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4],
+        limit: |method| of_table(Quantity::Occupancy)(method),
+        run: at_rest::occupancy,
+    },
+    Axis {
+        name: "particles",
+        what: "particles in all",
+        runs: "as occupancy, at occupancy 0.1 (rigid spheres as in time-step), runs as much longer",
+        methods: COLLIDING,
+        quick: &[2000.0, 200.0],
+        usual: &[2000.0, 500.0, 100.0],
+        full: &[16000.0, 4000.0, 2000.0, 1000.0, 500.0, 200.0, 100.0],
+        limit: |method| of_table(Quantity::Particles)(method),
+        run: at_rest::particles,
+    },
+    Axis {
+        name: "gap",
+        what: "width of a slit over the collision diameter",
+        runs: "gas at rest in a slit, at the occupancy of time-step and x = 0.2",
+        methods: COLLIDING,
+        quick: &[2.0, 0.5],
+        usual: &[2.0, 1.0, 0.5, 0.25],
+        full: &[8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.1],
+        limit: |method| of_table(Quantity::Gap)(method),
+        run: at_rest::gap,
+    },
+    Axis {
+        name: "mass-ratio",
+        what: "heavier over lighter gas, half each",
+        runs: "two gases at rest in a box, x = 0.2 of the mean mass",
+        methods: COLLIDING,
+        quick: &[7.0, 70.0],
+        usual: &[1.0, 7.0, 70.0],
+        full: &[1.0, 2.0, 7.0, 20.0, 40.0, 70.0],
+        limit: |_| None,
+        run: at_rest::mass_ratio,
+    },
+    Axis {
+        name: "knudsen",
+        what: "Knudsen number of a hole, of its radius, at the start",
+        runs: "discharge through a square hole into near-vacuum against the 0.84 of a continuum",
+        methods: ALL,
+        quick: &[0.3, 1.0],
+        usual: &[0.1, 0.3, 1.0],
+        full: &[0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 3.0, 10.0],
+        limit: |method| match method {
+            // Its limit is of the molecules of the gas.
+            Method::None => None,
+            _ => of_table(Quantity::Knudsen)(method),
+        },
+        run: flows::knudsen,
+    },
+    Axis {
+        name: "density-ratio",
+        what: "density left over right of a shock tube, at one temperature",
+        runs: "tube until t = 0.15 against the exact Riemann solution",
+        methods: ALL,
+        quick: &[8.0, 100.0],
+        usual: &[10.0, 100.0, 1000.0],
+        full: &[2.0, 10.0, 100.0, 1000.0, 10000.0],
+        limit: |_| None,
+        run: flows::density_ratio,
+    },
+    Axis {
+        name: "temperature-ratio",
+        what: "temperature left over right of a shock tube, at one density",
+        runs: "as density-ratio",
+        methods: ALL,
+        quick: &[4.0, 100.0],
+        usual: &[10.0, 100.0],
+        full: &[2.0, 5.0, 10.0, 30.0, 100.0],
+        limit: |_| None,
+        run: flows::temperature_ratio,
+    },
+    Axis {
+        name: "mach",
+        what: "Mach number of a jet",
+        runs: "a tank that is filled through a nozzle (scenes/tank.toml), its first 4 ms",
+        methods: ALL,
+        quick: &[1.0, 4.0],
+        usual: &[1.0, 2.0, 4.0, 8.0],
+        full: &[0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0],
+        limit: |_| None,
+        run: flows::mach,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(quantity: &str, measured: f64, error: f64) -> Check {
+        Check::of(quantity, 1.0, (measured, error), 0.02)
+    }
+
+    /// Broken is what is surely beyond its allowance, or no number; unclear what the run does not know.
+    #[test]
+    fn noise_breaks_nothing() {
+        assert_eq!(State::of(&check("x", 1.019, 0.001)), State::Holds);
+        assert_eq!(State::of(&check("x", 1.025, 0.005)), State::Holds);
+        assert_eq!(State::of(&check("x", 0.969, 0.005)), State::Broken);
+        assert_eq!(State::of(&check("x", 1.03, 0.011)), State::Unclear);
+        assert_eq!(State::of(&check("x", f64::NAN, 0.0)), State::Broken);
+        assert_eq!(State::of(&check("x", 1.0, f64::NAN)), State::Broken);
+    }
+
+    #[test]
+    fn the_first_that_breaks_is_found_with_the_worst_of_its_quantities() {
+        let point = |method, value, checks| Point { method, value, checks };
+        let points = [
+            point(Method::Cell, 1.0, vec![check("a", 1.0, 0.0), check("b", 1.03, 0.02)]),
+            point(Method::None, 1.0, vec![check("a", 1.5, 0.0)]),
+            point(Method::Cell, 2.0, vec![check("a", 0.9, 0.0), check("b", 1.3, 0.0)]),
+            point(Method::Cell, 3.0, vec![check("a", f64::NAN, 0.0)]),
+        ];
+        let found = first_broken(&points, Method::Cell);
+        assert_eq!(
+            (found.held, found.broken.map(|(value, check)| (value, check.quantity.as_str()))),
+            (Some(1.0), Some((2.0, "b")))
+        );
+        let none = first_broken(&points, Method::None);
+        assert!(none.held.is_none() && none.broken.is_some());
+        assert!(first_broken(&points, Method::HardSphere).broken.is_none());
+        assert_eq!(points[0].state(), State::Unclear);
+        assert_eq!(points[3].worst().unwrap().quantity, "a");
+    }
+
+    /// Values run one way, from safe to risky; names are unique; the limits are those of the table.
+    #[test]
+    fn axes_are_in_order() {
+        for (index, axis) in AXES.iter().enumerate() {
+            assert!(AXES[index + 1..].iter().all(|other| other.name != axis.name));
+            for values in [axis.quick, axis.usual, axis.full] {
+                let rising = values[0] < values[1];
+                assert!(
+                    values.windows(2).all(|pair| (pair[0] < pair[1]) == rising && pair[0] != pair[1]),
+                    "{}",
+                    axis.name
+                );
+            }
+        }
+        assert_eq!(AXES[0].limit(Method::Cell), Some(Bound::AtMost(2.0)));
+        assert_eq!(AXES[1].limit(Method::ClosestApproach), Some(Bound::AtLeast(3.0)));
+    }
+}
