@@ -14,9 +14,11 @@
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;
+mod choice;
 mod control_volume;
 mod decide;
 mod error;
+mod forecast;
 mod heat;
 mod population;
 mod render;
@@ -29,8 +31,10 @@ use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
 
+pub use choice::{Alternative, Choice, Forecast, choose};
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
+pub use forecast::{Cause, ColumnForecast, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +112,12 @@ pub struct Plan {
     pub vents: Vec<VentPlan>,
     pub reasons: Vec<Reason>,
     pub warnings: Vec<String>,
+    /// What the scene lacks, and kernels are therefore compiled without.
+    #[serde(skip)]
+    pub left_out: Vec<&'static str>,
+    /// Of a scene that wishes an accuracy or has a budget.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forecast: Option<Forecast>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

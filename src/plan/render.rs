@@ -18,6 +18,9 @@ impl Plan {
         }
         let reference = format!("{} K", significant(self.temperature_reference));
         row("final temperature", reference, "mean of all gas, no heat lost");
+        if !self.left_out.is_empty() {
+            row("not compiled", self.left_out.join(", "), "the scene has none");
+        }
         let mut text = table(&rows);
 
         let counted = |count: u64| if self.method == Method::ControlVolume { String::new() } else { grouped(count) };

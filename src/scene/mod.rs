@@ -28,6 +28,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use errors::{InvalidScene, Problem, SceneError};
+pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use types::*;
 pub use write::to_toml;
 

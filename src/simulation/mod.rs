@@ -17,6 +17,7 @@ mod interval;
 mod ladder;
 mod model;
 mod observer;
+mod outlook;
 mod reference;
 mod refine;
 mod run;

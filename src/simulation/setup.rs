@@ -128,7 +128,7 @@ fn zones(model: &Model) -> Vec<GpuZone> {
 }
 
 fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, coats } = model;
+    let Model { scene, vessel, plan, coats, .. } = model;
     let probe_volumes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);

@@ -24,7 +24,7 @@ pub fn state(
     parent: &RunState,
     particles: &[GpuParticle],
 ) -> Result<RunState, LadderError> {
-    let Model { scene, vessel, plan, coats } = model;
+    let Model { scene, vessel, plan, coats, .. } = model;
     let mut ladder = Ladder::new(plan, block_volumes(vessel, &plan.grid, plan.block_cells_log2));
     let (blocks, fast) = tallies(plan, particles);
     ladder.start(ladder.demand(&blocks, &fast))?;
