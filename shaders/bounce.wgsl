@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl coats.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent.
 //
@@ -162,7 +162,8 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 turned = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
                 var spin = 0.0;
                 if (SPIN && gas.exchange > 0.0) {
-                    spin = coat.thermal * gamma_variate(1.0 / gas.inverse_beta, particle.tag, bounces);
+                    let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, coat.thermal, draw.w);
+                    spin = coat.thermal * gamma_variate(shape, particle.tag, bounces);
                 }
                 let kinetic = 0.5 * gas.mass * dot(old - turned, old + turned);
                 tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));

@@ -9,12 +9,12 @@ override MODES: u32 = 1;
 override INVERSE_THERMAL: f32 = 1.0;
 
 // Of each gas, 32 apart: ln(h_K T_ref^K / Gamma(nu0+K+2)), K, 1/beta, 1/(beta+1). Modes that are not there have no weight.
-@group(0) @binding(60) var<uniform> modes: array<vec4<f32>, 512>;
+// Then, from THERMAL_MODES on: ln(h_K T_ref^K), K, beta.
+@group(0) @binding(60) var<uniform> modes: array<vec4<f32>, 1024>;
+const THERMAL_MODES: u32 = 512;
 
-// The mode that the uniform `draw` picks at the energy `sum`.
-fn mode_at(gas: u32, sum: f32, draw: f32) -> vec4<f32> {
-    let ln = log(max(sum * INVERSE_THERMAL, 1e-30));
-    let first = gas * 32u;
+// The mode, of those from `first` on, that the uniform `draw` picks at an energy, exp(ln) k T_ref.
+fn mode_at(first: u32, ln: f32, draw: f32) -> vec4<f32> {
     var most = -1e30;
     for (var k = 0u; k < MODES; k++) {
         most = max(most, modes[first + k].x + modes[first + k].y * ln);
@@ -39,7 +39,17 @@ fn mode_at(gas: u32, sum: f32, draw: f32) -> vec4<f32> {
 // the mode that `pick` draws.
 fn inverse_betas(gas: u32, constant: vec2<f32>, sum: f32, pick: u32) -> vec2<f32> {
     if (CURVES) {
-        return mode_at(gas, sum, unit_interval(pick)).zw;
+        let ln = log(max(sum * INVERSE_THERMAL, 1e-30));
+        return mode_at(gas * 32u, ln, unit_interval(pick)).zw;
     }
     return constant;
+}
+
+// The shape of the gamma distribution of e/kT in equilibrium at a temperature, `thermal` = kT over the reference mass: that
+// of a constant heat capacity, or of the mode that `pick` draws with weight h_K T^K.
+fn equilibrium_shape(gas: u32, inverse_beta: f32, thermal: f32, pick: u32) -> f32 {
+    if (CURVES) {
+        return mode_at(THERMAL_MODES + gas * 32u, log(thermal * INVERSE_THERMAL), unit_interval(pick)).z;
+    }
+    return 1.0 / inverse_beta;
 }

@@ -1,14 +1,18 @@
 //! `corpuscle verify`: the reference cases, and whether they hold here.
 
 use std::fs;
+use std::path::Path;
 
 use crate::gpu::Device;
-use crate::output::OutputError;
-use crate::study::verify::{CASES, Case, Check, Effort, Verdict, report};
+use crate::output::{OutputError, line_chart};
+use crate::study::verify::{CASES, Case, Check, Effort, Findings, Verdict, report};
 
 use super::CliError;
 use super::arguments::VerifyArguments;
 use super::terminal::say;
+
+/// Where the charts of a page are, beside it.
+const FIGURES: &str = "figures";
 
 pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     let cases = chosen(&raw.cases)?;
@@ -20,19 +24,27 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     let effort = if raw.full { Effort::Full } else { Effort::Quick };
     let device = Device::open(raw.gpu.as_deref())?;
     say(&report::head())?;
-    let mut outcomes: Vec<(&Case, Vec<Check>)> = Vec::new();
+    let mut outcomes: Vec<(&Case, Findings)> = Vec::new();
     for case in cases {
-        let checks = case.run(&device, effort)?;
-        say(&report::lines(case, &checks))?;
-        outcomes.push((case, checks));
+        let found = case.run(&device, effort)?;
+        say(&report::lines(case, &found.checks))?;
+        outcomes.push((case, found));
     }
-    let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, checks)| checks).collect();
+    let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, found)| &found.checks).collect();
     let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
     if let Some(path) = &raw.markdown {
         let info = &device.adapter().info;
         let driver = format!("{} {}", info.driver, info.driver_info);
-        let page = report::page(&outcomes, &command(&raw), &format!("{} ({})", info.name, driver.trim()));
-        fs::write(path, page).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
+        let device = format!("{} ({})", info.name, driver.trim());
+        let page = report::page(&outcomes, &command(&raw), &device, FIGURES);
+        let io = |action, path: &Path, source| OutputError::Io { action, path: path.to_path_buf(), source };
+        fs::write(path, page).map_err(|source| io("write", path, source))?;
+        let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
+        fs::create_dir_all(&figures).map_err(|source| io("create", &figures, source))?;
+        for chart in outcomes.iter().flat_map(|(_, found)| &found.charts) {
+            let path = figures.join(report::file(chart));
+            line_chart(&path, &chart.title, chart.x_label, chart.y_label, &chart.series)?;
+        }
     }
     say(&format!("{passed} of {} pass\n", checks.len()))?;
     if passed == checks.len() {

@@ -1,11 +1,11 @@
 //! When it pays to cut anew.
 //!
-//! A check compares the ranks' seconds per step. Imbalance is the longest over the mean, where the mean is what all
+//! Observations of the ranks' seconds per step are averaged, and a check compares the averages. Imbalance is the longest over the mean, where the mean is what all
 //! would take if each had its share of the work: sum of share x seconds over sum of shares. A rebalance is due if
 //!
 //! 1. the averaged imbalance is above the threshold,
 //! 2. the longest is above the mean by more than four standard errors of the averaged loads and what the largest of n
-//!    ranks' noise is expected to be, sqrt(2 ln n) (the noise is learnt from the checks and kept over rebalances),
+//!    ranks' noise is expected to be, sqrt(2 ln n) (the noise is learnt from the observations and kept over rebalances),
 //! 3. (longest - mean) x steps until the next check is above the averaged seconds of a rebalance.
 //!
 //! If a rebalance leaves more than half of what was above 1, and the imbalance above the threshold, the next one needs
@@ -20,8 +20,9 @@ use serde::{Deserialize, Serialize};
 const NEW: f64 = 0.25;
 /// Relative noise of a load, before any is learnt.
 const NOISE: f64 = 0.15;
-/// How much of the noise before is forgotten per rank and check.
-const NOISE_FORGET: f64 = 0.95;
+/// Loads that it counts as, and loads over which the noise is averaged.
+const NOISE_PRIOR: f64 = 3.0;
+const NOISE_MEMORY: f64 = 20.0;
 const STANDARD_ERRORS: f64 = 4.0;
 const MOST_DEMAND: f64 = 64.0;
 
@@ -35,9 +36,11 @@ pub struct Trigger {
     loads: Vec<f64>,
     mean: f64,
     spread: f64,
-    checks: u32,
-    /// The averaged square of a load's relative difference from its average.
+    /// Since the last rebalance.
+    observations: u32,
+    /// The averaged square of a load's relative difference from its average, and how many it is the mean of.
     noise: f64,
+    noise_of: f64,
     /// What is asked more after rebalances in vain: a power of two.
     demand: f64,
     /// The imbalance before a rebalance that is yet to be judged.
@@ -110,25 +113,32 @@ impl Trigger {
             loads: Vec::new(),
             mean: 0.0,
             spread: 0.0,
-            checks: 0,
+            observations: 0,
             noise: NOISE * NOISE,
+            noise_of: NOISE_PRIOR,
             demand: 1.0,
             before: None,
         }
     }
 
-    /// Takes in the seconds per step of each rank, measured since the last check or predicted, and decides.
+    /// Takes in the seconds per step of each rank, measured or predicted. What is not finite or nothing is left out.
     ///
     /// # Panics
     /// If there are not as many shares as ranks.
-    pub fn check(&mut self, seconds: &[f64], shares: &[f64], steps_to_next: u64) -> Decision {
+    pub fn observe(&mut self, seconds: &[f64], shares: &[f64]) {
         assert_eq!(seconds.len(), shares.len(), "one share per rank");
         let whole: f64 = shares.iter().sum();
         let mean = seconds.iter().zip(shares).map(|(seconds, share)| seconds * share).sum::<f64>() / whole;
-        if seconds.len() < 2 || !(mean.is_finite() && mean > 0.0) {
+        if mean.is_finite() && mean > 0.0 {
+            self.average(seconds, mean);
+        }
+    }
+
+    /// Decides by what was observed. `steps_to_next`: steps until the next check.
+    pub fn check(&mut self, steps_to_next: u64) -> Decision {
+        if self.loads.len() < 2 || self.observations == 0 {
             return Decision::Idle;
         }
-        self.average(seconds, mean);
         let imbalance = self.imbalance();
         self.judge_last(imbalance);
         let threshold = 1.0 + (self.threshold - 1.0) * self.demand;
@@ -136,7 +146,7 @@ impl Trigger {
             return Decision::Balanced { imbalance, threshold };
         }
         let excess = imbalance - 1.0;
-        let largest = (2.0 * libm::log(seconds.len() as f64)).sqrt();
+        let largest = (2.0 * libm::log(self.loads.len() as f64)).sqrt();
         let needed = (STANDARD_ERRORS + largest) * (self.noise * self.spread).sqrt();
         if excess <= needed {
             return Decision::Unsure { imbalance, needed };
@@ -155,11 +165,11 @@ impl Trigger {
             self.cost += part * (seconds - self.cost);
             self.measured = true;
         }
-        self.before = (self.checks > 0).then(|| self.imbalance());
-        self.checks = 0;
+        self.before = (self.observations > 0).then(|| self.imbalance());
+        self.observations = 0;
     }
 
-    /// The averaged imbalance; 1 before the first check.
+    /// The averaged imbalance; 1 before the first observation.
     pub fn imbalance(&self) -> f64 {
         self.loads.iter().copied().fold(1.0, f64::max)
     }
@@ -172,24 +182,25 @@ impl Trigger {
     fn average(&mut self, seconds: &[f64], mean: f64) {
         if self.loads.len() != seconds.len() {
             self.loads = vec![1.0; seconds.len()];
-            self.checks = 0;
+            self.observations = 0;
         }
-        self.checks = self.checks.saturating_add(1);
-        let part = (1.0 / f64::from(self.checks)).max(NEW);
+        self.observations = self.observations.saturating_add(1);
+        let part = (1.0 / f64::from(self.observations)).max(NEW);
         let mut off_squares = 0.0;
         for (load, seconds) in self.loads.iter_mut().zip(seconds) {
             let off = seconds / mean - *load;
             *load += part * off;
             off_squares += off * off;
         }
-        if self.checks > 1 {
+        if self.observations > 1 {
             // A new load is off an average that is itself off the true mean.
             let off_square = off_squares / seconds.len() as f64 / (1.0 + self.spread);
-            let freedoms = (seconds.len() - 1).min(10) as i32;
-            self.noise += (1.0 - NOISE_FORGET.powi(freedoms)) * (off_square - self.noise);
+            let freedoms = (seconds.len() - 1) as f64;
+            self.noise_of = (self.noise_of + freedoms).min(NOISE_MEMORY.max(freedoms));
+            self.noise += freedoms / self.noise_of * (off_square - self.noise);
         }
         self.mean += part * (mean - self.mean);
-        self.spread = if self.checks == 1 { 1.0 } else { (1.0 - part).powi(2) * self.spread + part * part };
+        self.spread = if self.observations == 1 { 1.0 } else { (1.0 - part).powi(2) * self.spread + part * part };
     }
 
     /// Whether the last rebalance was in vain.

@@ -73,9 +73,6 @@ pub enum PlanError {
         "choose a method of particles in [model]; its history has a control volume with these losses beside it"
     ))]
     LossesOfControlVolume { what: String },
-    #[error("{what} together with gas `{gas}`, whose heat capacity depends on the temperature: that is not there yet")]
-    #[diagnostic(help("give the gas a constant `cp`, that of the mean temperature"))]
-    LossesOfCurves { what: String, gas: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

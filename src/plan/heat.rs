@@ -10,14 +10,18 @@ use crate::scene::{HeatCapacity, Scene};
 const LARGEST_RESIDUAL: f64 = 0.01;
 /// Beyond the coldest and the hottest that the scene names: gas that expands, and what is noise.
 const COLDER: f64 = 0.8;
+const VENTED: f64 = 0.6;
 const HOTTER: f64 = 1.1;
 
 /// K, over which heat capacities count.
 fn range(scene: &Scene) -> [f64; 2] {
     let chambers = scene.chambers.iter().map(|chamber| chamber.temperature);
     let orifices = scene.orifices.iter().flat_map(|orifice| orifice.temperature.points.iter().map(|point| point[1]));
-    let coldest = chambers.chain(orifices).fold(f64::INFINITY, f64::min);
-    [COLDER * coldest, HOTTER * highest_temperature(scene).0]
+    let walls = scene.walls.iter().filter_map(|wall| wall.heat.as_ref()).map(|heat| heat.temperature);
+    let coldest = chambers.chain(orifices).chain(walls).fold(f64::INFINITY, f64::min);
+    // What is left behind a vent expands as no other gas does.
+    let colder = if scene.vents.is_empty() { COLDER } else { VENTED };
+    [colder * coldest, HOTTER * highest_temperature(scene).0]
 }
 
 /// Of each gas of the scene.

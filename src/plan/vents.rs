@@ -61,18 +61,13 @@ pub fn planned(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<V
 /// What is not there yet.
 ///
 /// # Errors
-/// If there are vents or walls that keep a temperature, and the scene is a control volume or has a gas whose heat capacity
-/// depends on the temperature.
-pub fn check(scene: &Scene, species: &[Species], method: Method) -> Result<(), PlanError> {
+/// If there are vents or walls that keep a temperature, and the scene is a control volume.
+pub fn check(scene: &Scene, method: Method) -> Result<(), PlanError> {
     let wall = scene.walls.iter().find(|wall| wall.heat.is_some()).map(|wall| format!("wall `{}`", wall.name));
     let vent = scene.vents.first().map(|vent| format!("vent `{}`", vent.name));
-    let Some(what) = vent.or(wall) else { return Ok(()) };
-    if method == Method::ControlVolume {
-        return Err(PlanError::LossesOfControlVolume { what });
-    }
-    match species.iter().position(|gas| !gas.is_constant()) {
-        Some(index) => Err(PlanError::LossesOfCurves { what, gas: scene.gases[index].name.clone() }),
-        None => Ok(()),
+    match vent.or(wall) {
+        Some(what) if method == Method::ControlVolume => Err(PlanError::LossesOfControlVolume { what }),
+        _ => Ok(()),
     }
 }
 

@@ -165,9 +165,8 @@ pub struct BalanceRecord {
 pub struct Balance {
     options: BalanceOptions,
     model: CostModel,
+    /// From the first loads on.
     trigger: Option<Trigger>,
-    /// The latest loads, by the model, s per step.
-    predicted: Vec<f64>,
     next_check: u64,
     /// The step of the last rebalance, until its cost is known; loads of before count no more.
     since: Option<u64>,
@@ -181,7 +180,6 @@ impl Balance {
             options,
             model: CostModel::new(options.by, ranks),
             trigger: None,
-            predicted: Vec::new(),
             next_check: options.every,
             since: None,
             rebalances: Vec::new(),
@@ -204,7 +202,6 @@ impl Balance {
             }
         };
         if self.since.is_none_or(|since| first_step >= since) {
-            self.predicted.clone_from(&predicted);
             let unit = self.unit(&loads);
             if self.since.take().is_some()
                 && let Some(trigger) = &mut self.trigger
@@ -212,6 +209,11 @@ impl Balance {
                 let longest = loads.iter().map(|load| load.rebalancing).fold(0.0, f64::max);
                 trigger.rebalanced(longest / unit);
             }
+            let trigger = self.trigger.get_or_insert_with(|| {
+                let mean = predicted.iter().sum::<f64>() / predicted.len() as f64;
+                Trigger::new(self.options.threshold, STEPS_OF_A_REBALANCE * mean)
+            });
+            trigger.observe(&predicted, &self.model.shares());
         }
         let rebalanced = self.rebalances.iter().find(|(step, _)| *step == first_step).map(|(_, imbalance)| *imbalance);
         self.records.push(BalanceRecord { step: first_step + u64::from(steps), time, loads, predicted, rebalanced });
@@ -284,9 +286,9 @@ impl Balance {
 
     /// Whether it is time to look, and what is seen asks for a rebalance.
     fn due(&mut self, step: u64) -> bool {
-        if self.predicted.is_empty() || self.since.is_some() {
+        let Some(trigger) = self.trigger.as_mut().filter(|_| self.since.is_none()) else {
             return false;
-        }
+        };
         if let BalanceMode::AtOnce { times } = self.options.mode {
             return self.rebalances.len() < times as usize;
         }
@@ -294,10 +296,7 @@ impl Balance {
             return false;
         }
         self.next_check = step + self.options.every;
-        let mean = self.predicted.iter().sum::<f64>() / self.predicted.len() as f64;
-        let threshold = self.options.threshold;
-        let trigger = self.trigger.get_or_insert_with(|| Trigger::new(threshold, STEPS_OF_A_REBALANCE * mean));
-        let decision: Decision = trigger.check(&self.predicted, &self.model.shares(), self.options.every);
+        let decision: Decision = trigger.check(self.options.every);
         tracing::debug!("step {step}: {decision}");
         decision.rebalances()
     }

@@ -78,20 +78,26 @@ fn inverse(beta: f64) -> f32 {
     (1.0 / beta.max(1e-9)) as f32
 }
 
-/// The device's table of modes (`shaders/shared/modes.wgsl`), [`MOST_MODES`] for each of 16 gases.
+/// The device's table of modes (`shaders/shared/modes.wgsl`), [`MOST_MODES`] for each of 16 gases: for an exchange at an
+/// energy, then for an equilibrium at a temperature.
 pub fn mode_table(plan: &Plan) -> Vec<[f32; 4]> {
-    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 16 * MOST_MODES];
-    for (gas, rows) in plan.gases.iter().zip(table.chunks_exact_mut(MOST_MODES)) {
+    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 2 * 16 * MOST_MODES];
+    let (at_energy, thermal) = table.split_at_mut(16 * MOST_MODES);
+    let rows = at_energy.chunks_exact_mut(MOST_MODES).zip(thermal.chunks_exact_mut(MOST_MODES));
+    for (gas, (rows, thermal)) in plan.gases.iter().zip(rows) {
         let Some(modes) = gas.species.modes() else {
             let beta = 0.5 * gas.spin_dof;
             rows[0] = [0.0, 0.0, inverse(beta), (1.0 / (beta + 1.0)) as f32];
+            thermal[0] = [0.0, 0.0, beta as f32, 0.0];
             continue;
         };
         let ln_warmer = libm::log(plan.temperature_reference / modes.scale);
-        for (row, mode) in rows.iter_mut().zip(&modes.modes) {
+        for ((row, thermal), mode) in rows.iter_mut().zip(thermal).zip(&modes.modes) {
             let beta = modes.nu0 + mode.power;
-            let ln_weight = mode.ln_weight + mode.power * ln_warmer - libm::lgamma(beta + 2.0);
-            *row = [ln_weight as f32, mode.power as f32, inverse(beta), (1.0 / (beta + 1.0)) as f32];
+            let ln_weight = mode.ln_weight + mode.power * ln_warmer;
+            let at_energy = ln_weight - libm::lgamma(beta + 2.0);
+            *row = [at_energy as f32, mode.power as f32, inverse(beta), (1.0 / (beta + 1.0)) as f32];
+            *thermal = [ln_weight as f32, mode.power as f32, beta as f32, 0.0];
         }
     }
     table

@@ -33,13 +33,14 @@ pub fn burst() -> Model {
     )
 }
 
-/// Carbon dioxide, whose heat capacity grows, and helium blow into air and helium.
+/// Carbon dioxide, whose heat capacity grows, and helium blow into air and helium within warm walls.
 pub fn curves() -> Model {
     model(
         "end_time = 8e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.667\n\
          [[gas]]\nname = \"carbon dioxide\"\nmolar_mass = 0.044\ncp = [23.0, 5.6e-2, -2.2e-5]\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         temperature = 450.0\naccommodation = 0.4\n\
          [[chamber]]\nname = \"all\"\npressure = 4e4\ntemperature = 300.0\ngas = { air = 0.7, helium = 0.3 }\n\
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.004\n\
          gas = { helium = 0.25, \"carbon dioxide\" = 0.75 }\ntemperature = 700.0\nmass_flow = [[0.0, 0.3], [2e-3, 0.3]]\n\

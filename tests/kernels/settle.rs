@@ -67,7 +67,7 @@ fn curved() -> [Gas; 2] {
 
 /// The device's table of modes.
 fn mode_rows() -> Vec<[f32; 4]> {
-    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 512];
+    let mut table = vec![[-1e30, 0.0, 1.0, 1.0]; 1024];
     for (gas, rows) in curved().iter().zip(table.chunks_exact_mut(32)) {
         let row =
             |[weight, power, beta]: [f64; 3]| [weight.ln(), power, 1.0 / beta, 1.0 / (beta + 1.0)].map(|x| x as f32);

@@ -4,69 +4,31 @@
 //! x^(gamma-1) of the part x of the mass that is left, dx/dt = -K x^((gamma+1)/2), x = (1 + (gamma-1)/2 K t)^(-2/(gamma-1)),
 //! K = C23 A/V .6847 sqrt(R T0 / M).
 //!
-//! Statistics: the energy of a particle that leaves has the mean 7/2 kT and the variance 7/2 (kT)^2 (zeta = 2: of the
-//! normal component 2 kT as a gamma variate of shape 3/2 + 1/2 = 2, the rest a chi-square of four, shape 2 - 1/2; sum
-//! of the shapes 7/2). Over n of them the slope errs by 1.4 sqrt(2/7) / sqrt(n).
+//! The runs, and what they tell, are those of `corpuscle verify leak`.
 
 use corpuscle::output::AuditLimits;
 use corpuscle::simulation::Options;
+use corpuscle::study::verify::curve::CP;
+use corpuscle::study::verify::gas_box::GAS_CONSTANT as R;
+use corpuscle::study::verify::losses::{emptied, left as left_after, pores, rate, slope};
 
-use crate::whole_run::{Run, model, run};
-
-const GAS_CONSTANT: f64 = 8.314462618;
-const EDGE: f64 = 0.1;
-const TEMPERATURE: f64 = 400.0;
-const MOLAR_MASS: f64 = 0.028;
-/// Choked isentropic flow over p sqrt(M / (R T)), gamma 1.4.
-const CHOKED: f64 = 0.684_731;
-
-/// A cube all of whose walls vent into vacuum with this coefficient.
-fn emptied(particles: u64, end_time: f64, coefficient: f64) -> Run {
-    let text = format!(
-        "end_time = {end_time:e}\nseed = 11\n[[gas]]\nname = \"nitrogen\"\nmolar_mass = {MOLAR_MASS}\ngamma = 1.4\n\
-         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\ngas = \"inside\"\n\
-         [[chamber]]\nname = \"all\"\npressure = 200000.0\ntemperature = {TEMPERATURE}\ngas = \"nitrogen\"\n\
-         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-         [[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = {coefficient:e}\nexternal_pressure = 0.0\n\
-         [model]\nparticles = {particles}\noccupancy = 0.1\n[output]\nrows = 20\nsnapshots = 0\n"
-    );
-    let run = run(&model(&text), Options::default());
-    assert_eq!(run.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());
-    run
-}
-
-/// C23 for beta = .02 over the thermal speed: G = beta p / 2.
-fn pores() -> f64 {
-    0.5 * 0.02 / CHOKED
-}
-
-/// K, 1/s.
-fn rate(coefficient: f64) -> f64 {
-    coefficient * 6.0 / EDGE * CHOKED * (GAS_CONSTANT * TEMPERATURE / MOLAR_MASS).sqrt()
-}
-
-/// d lnT / d lnN over a whole run, and its standard error.
-fn slope(run: &Run) -> (f64, f64) {
-    let audit = &run.outcome.audit;
-    let number = |count: u64| count as f64;
-    let (before, after) = (number(audit.particles_initial), number(audit.particles_inside));
-    assert_eq!(audit.particles_vented, audit.particles_initial - audit.particles_inside);
-    let temperatures = (audit.energy_end / after / (audit.energy_start / before)).ln();
-    (temperatures / (after / before).ln(), 1.4 * (2.0 / 7.0 / (before - after)).sqrt())
-}
+use crate::whole_run::{device, model, run};
 
 #[test]
 fn a_vessel_empties_isentropically() {
     let particles = 4000;
     let end_time = 0.7 / rate(pores());
-    let run = emptied(particles, end_time, pores());
+    let run = emptied(&device(), particles, end_time, pores()).expect("a run");
+    let audit = &run.outcome.audit;
+    assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    assert_eq!(audit.particles_vented, audit.particles_initial - audit.particles_inside);
     let (found, error) = slope(&run);
     println!("d lnT / d lnN {found:.4} +- {error:.4}");
     assert!((found - 0.4).abs() < 4.5 * error, "{found} +- {error}");
     // The check can fail: a probability that does not depend on the speed has .2.
     assert!((0.2 - 0.4f64).abs() > 4.5 * error);
     let last = run.rows.last().expect("a row");
-    let x = |time: f64| (1.0 + 0.2 * rate(pores()) * time).powi(-5);
+    let x = |time: f64| left_after(pores(), time);
     // Before 1/12 of the run has passed, little has left; then the mass follows within a few particles.
     let mass = run.outcome.audit.mass_start;
     let left = last.vents[0].mass / mass;
@@ -84,7 +46,7 @@ fn a_vessel_empties_isentropically() {
 #[test]
 #[ignore = "minutes on a software device: cargo test --release --test verification isentropically -- --ignored"]
 fn a_vessel_empties_isentropically_within_a_hundredth() {
-    let run = emptied(100_000, 0.7 / rate(pores()), pores());
+    let run = emptied(&device(), 100_000, 0.7 / rate(pores()), pores()).expect("a run");
     let (found, error) = slope(&run);
     println!("d lnT / d lnN {found:.4} +- {error:.4}");
     assert!(error < 0.01 / 2.5 && (found - 0.4).abs() < 0.01, "{found} +- {error}");
@@ -111,4 +73,40 @@ fn filling_and_venting_follows_the_control_volume() {
     assert_eq!(run.outcome.particles.len() as u64, entered - run.outcome.audit.particles_vented);
     // The check can fail: without the vents there would be so much more.
     assert!(run.outcome.audit.particles_vented as f64 > 0.1 * entered as f64);
+}
+
+/// The same with a gas of cp(T): what is left has lost n cv dT = -dn R T, so ln(N/N0) is the integral of cv/(R T).
+#[test]
+fn a_gas_with_a_curve_empties_isentropically_too() {
+    let (start, [a, b, c]) = (600.0, CP);
+    let text = format!(
+        "end_time = 4e-3\nseed = 4\n[[gas]]\nname = \"curved\"\nmolar_mass = 0.044\ncp = {CP:?}\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         [[chamber]]\nname = \"all\"\npressure = 2e5\ntemperature = {start}\ngas = \"curved\"\n\
+         [[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = {:e}\nexternal_pressure = 0.0\n\
+         [model]\nparticles = 4000\noccupancy = 0.1\n[output]\nrows = 4\nsnapshots = 0\n",
+        pores()
+    );
+    let model = model(&text);
+    let run = run(&model, Options::default());
+    let audit = &run.outcome.audit;
+    assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new());
+    let (before, after) = (audit.particles_initial as f64, audit.particles_inside as f64);
+    let integral = |t: f64| (a - R) * t.ln() + b * t + 0.5 * c * t * t;
+    let (mut low, mut high) = (0.3 * start, start);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if integral(start) - integral(middle) > R * (before / after).ln() { low = middle } else { high = middle }
+    }
+    // u = the integral of cv from 0 K, of which the model has its own below the curve's range.
+    let gain = a * (low - start) + 0.5 * b * (low.powi(2) - start.powi(2)) + c / 3.0 * (low.powi(3) - start.powi(3));
+    let per_mole = |energy: f64, count: f64| energy / (count * model.plan.moles_per_particle);
+    let found = per_mole(audit.energy_end, after) - per_mole(audit.energy_start, before);
+    let expected = gain - R * (low - start);
+    // As of the constant gas, with a variance of some 5 (kT)^2 for each of those that left.
+    let error = (5.0 * (before - after)).sqrt() * R * 0.5 * (start + low) / after;
+    println!("{before} to {after}, {low:.1} K: {found:.1} +- {error:.1} J/mol of {expected:.1}");
+    assert!((found - expected).abs() < 4.5 * error, "{found} {expected} +- {error}");
+    // The check can fail: if each took only its share of the energy, nothing would change.
+    assert!(expected.abs() > 9.0 * error);
 }

@@ -7,7 +7,7 @@ use crate::simulation::{Options, Outcome, Simulation};
 use crate::study::StudyError;
 
 use super::gas_box::{EDGE, EquilibriumBox, GAS_CONSTANT, TEMPERATURE};
-use super::{Check, Effort, Witness, run};
+use super::{Check, Effort, Findings, Witness, run};
 
 /// Wall pressure over n k T of one run.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +83,7 @@ pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Resu
 /// N = 8000), whose own error is taken for half a per cent.
 pub const RIGID: [(f64, u32, f64); 2] = [(0.01, 480, 1.039), (0.1, 1280, 1.486)];
 
-pub(super) fn wall_pressures(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn wall_pressures(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let occupancies: &[(f64, f64)] = match effort {
         Effort::Quick => &[(0.01, 0.05), (0.1, 0.2), (0.3, 0.3)],
         Effort::Full => &[(0.01, 0.05), (0.03, 0.1), (0.1, 0.2), (0.2, 0.25), (0.3, 0.3)],
@@ -107,7 +107,7 @@ pub(super) fn wall_pressures(device: &Device, effort: Effort) -> Result<Vec<Chec
             checks.push(Check::of(quantity, expected, found, 0.02 * expected));
         }
     }
-    Ok(checks)
+    Ok(checks.into())
 }
 
 /// Collisions of a gas over n pi sigma^2 gbar.
@@ -166,7 +166,7 @@ pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate,
 const RATES: [(u32, f64, f64, f64); 5] =
     [(3, 0.1, 1.0, 0.015), (1, 0.2, 0.814, 0.02), (2, 0.2, 0.947, 0.02), (3, 0.2, 0.982, 0.02), (4, 0.5, 0.970, 0.02)];
 
-pub(super) fn rates(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn rates(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let count = if effort == Effort::Quick { 3 } else { RATES.len() };
     let check = |&(rounds, step_over_tau, expected, tolerance): &(u32, f64, f64, f64)| {
         let steps = if step_over_tau < 0.15 { 250 } else { 80 };

@@ -7,7 +7,7 @@ use crate::subdomain::GpuParticle;
 
 use super::gas_box::{EquilibriumBox, NITROGEN};
 use super::statistics::mean_of_series;
-use super::{Check, Effort, Run, run};
+use super::{Check, Effort, Findings, Run, run};
 
 pub const HELIUM: &str = "[[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n";
 
@@ -67,7 +67,7 @@ pub fn ratios(run: &Run) -> [(f64, f64); 2] {
     [mean_of_series(&spin, 12), mean_of_series(&gases, 12)]
 }
 
-pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let times = if effort == Effort::Quick { 1 } else { 2 };
     let mut checks = Vec::new();
     for (method, step_over_tau, steps) in [("closest-approach", 0.1, 5600), ("cell", 0.5, 2000)] {
@@ -75,7 +75,7 @@ pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Vec<Che
         checks.push(Check::of(format!("{method}: T_int/T_tr"), 1.0, spin, 0.01));
         checks.push(Check::of(format!("{method}: T1/T2, masses 1:7"), 1.0, gases, 0.01));
     }
-    Ok(checks)
+    Ok(checks.into())
 }
 
 /// Z from a run that starts without spin and stops after about s = .5 Z, and its standard error.
@@ -117,7 +117,7 @@ pub fn collision_number(
 }
 
 /// The law is that of molecular chaos: of closest approach in a thin gas, of cells in any.
-pub(super) fn relaxation(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn relaxation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let ways =
         [("closest-approach", 2.0, 0.003, 0.05), ("cell", 5.0, 0.1, 0.25), ("closest-approach", 5.0, 0.003, 0.05)];
     let count = if effort == Effort::Quick { 2 } else { 3 };
@@ -161,7 +161,7 @@ pub fn energy_drift(
 }
 
 /// Within 1e-5 over 1e5 steps (specification, section 8); in fewer steps in proportion.
-pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let steps = if effort == Effort::Quick { 2000 } else { 100_000 };
     let ways = [
         ("closest-approach", "nitrogen", NITROGEN),

@@ -8,7 +8,7 @@ use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
 use super::witness::model_from;
-use super::{Check, Effort, Run, run, scene_of};
+use super::{Check, Effort, Findings, Run, run, scene_of};
 
 /// s; the whole rise and most of the peak.
 pub const DURATION: f64 = 0.012;
@@ -54,7 +54,7 @@ pub fn enthalpy(model: &Model) -> f64 {
     3.5 * GAS_CONSTANT * 700.0 / gas.molar_mass
 }
 
-pub(super) fn balances(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+pub(super) fn balances(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (model, run) = filled(device, Method::ClosestApproach, if effort == Effort::Quick { 1500 } else { 6000 })?;
     let orifice = &model.scene.orifices[0];
     let gas = &model.scene.gases[orifice.mixture.0[0].0];
@@ -65,5 +65,6 @@ pub(super) fn balances(device: &Device, effort: Effort) -> Result<Vec<Check>, St
     Ok(vec![
         Check::of("mass injected, particles off", 0.0, ((injected - mass) / particle, 0.0), 0.5 * (1.0 + 1e-9)),
         Check::of("energy over U0 + integral h dm, less 1", 0.0, (error, 0.0), 1e-4),
-    ])
+    ]
+    .into())
 }

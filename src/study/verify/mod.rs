@@ -8,16 +8,21 @@
 //! The same functions serve the tests, which also show that each check can fail.
 
 pub mod collisions;
+pub mod curve;
 pub mod equilibrium;
 pub mod filling;
 pub mod gas_box;
 pub mod holes;
+pub mod losses;
+pub mod mixing;
 pub mod report;
+pub mod shear;
 pub mod statistics;
 pub mod tube;
 mod witness;
 
 use crate::gpu::Device;
+use crate::output::{PALETTE, Series};
 
 pub use witness::{Run, Witness, run, scene_of};
 
@@ -37,14 +42,66 @@ pub struct Case {
     pub name: &'static str,
     /// What is compared with what, and where the reference is from.
     pub law: &'static str,
-    run: fn(&Device, Effort) -> Result<Vec<Check>, StudyError>,
+    run: fn(&Device, Effort) -> Result<Findings, StudyError>,
 }
 
 impl Case {
     /// # Errors
     /// If a run fails.
-    pub fn run(&self, device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
+    pub fn run(&self, device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         (self.run)(device, effort)
+    }
+}
+
+/// What a case found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    pub checks: Vec<Check>,
+    pub charts: Vec<Curves>,
+}
+
+impl From<Vec<Check>> for Findings {
+    fn from(checks: Vec<Check>) -> Findings {
+        Findings { checks, charts: Vec::new() }
+    }
+}
+
+impl FromIterator<Check> for Findings {
+    fn from_iter<I: IntoIterator<Item = Check>>(checks: I) -> Findings {
+        Findings::from(checks.into_iter().collect::<Vec<_>>())
+    }
+}
+
+/// Measured curves beside their references.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curves {
+    /// Of the file, without its ending.
+    pub name: &'static str,
+    pub title: String,
+    pub x_label: &'static str,
+    pub y_label: &'static str,
+    pub series: Vec<Series>,
+}
+
+impl Curves {
+    pub fn new(name: &'static str, title: String, x_label: &'static str, y_label: &'static str) -> Curves {
+        Curves { name, title, x_label, y_label, series: Vec::new() }
+    }
+
+    /// Adds a measured one.
+    #[must_use]
+    pub fn line(mut self, name: &str, points: Vec<[f64; 2]>) -> Curves {
+        let colour = PALETTE[self.series.len() % PALETTE.len()];
+        self.series.push(Series { name: name.into(), points, dashed: false, colour });
+        self
+    }
+
+    /// Adds what the last ones should be.
+    #[must_use]
+    pub fn reference(mut self, name: &str, points: Vec<[f64; 2]>) -> Curves {
+        let [.., ink] = PALETTE;
+        self.series.push(Series { name: name.into(), points, dashed: true, colour: ink });
+        self
     }
 }
 
@@ -137,6 +194,32 @@ pub const CASES: &[Case] = &[
         name: "orifice",
         law: "discharge into near-vacuum over choked isentropic flow, by Knudsen number of the hole's radius",
         run: holes::discharges,
+    },
+    Case {
+        name: "filling-curve",
+        law: "the same with cp = a + b T + c T^2, whose integrals are known in closed form",
+        run: curve::filling,
+    },
+    Case {
+        name: "heat-loss",
+        law: "cooling by walls with a heat-transfer coefficient: exponential, n cv dT/dt = -h A (T - T_w)",
+        run: losses::heat,
+    },
+    Case {
+        name: "leak",
+        law: "a vessel that empties through its pores: isentropic, d lnT / d lnN = gamma - 1, and choked flow",
+        run: losses::leak,
+    },
+    Case {
+        name: "blow-down",
+        law: "one chamber empties into another through a hole: the gas that stays cools between isentropically and by effusion",
+        run: holes::blow_down,
+    },
+    Case { name: "mixing", law: "two gases come to equal shares and one temperature (mixing)", run: mixing::mixing },
+    Case {
+        name: "viscosity",
+        law: "decay of vortices as exp(-2 nu k^2 t) (Taylor and Green) with the viscosity of the method",
+        run: shear::viscosities,
     },
     Case { name: "sod", law: "Sod's shock tube, gamma 7/5, against the exact Riemann solution", run: tube::sod },
     Case { name: "sod-monatomic", law: "the same with gamma 5/3", run: tube::sod_monatomic },

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Case, Check, Verdict};
+use super::{Case, Check, Curves, Findings, Verdict};
 
 /// Columns of the table: case, quantity, reference, measured, standard error, tolerance, verdict.
 const WIDTHS: [usize; 7] = [15, 44, 10, 12, 10, 10, 8];
@@ -18,20 +18,21 @@ pub fn lines(case: &Case, checks: &[Check]) -> String {
     checks.iter().map(|check| line(&cells(case, check))).collect()
 }
 
-/// A page with all cases, their laws and what came of them. `made_by`: the command, and the device that it ran on.
-pub fn page(outcomes: &[(&Case, Vec<Check>)], command: &str, device: &str) -> String {
+/// A page with all cases, their laws and what came of them. `command`: what made it, `device`: where; `figures`: the folder
+/// with the charts, from the page.
+pub fn page(outcomes: &[(&Case, Findings)], command: &str, device: &str, figures: &str) -> String {
     let mut page = format!(
         "# Accuracy\n\n\
          Reference cases and what a run gave for them, as printed by\n\n```sh\n{command}\n```\n\n\
          on {device}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
          a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n"
     );
-    let passed = outcomes.iter().flat_map(|(_, checks)| checks).filter(|c| c.verdict() == Verdict::Pass).count();
-    let all: usize = outcomes.iter().map(|(_, checks)| checks.len()).sum();
+    let passed = outcomes.iter().flat_map(|(_, found)| &found.checks).filter(|c| c.verdict() == Verdict::Pass).count();
+    let all: usize = outcomes.iter().map(|(_, found)| found.checks.len()).sum();
     let _ = writeln!(page, "{passed} of {all} pass.\n\n| {} |", TITLES.join(" | "));
     page += "|---|---|--:|--:|--:|--:|---|\n";
-    for (case, checks) in outcomes {
-        for check in checks {
+    for (case, found) in outcomes {
+        for check in &found.checks {
             let _ = writeln!(page, "| {} |", cells(case, check).map(|cell| cell.replace('|', "\\|")).join(" | "));
         }
     }
@@ -39,7 +40,15 @@ pub fn page(outcomes: &[(&Case, Vec<Check>)], command: &str, device: &str) -> St
     for (case, _) in outcomes {
         let _ = writeln!(page, "- `{}`: {}.", case.name, case.law);
     }
+    for chart in outcomes.iter().flat_map(|(_, found)| &found.charts) {
+        let _ = writeln!(page, "\n![{}]({figures}/{})", chart.title, file(chart));
+    }
     page
+}
+
+/// The name of the file that a chart is drawn into.
+pub fn file(chart: &Curves) -> String {
+    format!("accuracy-{}.svg", chart.name)
 }
 
 fn cells(case: &Case, check: &Check) -> [String; 7] {
@@ -99,12 +108,15 @@ mod tests {
     fn the_page_tells_what_passed() {
         let good = Check::of("mean |x|", 1.0, (1.01, 0.001), 0.02);
         let bad = Check { measured: 1.03, ..good.clone() };
-        let page = page(&[(&CASES[0], vec![good, bad])], "corpuscle verify", "a device");
+        let chart = Curves::new("wall-pressure", "Pressure".into(), "f", "p");
+        let found = Findings { checks: vec![good, bad], charts: vec![chart] };
+        let page = page(&[(&CASES[0], found)], "corpuscle verify", "a device", "figures");
         assert!(page.contains("1 of 2 pass"), "{page}");
         assert!(
             page.contains("| wall-pressure | mean \\|x\\| | 1.000 | 1.010 | 0.001000 | 0.02000 | pass |"),
             "{page}"
         );
         assert!(page.contains("| FAIL |"), "{page}");
+        assert!(page.contains("![Pressure](figures/accuracy-wall-pressure.svg)"), "{page}");
     }
 }
