@@ -19,7 +19,8 @@ impl Plan {
         let reference = format!("{} K", significant(self.temperature_reference));
         row("final temperature", reference, "mean of all gas, no heat lost");
         if !self.left_out.is_empty() {
-            row("not compiled", self.left_out.join(", "), "the scene has none");
+            let lacks = format!("the scene lacks {}", self.left_out.join(", "));
+            row("not compiled", format!("{} features", self.left_out.len()), &lacks);
         }
         let mut text = table(&rows);
 
