@@ -28,11 +28,11 @@ const TWO: &str = "end_time = 1.2e-3\n[[wall]]\nname = \"tank\"\nshape = \"box\"
      region = { box = { min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] } }\n[[chamber]]\nname = \"tank\"\n\
      pressure = 2e3\ntemperature = 700.0\ngas = \"nitrogen\"\n";
 
+// Without a surface: a face beside a jet has waves that no control volume knows.
 const FILLED: &str = "end_time = 0.01\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
      max = [0.2, 0.2, 0.2]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\n\
      gas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.0, 0.1, 0.1]\ndirection = [1.0, 0.0, 0.0]\n\
-     area = 0.005\ngas = \"nitrogen\"\ntemperature = 600.0\nmass_flow = [[0.0, 0.0], [0.004, 1.0], [0.01, 0.0]]\n\
-     [[surface]]\nname = \"side\"\nwall = \"box\"\nface = \"+y\"\n";
+     area = 0.005\ngas = \"nitrogen\"\ntemperature = 600.0\nmass_flow = [[0.0, 0.0], [0.004, 1.0], [0.01, 0.0]]\n";
 
 const VENTED: &str = "end_time = 0.006\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
      max = [0.1, 0.1, 0.1]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 2e5\ntemperature = 400.0\n\
@@ -197,7 +197,7 @@ fn effusion() {
 
 #[test]
 fn a_closed_vessel_is_filled() {
-    check("filling", FILLED, "closest-approach", 0.05, 20, 2);
+    check("filling", FILLED, "closest-approach", 0.02, 20, 3);
 }
 
 #[test]
