@@ -1,10 +1,11 @@
 //! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
-// as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent.
+// as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent. A wall that moves does
+// so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the walls,
 // `coats` and `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces,
-// the coats and the vents that the scene has. One thread per entry of `bouncing`, which writes its own particle;
+// the coats, the vents and the moving walls that the scene has. One thread per entry of `bouncing`, which writes its own particle;
 // random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
 
 override COLLISIONS: bool = true;
@@ -24,11 +25,14 @@ override ENERGY_SCALE: f32 = 1.0;
 // Where the tallies of coats and vents start in `sums`.
 override COATS_AT: u32 = 0;
 override VENTS_AT: u32 = 0;
+// And where those of moving walls do.
+override WORKS_AT: u32 = 0;
 
 // Words of a surface's tally, two each: three impulse components, normal impulse, hits.
 const SURFACE_WORDS: u32 = 10;
 // Of a coat's: energy that it took, and that energy times the tallies of the zones that followed.
 const COAT_WORDS: u32 = 4;
+// Of a moving wall's: the same, of the work that the gas did on it.
 // Of a vent's: energy that left, and times the tallies, as above; hits; hits whose probability was clipped to one;
 // then, one word each, the particles of each gas that left.
 const VENT_WORDS: u32 = 24;
@@ -126,6 +130,8 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let gas = gases[gas_of(particle.tag)];
     var bounces = 0u;
     var end = step.dt;
+    // Velocity of the wall that was hit last.
+    var carried = vec3<f32>(0.0);
     var overshoot = 0.0;
     loop {
         let hit = first_hit(particle.position, particle.velocity, time, step.dt);
@@ -141,8 +147,17 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         bounces++;
         let triangle = triangles[hit.triangle];
         let old = particle.velocity;
-        var turned = old - 2.0 * dot(old, triangle.normal) * triangle.normal;
-        turned *= sqrt(dot(old, old) / dot(turned, turned));
+        if (MOVING) {
+            carried = vec3<f32>(0.0);
+            if (triangle.motion != NOBODY) {
+                carried = motion_of(triangle.motion).velocity;
+            }
+        }
+        // In the frame of the wall.
+        let relative = old - carried;
+        var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
+        turned *= sqrt(dot(relative, relative) / dot(turned, turned));
+        turned += carried;
         var mirrored = true;
         if (COATS && triangle.coat != NOBODY) {
             let coat = coats[triangle.coat];
@@ -159,20 +174,26 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             }
             if (unit_interval(draw.y) < coat.accommodation) {
                 mirrored = false;
-                turned = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
+                let away = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
+                turned = away + carried;
                 var spin = 0.0;
                 if (SPIN && gas.exchange > 0.0) {
                     let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, coat.thermal, draw.w);
                     spin = coat.thermal * gamma_variate(shape, particle.tag, bounces);
                 }
-                let kinetic = 0.5 * gas.mass * dot(old - turned, old + turned);
+                let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
                 tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));
                 particle.spin = spin;
             }
         }
+        var work = 0.0;
+        if (MOVING && triangle.motion != NOBODY) {
+            work = gas.mass * dot(carried, turned - old);
+            tally_energy(WORKS_AT + triangle.motion * COAT_WORDS, -work);
+        }
         if (SPIN && mirrored && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
-            particle.spin = max(particle.spin - 0.5 * gas.mass * dot(turned - old, turned + old), 0.0);
+            particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);
         }
         if (SURFACES && triangle.surface != NOBODY) {
             tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
@@ -191,6 +212,10 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     particle.position = shifted(particle.position, particle.velocity * end);
+    if (MOVING && end < step.dt) {
+        // A flight that was cut short ends at its wall, which goes on.
+        particle.position = shifted(particle.position, carried * (step.dt - end));
+    }
     let cell = particle.position >> vec3<u32>(CELL_BITS);
     if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
         atomicAdd(&counters[OUTSIDE], 1u);

@@ -31,7 +31,7 @@ fn member(begin: u32, k: u32, part: u32) -> u32 {
 }
 
 fn hidden(i: Particle, j: Particle) -> bool {
-    return blocked(i.position, j.position);
+    return blocked(i.position, j.position, 0.0);
 }
 
 fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
@@ -39,7 +39,7 @@ fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
     var least = NEVER;
     for (var part = 0u; part < parts; part++) {
         let away = between(place, cell_parts[first + part].place);
-        if (!blocked(place, cell_parts[first + part].place)) {
+        if (!blocked(place, cell_parts[first + part].place, 0.0)) {
             return part;
         }
         if (dot(away, away) < least) {

@@ -66,7 +66,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (ORIFICES) {
         start = birth_time(slot.y);
     }
-    let flag = select(0u, NEAR_WALL, may_part(cell_index(place_in_grid)));
+    let flag = select(0u, NEAR_WALL, may_part(place_in_grid));
     middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     touched[place] = 0u;
     flights[place] = Flight(start, NEVER, NOBODY, 0u);

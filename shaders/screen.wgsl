@@ -49,7 +49,7 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         let j = neighbours[k * stride + s];
         let there = first_place(j);
         let first = id_of(tag) < id_of(sorted[j].tag);
-        if (!blocked(select(there, place, first), select(place, there, first))) {
+        if (!blocked(select(there, place, first), select(place, there, first), 0.0)) {
             neighbours[kept * stride + s] = j;
             kept++;
         }

@@ -103,8 +103,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     // Neighbours are screened where the step starts; here, where the pair would meet. A pair that a wall
     // parts passes on as if it had collided, so that its particles choose others in the next round.
     let place_i = shifted(i.position, i.velocity * time);
-    if (may_part(cell_index(nearest_cell(place_i)))
-        && blocked(place_i, shifted(j.position, j.velocity * time))) {
+    if (may_part(nearest_cell(place_i))
+        && blocked(place_i, shifted(j.position, j.velocity * time), time)) {
         flights[pair.x].partner = j.tag;
         flights[pair.y].partner = i.tag;
         if ((layers[pair.x] & LAYER) == 0u) {

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl motions.wgsl
 // Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
 // probes).
 //
@@ -17,6 +17,11 @@ struct Zone {
     // Cylinder: unit axis and height, m.
     axis: vec3<f32>,
     height: f32,
+    // Box: the motions that its sides go along with, from 1, four bits for each: low x, y, z, high x, y, z.
+    carried: u32,
+    pad: u32,
+    pad2: u32,
+    pad3: u32,
 }
 
 const EVERYWHERE: u32 = 0;
@@ -43,8 +48,26 @@ const ENERGY_RANGE: f32 = 4.29e9;
 
 var<workgroup> shared_sums: array<atomic<u32>, WORDS>;
 
+// How far three sides have moved by the end of the step, each along its axis, quanta.
+fn sides_moved(carried: u32) -> vec3<u32> {
+    var by = vec3<u32>(0u);
+    for (var axis = 0u; axis < 3u; axis++) {
+        let m = (carried >> (4u * axis)) & 15u;
+        if (m > 0u) {
+            let motion = motion_of(m - 1u);
+            by[axis] = shifted(bitcast<vec3<u32>>(motion.moved), motion.velocity * step.dt)[axis];
+        }
+    }
+    return by;
+}
+
 fn contains(zone: Zone, p: vec3<u32>) -> bool {
     if (zone.kind == BOX) {
+        if (MOVING && zone.carried != 0u) {
+            let low = zone.low + sides_moved(zone.carried);
+            let high = zone.high + sides_moved(zone.carried >> 12u);
+            return all(p >= low) && all(p < high);
+        }
         return all(p >= zone.low) && all(p < zone.high);
     }
     if (zone.kind == EVERYWHERE) {

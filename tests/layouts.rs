@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
-    GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
+    GpuVent, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -54,16 +54,18 @@ fn twins() -> Vec<Twin> {
             list,
             stride,
             // The tail padding is not named in the shader.
-            tallies_left
+            tallies_left,
+            slot
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
-        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, pad2),
+        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, motion),
+        twin!("Motion", GpuMotion, moved, first, velocity, end, low, pad, high, pad2),
         twin!("Coat", GpuCoat, thermal, accommodation, first_vent, end_vent),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
-        twin!("Zone", GpuZone, low, kind, high, radius, axis, height),
+        twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
         twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
         twin!("Peer", GpuPeer, low, pad, high, pad2),

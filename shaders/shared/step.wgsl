@@ -47,6 +47,8 @@ struct Step {
     stride: u32,
     // Tallies of the zones in this interval at the end of this step or later.
     tallies_left: u32,
+    // Place of the step in its interval.
+    slot: u32,
 }
 
 override WORKGROUP: u32 = 64;

@@ -1,4 +1,9 @@
+//! uses: motions.wgsl
 // Swept tests of a straight flight against the triangles of the walls.
+//
+// A wall that moves does so along a straight line at one velocity in a step, so in its own frame it is at rest: the
+// flight is moved into the frame and tested against the triangles as drawn. Such triangles are in no cell's list: a
+// flight is tested against all of a moving wall where the box of its cells and that of the wall's touch.
 //
 // A triangle stops a particle that moves against its normal and comes from the gas side. Rounding may
 // leave a particle less than TOLERANCE behind a wall; moving away it is let go, turning back it is
@@ -21,7 +26,28 @@ struct Triangle {
     coat: u32,
     // Unit normal into the gas.
     normal: vec3<f32>,
-    pad2: u32,
+    // The motion of its wall, or NOBODY: it is at rest.
+    motion: u32,
+}
+
+// The place of a point at a time of the step in the frame of a moving wall, in which the wall is as it is drawn.
+fn in_frame(p: vec3<u32>, motion: Motion, time: f32) -> vec3<u32> {
+    return shifted(p - bitcast<vec3<u32>>(motion.moved), -motion.velocity * time);
+}
+
+// Whether a moving wall is in one of the 27 cells around in this step.
+fn near_moving(c: vec3<u32>) -> bool {
+    for (var m = 0u; m < MOTIONS; m++) {
+        let motion = motion_of(m);
+        if (all(c + 1u >= motion.low) && all(c <= motion.high + 1u)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn touches(cells: Cells, motion: Motion) -> bool {
+    return all(cells.high >= motion.low) && all(cells.low <= motion.high);
 }
 
 struct Hit {
@@ -42,8 +68,15 @@ override TOLERANCE: f32;
 // (The surface of a convex cavity cannot.)
 @group(0) @binding(31) var<storage, read> parting: array<u32>;
 
-fn may_part(cell: u32) -> bool {
-    return ((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u;
+fn may_part(c: vec3<u32>) -> bool {
+    let cell = cell_index(c);
+    if (((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u) {
+        return true;
+    }
+    if (MOVING) {
+        return near_moving(c);
+    }
+    return false;
 }
 
 fn class_of(cell: u32) -> u32 {
@@ -74,6 +107,34 @@ fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
+// Takes the triangle into account as the first wall that a flight meets that is at `from_point` at the time `start`.
+fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>, start: f32, end: f32) {
+    let triangle = triangles[index];
+    let approach = -dot(v, triangle.normal);
+    if (approach <= 0.0) {
+        return;
+    }
+    let a = between(triangle.a, from_point);
+    let distance = dot(a, triangle.normal);
+    // From behind the wall it is hit where the flight starts: at a grazing flight the place on
+    // the plane, far back, may be on no triangle.
+    let delay = max(distance, 0.0) / approach;
+    if (distance < -TOLERANCE || delay > end - start) {
+        return;
+    }
+    let ab = between(triangle.a, triangle.b);
+    let ac = between(triangle.a, triangle.c);
+    if (!within(triangle, a + v * delay, ab, ac, TOLERANCE * length(v) / approach)) {
+        return;
+    }
+    (*hit).overshoot = max((*hit).overshoot, -distance);
+    let time = start + delay;
+    if (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle)) {
+        (*hit).time = time;
+        (*hit).triangle = index;
+    }
+}
+
 // The first wall that the flight x0 + v t meets in start <= t < end.
 fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     var hit = Hit(NEVER, NOBODY, 0.0);
@@ -86,30 +147,17 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             let row = cell_index(vec3<u32>(cells.low.x, y, z));
             let last = wall_start[row + cells.high.x - cells.low.x + 1u];
             for (var k = wall_start[row]; k < last; k++) {
-                let index = wall_list[k];
-                let triangle = triangles[index];
-                let approach = -dot(v, triangle.normal);
-                if (approach <= 0.0) {
-                    continue;
-                }
-                let a = between(triangle.a, from_point);
-                let distance = dot(a, triangle.normal);
-                // From behind the wall it is hit where the flight starts: at a grazing flight the place on
-                // the plane, far back, may be on no triangle.
-                let delay = max(distance, 0.0) / approach;
-                if (distance < -TOLERANCE || delay > end - start) {
-                    continue;
-                }
-                let ab = between(triangle.a, triangle.b);
-                let ac = between(triangle.a, triangle.c);
-                if (!within(triangle, a + v * delay, ab, ac, TOLERANCE * length(v) / approach)) {
-                    continue;
-                }
-                hit.overshoot = max(hit.overshoot, -distance);
-                let time = start + delay;
-                if (time < hit.time || (time == hit.time && index < hit.triangle)) {
-                    hit.time = time;
-                    hit.triangle = index;
+                meet(&hit, wall_list[k], from_point, v, start, end);
+            }
+        }
+    }
+    if (MOVING) {
+        for (var m = 0u; m < MOTIONS; m++) {
+            let motion = motion_of(m);
+            if (touches(cells, motion)) {
+                let from_frame = in_frame(from_point, motion, start);
+                for (var index = motion.first; index < motion.end; index++) {
+                    meet(&hit, index, from_frame, v - motion.velocity, start, end);
                 }
             }
         }
@@ -120,9 +168,15 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
 // Whether a flight may meet a wall. One from a clear cell that does not leave that cell's neighbours
 // meets none.
 fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
-    let cell = cell_index(nearest_cell(shifted(x0, v * start)));
+    let c = nearest_cell(shifted(x0, v * start));
     let reach = max(max(abs(v.x), abs(v.y)), abs(v.z)) * (dt - start) * QUANTA;
-    return class_of(cell) != CLASS_CLEAR || reach >= f32(1u << CELL_BITS);
+    if (class_of(cell_index(c)) != CLASS_CLEAR || reach >= f32(1u << CELL_BITS)) {
+        return true;
+    }
+    if (MOVING) {
+        return near_moving(c);
+    }
+    return false;
 }
 
 // The time of a flight's next wall hit in this step, or NEVER.
@@ -133,8 +187,23 @@ fn wall_time(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> f32 {
     return first_hit(x0, v, start, dt).time;
 }
 
-// Whether a wall, from either side, lies between two points.
-fn blocked(p: vec3<u32>, q: vec3<u32>) -> bool {
+// Whether the triangle, from either side, lies between two points.
+fn parts(index: u32, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
+    let triangle = triangles[index];
+    let a = between(triangle.a, p);
+    let before = dot(a, triangle.normal);
+    let after = dot(between(triangle.a, q), triangle.normal);
+    if ((before > 0.0) == (after > 0.0)) {
+        return false;
+    }
+    let ab = between(triangle.a, triangle.b);
+    let ac = between(triangle.a, triangle.c);
+    let sine = abs(before - after) / length(along);
+    return within(triangle, a + along * (before / (before - after)), ab, ac, TOLERANCE / sine);
+}
+
+// Whether a wall, from either side, lies between two points at a time of the step.
+fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     let cells = cells_of(p, q);
     let along = between(p, q);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
@@ -142,18 +211,22 @@ fn blocked(p: vec3<u32>, q: vec3<u32>) -> bool {
             let row = cell_index(vec3<u32>(cells.low.x, y, z));
             let last = wall_start[row + cells.high.x - cells.low.x + 1u];
             for (var k = wall_start[row]; k < last; k++) {
-                let triangle = triangles[wall_list[k]];
-                let a = between(triangle.a, p);
-                let before = dot(a, triangle.normal);
-                let after = dot(between(triangle.a, q), triangle.normal);
-                if ((before > 0.0) == (after > 0.0)) {
-                    continue;
-                }
-                let ab = between(triangle.a, triangle.b);
-                let ac = between(triangle.a, triangle.c);
-                let sine = abs(before - after) / length(along);
-                if (within(triangle, a + along * (before / (before - after)), ab, ac, TOLERANCE / sine)) {
+                if (parts(wall_list[k], p, q, along)) {
                     return true;
+                }
+            }
+        }
+    }
+    if (MOVING) {
+        for (var m = 0u; m < MOTIONS; m++) {
+            let motion = motion_of(m);
+            if (touches(cells, motion)) {
+                let from_frame = in_frame(p, motion, time);
+                let to_frame = in_frame(q, motion, time);
+                for (var index = motion.first; index < motion.end; index++) {
+                    if (parts(index, from_frame, to_frame, along)) {
+                        return true;
+                    }
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The control-volume (0-D) reference: uniform chambers, the curves of the orifices, the holes between.
 //!
 //! Per chamber: dn_g/dt = inflow + net flow through openings, dU/dt = inflow x h + energy through openings,
-//! with U = sum n u(T) and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
+//! and -p dV/dt of walls that move, with U = sum n u(T) and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
 //! number Kn = lambda / length, lambda from the number density of *particles* (moles / V / nu) on the
 //! upstream side: the reference of what the run itself models (a run that is itself a control volume has Kn = 0). So that nothing jumps where two pressures
 //! cross, the two densities are blended while the pressures differ by less than 2 %.
@@ -13,7 +13,7 @@
 
 use super::curve::{value_held, value_inside};
 use super::discharge::{Side, exchange};
-use super::{Species, kinetics, thermo};
+use super::{Species, Swept, bends, kinetics, thermo};
 use crate::scene::{GAS_CONSTANT, Opening, Orifice, Vent, VentFlow, WallHeat};
 
 /// Error of a step over the chamber's moles or energy.
@@ -32,6 +32,8 @@ pub struct ControlVolume {
     pub openings: Vec<Opening>,
     pub walls: Vec<HeatedWall>,
     pub vents: Vec<OpenVent>,
+    /// What walls that move do to the volumes.
+    pub swept: Vec<Swept>,
     pub collisions: Collisions,
 }
 
@@ -115,7 +117,7 @@ impl ControlVolume {
                 self.advance(&mut contents, now, end, &mut step, &mut open);
                 now = end;
             }
-            states.push((0..self.volumes.len()).map(|chamber| self.state(&contents, chamber)).collect());
+            states.push((0..self.volumes.len()).map(|chamber| self.state(&contents, chamber, time)).collect());
         }
         states
     }
@@ -132,18 +134,24 @@ impl ControlVolume {
             VentFlow::Discharge(curve) => Some(curve),
             VentFlow::DischargeByPressure(_) | VentFlow::LeakVelocity(_) => None,
         });
-        curves.chain(vents).flat_map(|curve| &curve.points).map(|point| point[0]).collect()
+        let moving = self.swept.iter().flat_map(|swept| bends(&swept.course));
+        curves.chain(vents).flat_map(|curve| &curve.points).map(|point| point[0]).chain(moving).collect()
     }
 
-    fn side<'a>(&self, contents: &'a [f64], chamber: usize) -> Side<'a> {
+    /// m3.
+    pub fn volume(&self, chamber: usize, time: f64) -> f64 {
+        self.swept.iter().fold(self.volumes[chamber], |volume, swept| volume + swept.change(chamber, time))
+    }
+
+    fn side<'a>(&self, contents: &'a [f64], chamber: usize, time: f64) -> Side<'a> {
         let own = &contents[chamber * self.stride()..(chamber + 1) * self.stride()];
         let (moles, energy) = own.split_at(self.gases.len());
         let temperature = thermo::temperature(moles, &self.gases, energy[0]);
-        Side { moles, volume: self.volumes[chamber], temperature }
+        Side { moles, volume: self.volume(chamber, time), temperature }
     }
 
-    fn state(&self, contents: &[f64], chamber: usize) -> State {
-        let side = self.side(contents, chamber);
+    fn state(&self, contents: &[f64], chamber: usize, time: f64) -> State {
+        let side = self.side(contents, chamber, time);
         let energy = contents[(chamber + 1) * self.stride() - 1];
         State { pressure: side.pressure(), temperature: side.temperature, moles: side.moles.to_vec(), energy }
     }
@@ -161,8 +169,8 @@ impl ControlVolume {
         while now < end {
             let last = *step >= end - now;
             let tried = if last { end - now } else { *step };
-            self.open_vents(contents, open);
-            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing, open);
+            self.open_vents(now, contents, open);
+            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing, open, [start, end]);
             let whole = runge_kutta(contents, now, tried, &rate);
             let half = runge_kutta(contents, now, 0.5 * tried, &rate);
             let halves = runge_kutta(&half, now + 0.5 * tried, 0.5 * tried, &rate);
@@ -202,7 +210,7 @@ impl ControlVolume {
     }
 
     /// Time derivative of the unknowns.
-    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool], open: &[bool]) -> Vec<f64> {
+    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool], open: &[bool], stretch: [f64; 2]) -> Vec<f64> {
         let stride = self.stride();
         let mut rate = vec![0.0; contents.len()];
         for (Source { chamber, orifice }, _) in self.sources.iter().zip(flowing).filter(|(_, flowing)| **flowing) {
@@ -216,7 +224,7 @@ impl ControlVolume {
         let mut flux = vec![0.0; self.gases.len()];
         for opening in &self.openings {
             let [a, b] = opening.between;
-            let (side_a, side_b) = (self.side(contents, a), self.side(contents, b));
+            let (side_a, side_b) = (self.side(contents, a, time), self.side(contents, b, time));
             flux.fill(0.0);
             let knudsen = self.knudsen(side_a, side_b, opening.length);
             let energy = exchange(&self.gases, side_a, side_b, knudsen, &mut flux);
@@ -226,6 +234,15 @@ impl ControlVolume {
             }
         }
         self.lose(time, contents, open, &mut rate);
+        // Where the velocity of a wall jumps a stretch ends: at its end it is that before the jump.
+        let [start, end] = stretch;
+        let within = time.min(end - 1e-9 * (end - start));
+        for chamber in 0..self.volumes.len() {
+            let growth: f64 = self.swept.iter().map(|swept| swept.rate(chamber, within)).sum();
+            if growth != 0.0 {
+                rate[(chamber + 1) * stride - 1] -= self.side(contents, chamber, time).pressure() * growth;
+            }
+        }
         rate
     }
 

@@ -4,7 +4,7 @@
 //! (`scene::Orifice`). On a piece the integral of the flow is q(t) = f0 t + s t^2 / 2; its inverse
 //! t = 2 q / (f0 + sqrt(f0^2 + 2 s q)) loses no digits for any sign of the slope s.
 
-use crate::scene::Curve;
+use crate::scene::{Course, Curve};
 
 /// The curve's value, constant beyond its ends.
 pub fn value_held(curve: &Curve, at: f64) -> f64 {
@@ -23,6 +23,57 @@ pub fn value_inside(curve: &Curve, at: f64) -> f64 {
         (Some(first), Some(last)) if at >= first[0] && at <= last[0] => value_held(curve, at),
         _ => 0.0,
     }
+}
+
+/// The integral of a curve, constant beyond its ends, from 0 to a time.
+pub fn integral_held(curve: &Curve, to: f64) -> f64 {
+    let mut knots = vec![0.0];
+    knots.extend(curve.points.iter().map(|point| point[0]).filter(|&time| time > 0.0 && time < to));
+    knots.push(to);
+    let piece = |a: f64, b: f64| 0.5 * (b - a) * (value_held(curve, a) + value_held(curve, b));
+    knots.windows(2).map(|pair| piece(pair[0], pair[1])).sum()
+}
+
+/// How far a wall has moved from where it is drawn, m.
+pub fn displacement(course: &Course, time: f64) -> f64 {
+    match course {
+        Course::Velocity(velocity) => integral_held(velocity, time),
+        Course::Displacement(curve) => value_held(curve, time),
+    }
+}
+
+/// How fast it moves, m/s; where its velocity jumps, that after the jump.
+pub fn velocity(course: &Course, time: f64) -> f64 {
+    match course {
+        Course::Velocity(velocity) => value_held(velocity, time),
+        Course::Displacement(Curve { points }) => {
+            let next = points.partition_point(|point| point[0] <= time);
+            match (next.checked_sub(1).map(|k| points[k]), points.get(next)) {
+                (Some([t0, x0]), Some([t1, x1])) => (x1 - x0) / (t1 - t0),
+                _ => 0.0,
+            }
+        }
+    }
+}
+
+/// Times at which the velocity bends or jumps, s.
+pub fn bends(course: &Course) -> impl Iterator<Item = f64> {
+    let (Course::Velocity(curve) | Course::Displacement(curve)) = course;
+    curve.points.iter().map(|point| point[0])
+}
+
+/// Times at which it may turn round, s: where its displacement can be largest or smallest, beside the ends of a run.
+pub fn turns(course: &Course) -> Vec<f64> {
+    let mut turns: Vec<f64> = bends(course).collect();
+    if let Course::Velocity(Curve { points }) = course {
+        for pair in points.windows(2) {
+            let [[t0, v0], [t1, v1]] = [pair[0], pair[1]];
+            if v0 * v1 < 0.0 {
+                turns.push(t0 + (t1 - t0) * v0 / (v0 - v1));
+            }
+        }
+    }
+    turns
 }
 
 /// The integral of a non-negative flow curve from time 0 to an end time, and its inverse.
@@ -126,6 +177,19 @@ mod tests {
 
     fn triangle() -> Curve {
         Curve { points: vec![[-1.0, 0.0], [1.0, 2.0], [3.0, 0.0]] }
+    }
+
+    /// The displacement is the integral of the velocity, whichever of the two is given, and it turns where that is zero.
+    #[test]
+    fn a_course_is_the_integral_of_its_velocity() {
+        let course = Course::Velocity(Curve { points: vec![[1.0, 4.0], [3.0, -4.0]] });
+        for (time, expected) in [(0.0, 0.0), (0.5, 2.0), (1.0, 4.0), (2.0, 6.0), (3.0, 4.0), (4.0, 0.0)] {
+            assert!((displacement(&course, time) - expected).abs() < 1e-12, "{time}");
+        }
+        assert!(turns(&course).contains(&2.0) && velocity(&course, 2.5) == -2.0);
+        let drawn = Course::Displacement(Curve { points: vec![[0.0, 0.0], [2.0, 1.0], [3.0, -1.0]] });
+        assert_eq!([0.0, 1.0, 2.0, 5.0].map(|t| velocity(&drawn, t)), [0.5, 0.5, -2.0, 0.0]);
+        assert_eq!(displacement(&drawn, 9.0), -1.0);
     }
 
     #[test]

@@ -14,12 +14,16 @@ mod philox;
 mod random;
 mod riemann;
 mod species;
+mod swept;
 pub mod thermo;
 pub mod vent;
 pub mod wall_heat;
 
 pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
-pub use curve::{FlowIntegral, flow_times_of_temperature, flow_times_temperature, value_held, value_inside};
+pub use curve::{
+    FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,
+    value_held, value_inside, velocity,
+};
 pub use discharge::{Side, exchange};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
 pub use initial::{FillError, Filling, fill};
@@ -28,6 +32,7 @@ pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};
 pub use riemann::{Fluid, Riemann};
 pub use species::{Mode, Modes, Species};
+pub use swept::Swept;
 
 /// One particle on the host, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -54,12 +54,25 @@ pub struct TriangleGrid {
 impl TriangleGrid {
     /// `margin` (m) grows every cell. Fails where a triangle lies outside the grid or loses its area to rounding.
     pub fn build(vessel: &Vessel, grid: &Grid, margin: f64) -> Result<TriangleGrid, GeometryError> {
+        TriangleGrid::build_still(vessel, vessel, grid, margin, |_| false)
+    }
+
+    /// The same for a vessel with walls that move: these are in no list, and cells have the class that they have in
+    /// the vessel `still` without them.
+    pub fn build_still(
+        vessel: &Vessel,
+        still: &Vessel,
+        grid: &Grid,
+        margin: f64,
+        moves: impl Fn(usize) -> bool,
+    ) -> Result<TriangleGrid, GeometryError> {
         let triangles = (0..vessel.triangles.len())
             .map(|source| fix(vessel, grid, source))
             .collect::<Result<Vec<FixedTriangle>, GeometryError>>()?;
         let footprints: Vec<Footprint> = triangles.iter().map(|t| Footprint::new(t, grid, margin)).collect();
         let mut sizes = vec![0u64; grid.cell_count()];
-        for footprint in &footprints {
+        let listed = |k: usize| !moves(vessel.triangles[k].wall as usize);
+        for (_, footprint) in footprints.iter().enumerate().filter(|(k, _)| listed(*k)) {
             footprint.rows(grid, |row| sizes[row].iter_mut().for_each(|n| *n += 1));
         }
         let entries: u64 = sizes.iter().sum();
@@ -75,7 +88,7 @@ impl TriangleGrid {
         }));
         let mut next = start.clone();
         let mut list = vec![0; total as usize];
-        for (k, footprint) in footprints.iter().enumerate() {
+        for (k, footprint) in footprints.iter().enumerate().filter(|(k, _)| listed(*k)) {
             footprint.rows(grid, |row| {
                 for n in &mut next[row] {
                     list[*n as usize] = k as u32;
@@ -83,7 +96,7 @@ impl TriangleGrid {
                 }
             });
         }
-        let class = classify(vessel, grid, &start);
+        let class = classify(still, grid, &start);
         Ok(TriangleGrid { triangles, start, list, class })
     }
 

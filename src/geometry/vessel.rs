@@ -125,6 +125,52 @@ impl Vessel {
         Ok(vessel)
     }
 
+    /// The same walls, each moved by its vector, m; where the gas is, but not how much.
+    pub fn moved(&self, by: &[[f64; 3]]) -> Vessel {
+        let mut moved = self.clone();
+        for triangle in &self.triangles {
+            for vertex in triangle.vertices.map(|vertex| vertex as usize) {
+                // Walls share no vertices, so it does not matter that triangles do.
+                let way = by[triangle.wall as usize];
+                moved.vertices[vertex] = std::array::from_fn(|axis| self.vertices[vertex][axis] + way[axis]);
+            }
+        }
+        for hole in &mut moved.holes {
+            let way = by[hole.wall as usize];
+            hole.center = std::array::from_fn(|axis| hole.center[axis] + way[axis]);
+        }
+        moved.index(|_| true);
+        moved
+    }
+
+    /// The vessel without some of its walls, none of them a cavity: where there would be gas, but not how much. Triangles
+    /// and vertices keep their places in their lists.
+    pub fn without(&self, left_out: impl Fn(usize) -> bool) -> Vessel {
+        let mut rest = self.clone();
+        for (_, wall) in rest.walls.iter_mut().enumerate().filter(|(wall, _)| left_out(*wall)) {
+            wall.volume = 0.0;
+        }
+        rest.index(|wall| !left_out(wall));
+        rest
+    }
+
+    /// Measures a moved vessel.
+    ///
+    /// # Errors
+    /// If there is no gas left.
+    pub fn measured(mut self) -> Result<Vessel, GeometryError> {
+        self.measure()?;
+        Ok(self)
+    }
+
+    fn index(&mut self, kept: impl Fn(usize) -> bool) {
+        let vertices: Vec<DVec3> = self.vertices.iter().map(|&vertex| DVec3::from(vertex)).collect();
+        let (min, max) = bounds_of(&vertices);
+        let triangles = self.triangles.iter().filter(|triangle| kept(triangle.wall as usize));
+        self.lines = LineIndex::new(&vertices, triangles.map(|t| (t.vertices, t.wall)), min, max);
+        self.bounds = (min.to_array(), max.to_array());
+    }
+
     /// The number of solids that hold the point (m): zero in the gas.
     pub fn solid_depth(&self, p: [f64; 3]) -> i32 {
         let mut depth = self.cavities;

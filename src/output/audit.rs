@@ -2,7 +2,8 @@
 //!
 //! - particles: initial + injected = inside + outside + vented, with none outside the vessel;
 //! - mass: start + injected = end + vented;
-//! - energy: U0 + integral of h dm in = U + integral of h dm out + heat to the walls (specification, section 4).
+//! - energy: U0 + integral of h dm in + work of moving walls = U + integral of h dm out + heat to the walls
+//!   (specification, section 4).
 //!
 //! - momentum, where the scene names surfaces and so what the walls received is tallied: start + injected =
 //!   end + to the walls, within a share of M sqrt(2 U / M), the momentum of all gas flying one way at its
@@ -39,6 +40,8 @@ pub struct Audit {
     pub enthalpy_injected: f64,
     /// J.
     pub enthalpy_vented: f64,
+    /// J, on the gas; `None` where no wall moves.
+    pub work_by_walls: Option<f64>,
     /// J; `None` where no wall exchanges heat.
     pub heat_to_walls: Option<f64>,
     pub energy_end: f64,
@@ -89,9 +92,13 @@ impl Default for AuditLimits {
 }
 
 impl Audit {
-    /// (U + vented + heat - U0 - injected) / (U0 + injected); NaN where there was no energy at all.
+    /// (U + vented + heat - U0 - injected - work) / (U0 + injected + work); NaN where there was no energy at all.
     pub fn energy_error(&self) -> f64 {
-        relative(self.energy_end + self.energy_out(), self.energy_start + self.enthalpy_injected)
+        relative(self.energy_end + self.energy_out(), self.energy_start + self.energy_in())
+    }
+
+    fn energy_in(&self) -> f64 {
+        self.enthalpy_injected + self.work_by_walls.unwrap_or(0.0)
     }
 
     fn energy_out(&self) -> f64 {
@@ -213,7 +220,7 @@ impl Audit {
             (i128::from(found) - i128::from(entered)).to_string(),
         ];
         let mass = [self.mass_start, self.mass_injected, self.mass_vented, self.mass_end];
-        let energy = [self.energy_start, self.enthalpy_injected, self.energy_out(), self.energy_end];
+        let energy = [self.energy_start, self.energy_in(), self.energy_out(), self.energy_end];
         let accounts = aligned(&[
             row("Audit", &head),
             row("particles", &particles),
@@ -243,6 +250,9 @@ impl Audit {
             ("  end", vector(self.momentum_end)),
             ("  error", momentum_error),
         ];
+        if let Some(work) = self.work_by_walls {
+            facts.insert(0, ("in energy: work of moving walls, J", format!("{work:.6e}")));
+        }
         if let Some(heat) = self.heat_to_walls {
             facts.insert(0, ("out of energy: heat to the walls, J", format!("{heat:.6e}")));
         }
@@ -283,6 +293,7 @@ mod tests {
             enthalpy_injected: 57_000.0,
             enthalpy_vented: 2_000.0,
             heat_to_walls: None,
+            work_by_walls: None,
             clipped_vents: Vec::new(),
             clipped_walls: Vec::new(),
             energy_end: 70_000.5,

@@ -138,7 +138,7 @@ impl<'a> Heat<'a> {
 
 /// The highest temperature the scene can reach, K, and why: a chamber's own, that of a wall, or that of gas which flows
 /// into a chamber (an orifice, a neighbour of higher pressure) and is stopped there, gamma T0 at most.
-pub fn highest_temperature(scene: &Scene) -> (f64, String) {
+pub fn highest_temperature(scene: &Scene, measured: &Measured) -> (f64, String) {
     // A heat capacity that grows with the temperature makes it less hot than gamma(T0) T0.
     let gamma = |mixture: &Mixture, temperature: f64| {
         let cv = |gas: usize| scene.gases[gas].heat.molar_cv(temperature).max(1.5 * GAS_CONSTANT);
@@ -163,5 +163,13 @@ pub fn highest_temperature(scene: &Scene) -> (f64, String) {
             candidates.push((heat.temperature, format!("wall `{}`", wall.name)));
         }
     }
-    candidates.into_iter().fold((0.0, String::new()), |best, next| if next.0 > best.0 { next } else { best })
+    let (hottest, why) =
+        candidates.into_iter().fold((0.0, String::new()), |best, next| if next.0 > best.0 { next } else { best });
+    match &measured.motion {
+        None => (hottest, why),
+        Some(motion) => {
+            let times = super::motion::heating(scene, motion, hottest);
+            (times * hottest, format!("{why}, {times:.2} times as hot by the walls that move"))
+        }
+    }
 }

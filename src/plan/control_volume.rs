@@ -20,6 +20,7 @@ pub fn plan(
     amounts: &Amounts,
     mut reasons: Vec<Reason>,
 ) -> Result<Plan, PlanError> {
+    super::motion::reasons(scene, measured, &mut reasons);
     let mut because = |quantity: &str, value: &str, why: &str| {
         reasons.push(Reason { quantity: quantity.into(), value: value.into(), why: why.into() });
     };
@@ -78,7 +79,7 @@ pub fn plan(
         tally_every: TALLY_EVERY,
         block_cells_log2: 1,
         temperature_reference: amounts.final_temperature,
-        temperature_max: highest_temperature(scene).0,
+        temperature_max: highest_temperature(scene, measured).0,
         seed: scene.seed,
         end_time: scene.end_time,
         estimated_steps: 0.0,

@@ -4,6 +4,7 @@ use super::amounts::{Amounts, highest_temperature};
 use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
+use super::motion;
 use super::population::{Population, openings, wanted};
 use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
@@ -28,8 +29,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     }
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
-    let species = species(scene, &mut reasons)?;
+    let species = species(scene, measured, &mut reasons)?;
     vents::check(scene, method)?;
+    motion::check(scene, method)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
@@ -40,13 +42,14 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
     let particles = initial_particles + injected_particles;
 
-    let (temperature_max, why) = highest_temperature(scene);
+    let (temperature_max, why) = highest_temperature(scene, measured);
     reasons.push(Reason {
         quantity: "highest temperature".into(),
         value: format!("{} K", significant(temperature_max)),
         why,
     });
     let extreme = Extreme(kinetics::thermal_square(temperature_max, amounts.lightest(scene)));
+    motion::reasons(scene, measured, &mut reasons);
     let states = mean_states(scene, measured, &amounts, [initial_particles as f64, particles as f64]);
     let number_density = states[1].number_density;
     let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
@@ -71,6 +74,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut warnings = warnings(method, particles, occupancy, &resolution, &openings, measured);
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, &vents, measured));
+    warnings.extend(motion::warnings(scene, &species, measured));
     Ok(Plan {
         method,
         particles,
@@ -127,6 +131,7 @@ fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64) -> 
         ("measured surfaces", !scene.surfaces.is_empty()),
         ("walls that are no mirrors", coated),
         ("vents", !scene.vents.is_empty()),
+        ("walls that move", !scene.motions.is_empty()),
     ];
     has.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
 }
@@ -134,13 +139,18 @@ fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64) -> 
 /// At the start and the end, from the particles in the gas volume at each.
 pub fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, particles: [f64; 2]) -> [MeanState; 2] {
     let (final_mass, initial_mass) = amounts.mean_molar_masses(scene);
-    let state = |count: f64, temperature, molar_mass| MeanState {
-        number_density: count / measured.gas_volume,
+    let state = |count: f64, volume: f64, temperature, molar_mass| MeanState {
+        number_density: count / volume,
         thermal_square: kinetics::thermal_square(temperature, molar_mass),
     };
-    let end = state(particles[1], amounts.final_temperature, final_mass);
+    let final_volume = measured.motion.map_or(measured.gas_volume, |motion| motion.final_gas_volume);
+    let end = state(particles[1], final_volume, amounts.final_temperature, final_mass);
     // Without initial gas there is no state to limit the step.
-    let start = if particles[0] > 0.0 { state(particles[0], amounts.initial_temperature, initial_mass) } else { end };
+    let start = if particles[0] > 0.0 {
+        state(particles[0], measured.gas_volume, amounts.initial_temperature, initial_mass)
+    } else {
+        end
+    };
     [start, end]
 }
 

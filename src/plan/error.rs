@@ -49,12 +49,9 @@ pub enum PlanError {
          is none; give a constant `cp`, or coefficients fitted to the temperatures of the scene"
     ))]
     HeatCapacity { gas: String, range: [f64; 2], residual: f64, limit: f64 },
-    #[error(
-        "no plan is predicted to be within {}: the best, {plan}, is {} off in {column} ({cause})",
-        significant(*asked), significant(*floor)
-    )]
+    #[error("no plan is predicted to be within {}: the best, {best}", significant(*asked))]
     #[diagnostic(help("{remedy}"))]
-    Accuracy { asked: f64, floor: f64, column: String, cause: &'static str, plan: String, remedy: String },
+    Accuracy { asked: f64, floor: f64, best: String, remedy: String },
     #[error(
         "a time budget of {} s is not enough for any plan: the cheapest, {plan}, is predicted to take {} s",
         significant(*budget), significant(*least)
@@ -63,6 +60,9 @@ pub enum PlanError {
         "raise it, or set `device_rate` in [model] to what `cargo bench --bench step` prints for your device"
     ))]
     TimeBudget { budget: f64, least: f64, plan: String },
+    #[error("an accuracy or a budget together with [[motion]]: errors beside moving walls are not predicted yet")]
+    #[diagnostic(help("leave out `accuracy`, `time_budget` and `particle_budget`, and set `particles` in [model]"))]
+    WishOfMotion,
     #[error("no method can run this scene with {particles} particles or more")]
     #[diagnostic(help(
         "leave out `diameter`, `rounds` or `particles` in [model]: one of them does not fit the vessel"
@@ -73,6 +73,9 @@ pub enum PlanError {
         "choose a method of particles in [model]; its history has a control volume with these losses beside it"
     ))]
     LossesOfControlVolume { what: String },
+    #[error("wall `{wall}` moves, which the method `cell` cannot have yet: the gas volumes of its cells do not follow")]
+    #[diagnostic(help("choose `method = \"closest-approach\"` in [model]"))]
+    MotionInCells { wall: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

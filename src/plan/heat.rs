@@ -2,7 +2,7 @@
 
 use super::amounts::highest_temperature;
 use super::render::significant;
-use super::{PlanError, Reason};
+use super::{Measured, PlanError, Reason};
 use crate::gas::{Species, fit};
 use crate::scene::{HeatCapacity, Scene};
 
@@ -14,19 +14,19 @@ const VENTED: f64 = 0.6;
 const HOTTER: f64 = 1.1;
 
 /// K, over which heat capacities count.
-fn range(scene: &Scene) -> [f64; 2] {
+fn range(scene: &Scene, measured: &Measured) -> [f64; 2] {
     let chambers = scene.chambers.iter().map(|chamber| chamber.temperature);
     let orifices = scene.orifices.iter().flat_map(|orifice| orifice.temperature.points.iter().map(|point| point[1]));
     let walls = scene.walls.iter().filter_map(|wall| wall.heat.as_ref()).map(|heat| heat.temperature);
     let coldest = chambers.chain(orifices).chain(walls).fold(f64::INFINITY, f64::min);
-    // What is left behind a vent expands as no other gas does.
-    let colder = if scene.vents.is_empty() { COLDER } else { VENTED };
-    [colder * coldest, HOTTER * highest_temperature(scene).0]
+    // What is left behind a vent, or behind a wall that recedes, expands as no other gas does.
+    let colder = if scene.vents.is_empty() && scene.motions.is_empty() { COLDER } else { VENTED };
+    [colder * coldest, HOTTER * highest_temperature(scene, measured).0]
 }
 
 /// Of each gas of the scene.
-pub fn species(scene: &Scene, reasons: &mut Vec<Reason>) -> Result<Vec<Species>, PlanError> {
-    let range = range(scene);
+pub fn species(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) -> Result<Vec<Species>, PlanError> {
+    let range = range(scene, measured);
     let one = |gas: &crate::scene::Gas| match gas.heat {
         HeatCapacity::Constant(cv) => Ok(Species::constant(gas.molar_mass, cv)),
         HeatCapacity::Curve(cp) => {

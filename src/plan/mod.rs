@@ -20,6 +20,7 @@ mod decide;
 mod error;
 mod forecast;
 mod heat;
+mod motion;
 mod population;
 mod render;
 mod resolution;
@@ -54,6 +55,19 @@ pub struct Measured {
     pub vents: Vec<MeasuredVent>,
     /// Indices of a wall that exchanges heat and of a chamber that it borders on.
     pub heated: Vec<(usize, usize)>,
+    /// Where walls move.
+    pub motion: Option<MeasuredMotion>,
+}
+
+/// What moving walls do to the gas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredMotion {
+    /// m3, of all gas at the end of the run.
+    pub final_gas_volume: f64,
+    /// The least volume of a chamber in the run, over that at the start.
+    pub least_share: f64,
+    /// m/s, of the fastest wall.
+    pub fastest: f64,
 }
 
 /// Where a vent is.

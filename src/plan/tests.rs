@@ -37,6 +37,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         probes: vec![],
         surfaces: vec![],
         vents: vec![],
+        motions: vec![],
         model: ModelRequest { particles: Some(1_000_000), ..ModelRequest::default() },
         output: OutputRequest { rows: 200, snapshots: 10 },
     };
@@ -50,6 +51,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         smallest_gap: None,
         vents: vec![],
         heated: vec![],
+        motion: None,
     };
     (scene, measured)
 }

@@ -8,6 +8,7 @@ mod errors;
 mod flows;
 mod gases;
 mod holes;
+mod motions;
 mod names;
 mod numbers;
 mod places;
@@ -28,6 +29,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use errors::{InvalidScene, Problem, SceneError};
+pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use types::*;
 pub use write::to_toml;

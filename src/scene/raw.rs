@@ -48,6 +48,9 @@ pub struct RawScene {
     /// Where walls let gas out.
     #[serde(default)]
     pub vent: Vec<At<RawVent>>,
+    /// Walls that move.
+    #[serde(default)]
+    pub motion: Vec<At<RawMotion>>,
     /// What the plan otherwise decides.
     #[serde(default)]
     pub model: RawModel,
@@ -350,6 +353,20 @@ pub struct RawVent {
     pub opening_pressure: Option<At<f64>>,
     /// External pressure (SI: Pa); 101325 Pa unless given.
     pub external_pressure: Option<At<f64>>,
+}
+
+/// The motion of a wall along a straight line, as it is prescribed; exactly one of `velocity`, `displacement`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawMotion {
+    /// The name of a wall, a body with the gas outside of it (or on both sides).
+    pub wall: At<String>,
+    /// Along which it moves, of any length.
+    pub direction: At<Numbers<3>>,
+    /// Velocity along `direction` (SI: m/s): a number, or points [time, velocity], linear between, constant beyond the ends.
+    pub velocity: Option<At<NumberOr<Numbers<2>>>>,
+    /// Points [time, distance from where it is drawn], linear between, constant beyond the ends; the first is [0, 0].
+    pub displacement: Option<At<Vec<At<Numbers<2>>>>>,
 }
 
 /// What the plan otherwise decides.

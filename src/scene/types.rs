@@ -26,6 +26,7 @@ pub struct Scene {
     pub probes: Vec<Probe>,
     pub surfaces: Vec<Surface>,
     pub vents: Vec<Vent>,
+    pub motions: Vec<Motion>,
     pub model: ModelRequest,
     pub output: OutputRequest,
 }
@@ -287,6 +288,24 @@ pub enum VentFlow {
     DischargeByPressure(Curve),
     /// Velocity, m/s, of the gas as it is inside, against the pressure above the external one.
     LeakVelocity(Curve),
+}
+
+/// A wall that moves along a straight line, whatever the gas does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Wall index; each wall has at most one motion.
+    pub wall: usize,
+    pub direction: [f64; 3],
+    pub course: Course,
+}
+
+/// How far a wall has moved; curves are constant beyond their ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Course {
+    /// m/s against s.
+    Velocity(Curve),
+    /// m against s, from where the wall is drawn; starts at [0, 0].
+    Displacement(Curve),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]

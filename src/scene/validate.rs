@@ -9,7 +9,7 @@ use super::raw::{RawScene, RawUnits};
 use super::raw_values::At;
 use super::types::{Scene, UnitSystem};
 use super::units::Quantity;
-use super::{flows, gases, places, settings, vents, walls};
+use super::{flows, gases, motions, places, settings, vents, walls};
 
 /// At most 56 bits of the seed are used.
 const LARGEST_SEED: i64 = (1 << 56) - 1;
@@ -48,6 +48,9 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &raw.wall));
     let vents =
         each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &raw.wall, units));
+    let motions = each(&raw.motion, &mut problems, |motion, index| {
+        motions::motion(motion, &raw.motion[..index], &wall_names, &raw.wall, &raw.vent, units)
+    });
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
@@ -68,6 +71,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
             probes,
             surfaces,
             vents,
+            motions,
             model,
             output,
         }),
@@ -89,6 +93,10 @@ fn refuse_wrong_numbers_of_entries(raw: &RawScene, problems: &mut Vec<Problem>) 
     if let Some(surplus) = raw.gas.get(gases::MOST_GASES) {
         let found = format!("{} gases", raw.gas.len());
         problems.push(Problem::value(&surplus.span, found, format!("at most {}", gases::MOST_GASES)));
+    }
+    if let Some(surplus) = raw.motion.get(motions::MOST_MOTIONS) {
+        let found = format!("{} motions", raw.motion.len());
+        problems.push(Problem::value(&surplus.span, found, format!("at most {}", motions::MOST_MOTIONS)));
     }
 }
 

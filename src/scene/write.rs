@@ -72,6 +72,9 @@ pub fn to_toml(scene: &Scene) -> String {
     for vent in &scene.vents {
         write_vent(&mut out, vent, scene);
     }
+    for motion in &scene.motions {
+        write_motion(&mut out, motion, scene);
+    }
     write_settings(&mut out, scene);
     out.0
 }
@@ -172,6 +175,16 @@ fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
     }
     out.number("opening_pressure", vent.opening_pressure);
     out.number("external_pressure", vent.external_pressure);
+}
+
+fn write_motion(out: &mut Lines, motion: &Motion, scene: &Scene) {
+    out.header("[[motion]]");
+    out.text("wall", &scene.walls[motion.wall].name);
+    out.numbers("direction", &motion.direction);
+    match &motion.course {
+        Course::Velocity(curve) => out.curve("velocity", curve),
+        Course::Displacement(curve) => out.curve("displacement", curve),
+    }
 }
 
 fn write_settings(out: &mut Lines, scene: &Scene) {

@@ -160,13 +160,14 @@ impl Account {
         }
     }
 
-    /// The energy that walls took and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
+    /// The energy that walls took, also as work, and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
     /// over them.
     fn lost(&self, tallies: &Tallies) -> (f64, f64) {
         let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
         let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
         let (energy, tallied) = coats
             .chain(vents)
+            .chain(tallies.works.iter().map(|work| (work.energy, work.tallied)))
             .fold((0i128, 0i128), |(energy, tallied), (e, t)| (energy + i128::from(e), tallied + i128::from(t)));
         let unit = self.scales.reference_mass / self.scales.energy;
         (energy as f64 * unit, tallied as f64 * unit)
@@ -321,6 +322,7 @@ impl Account {
             energy_start: self.counted.start.energy,
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
+            work_by_walls: (!model.moving.is_empty()).then(|| averages.total_work()),
             heat_to_walls: model.scene.walls.iter().any(|wall| wall.heat.is_some()).then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))

@@ -25,6 +25,20 @@ pub struct ZoneState {
     pub velocity: [f64; 3],
     /// Mean number of particles of each gas.
     pub particles: Vec<f64>,
+    /// m3.
+    pub volume: f64,
+}
+
+/// A wall that moves.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MotionState {
+    /// m and m/s, in the middle of the window.
+    pub displacement: f64,
+    pub velocity: f64,
+    /// That it has done on the gas since the start of the run, J.
+    pub work: f64,
+    /// The same per time in the window, W.
+    pub power: f64,
 }
 
 /// What a surface received in a window.
@@ -77,6 +91,8 @@ pub struct Row {
     /// Those that exchange heat.
     pub walls: Vec<WallState>,
     pub vents: Vec<VentState>,
+    /// The walls that move.
+    pub motions: Vec<MotionState>,
 }
 
 /// The scene's side of the averages.
@@ -91,6 +107,7 @@ pub struct Layout {
     pub walls: Vec<(Vec<usize>, f64)>,
     pub coats: usize,
     pub vents: usize,
+    pub motions: usize,
 }
 
 /// What a vent has passed in a window, or since the start.
@@ -141,6 +158,10 @@ pub struct Averages {
     heat: Vec<[i128; 2]>,
     /// What each vent passed, the same.
     passed: Vec<[Passed; 2]>,
+    /// Work of the gas on each moving wall, in the window and since the start.
+    works: Vec<[i128; 2]>,
+    /// Where walls move, the volume of each zone times the weight.
+    room: Vec<f64>,
 }
 
 /// The open window, and what walls have received.
@@ -155,10 +176,12 @@ pub struct AveragesState {
     pub(super) received: Vec<[i128; 3]>,
     heat: Vec<[i128; 2]>,
     passed: Vec<[Passed; 2]>,
+    works: Vec<[i128; 2]>,
+    room: Vec<f64>,
 }
 
 impl AveragesState {
-    /// An empty window that starts at a time, s: of a run that is measured from there on.
+    /// An empty window that starts at a time, s: of a run that is measured from there on, and whose walls are at rest.
     pub(super) fn starting_at(start: f64, [zones, gases, patches, coats, vents]: [usize; 5]) -> AveragesState {
         AveragesState {
             start,
@@ -169,6 +192,8 @@ impl AveragesState {
             received: vec![[0; 3]; patches],
             heat: vec![[0; 2]; coats],
             passed: vec![[Passed::default(); 2]; vents],
+            works: Vec::new(),
+            room: Vec::new(),
         }
     }
 }
@@ -190,6 +215,8 @@ impl Averages {
             received: vec![[0; 3]; patches],
             heat: vec![[0; 2]; layout.coats],
             passed: vec![[Passed::default(); 2]; layout.vents],
+            works: vec![[0; 2]; layout.motions],
+            room: if layout.motions > 0 { vec![0.0; zones] } else { Vec::new() },
             layout,
         }
     }
@@ -218,10 +245,27 @@ impl Averages {
         self.add_losses(tallies, wanted);
     }
 
+    /// The volumes of the chambers and probes as drawn, m3.
+    pub fn drawn(&self) -> &[f64] {
+        &self.layout.volumes
+    }
+
+    /// Adds the mean volumes of the interval's tallies, m3, where walls move.
+    pub fn add_room(&mut self, dt: f64, samples: u32, volumes: &[f64]) {
+        for (room, volume) in self.room.iter_mut().zip(volumes) {
+            *room += dt * f64::from(samples) * volume;
+        }
+    }
+
     fn add_losses(&mut self, tallies: &Tallies, wanted: &[Wanted]) {
         for (heat, coat) in self.heat.iter_mut().zip(&tallies.coats) {
             for total in heat {
                 *total += i128::from(coat.energy);
+            }
+        }
+        for (work, sum) in self.works.iter_mut().zip(&tallies.works) {
+            for total in work {
+                *total += i128::from(sum.energy);
             }
         }
         for ((passed, sum), wanted) in self.passed.iter_mut().zip(&tallies.vents).zip(wanted) {
@@ -241,6 +285,8 @@ impl Averages {
             received: self.received.clone(),
             heat: self.heat.clone(),
             passed: self.passed.clone(),
+            works: self.works.clone(),
+            room: self.room.clone(),
         }
     }
 
@@ -253,6 +299,8 @@ impl Averages {
             ("impulses of patches", state.received.len(), self.received.len()),
             ("coats of walls", state.heat.len(), self.heat.len()),
             ("vents", state.passed.len(), self.passed.len()),
+            ("moving walls", state.works.len(), self.works.len()),
+            ("volumes of zones", state.room.len(), self.room.len()),
         ] {
             if found != expected {
                 return Err(StateError::differs(what, found as u64, expected as u64));
@@ -268,6 +316,8 @@ impl Averages {
         self.received.clone_from(&state.received);
         self.heat.clone_from(&state.heat);
         self.passed.clone_from(&state.passed);
+        self.works.clone_from(&state.works);
+        self.room.clone_from(&state.room);
         Ok(())
     }
 
@@ -289,6 +339,7 @@ impl Averages {
             surfaces: surfaces.collect(),
             walls: self.layout.walls.iter().map(|(coats, area)| self.wall(coats, *area, duration)).collect(),
             vents: self.passed.iter().map(|passed| self.vent(passed, duration)).collect(),
+            motions: self.works.iter().map(|work| self.motion(work, duration)).collect(),
             chambers: states[..self.layout.chambers].to_vec(),
             probes: states[self.layout.chambers..].to_vec(),
         };
@@ -299,12 +350,14 @@ impl Averages {
         self.patches.fill(SurfaceSum::default());
         self.heat.iter_mut().for_each(|heat| heat[0] = 0);
         self.passed.iter_mut().for_each(|passed| passed[0] = Passed::default());
+        self.works.iter_mut().for_each(|work| work[0] = 0);
+        self.room.fill(0.0);
         row
     }
 
     fn zone(&self, zone: usize) -> ZoneState {
         let gases = self.gases.len();
-        let volume = self.layout.volumes[zone];
+        let volume = self.room.get(zone).map_or(self.layout.volumes[zone], |room| room / self.weight);
         let (mut mass, mut kinetic, mut number) = (0.0, 0.0, 0.0);
         let mut momentum = [0.0; 3];
         let mut particles = Vec::with_capacity(gases);
@@ -320,7 +373,7 @@ impl Averages {
             }
         }
         if number == 0.0 {
-            return ZoneState { particles, ..ZoneState::default() };
+            return ZoneState { particles, volume, ..ZoneState::default() };
         }
         let velocity = momentum.map(|p| p / mass);
         let bulk = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
@@ -331,6 +384,7 @@ impl Averages {
             density: mass / volume,
             velocity,
             particles,
+            volume,
         }
     }
 
@@ -378,6 +432,17 @@ impl Averages {
             mass: self.mass(all),
             enthalpy: all.energy as f64 * self.energy_unit(),
         }
+    }
+
+    /// Where it is the time loop knows.
+    fn motion(&self, work: &[i128; 2], duration: f64) -> MotionState {
+        let [window, all] = work.map(|work| -(work as f64) * self.energy_unit() + 0.0);
+        MotionState { work: all, power: window / duration, ..MotionState::default() }
+    }
+
+    /// All the work that walls have done on the gas since the start, J.
+    pub fn total_work(&self) -> f64 {
+        -(self.works.iter().map(|work| work[1]).sum::<i128>() as f64) * self.energy_unit() + 0.0
     }
 
     /// All that walls have taken since the start, J.

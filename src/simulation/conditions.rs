@@ -111,7 +111,14 @@ impl<'a> Conditions<'a> {
     /// Takes the tallies of an interval from `start` to `end`, s; intervals come in their order. Also tells what its
     /// vents should have passed, by the gas that was there (and not by that of the interval before last, whose state they
     /// followed: so a vessel that empties fast does not lose more than it should).
-    pub fn see(&mut self, tallies: &Tallies, samples: u32, [start, end]: [f64; 2]) -> (Seen, Vec<Wanted>) {
+    /// `volumes` are the mean ones of the chambers where walls move.
+    pub fn see(
+        &mut self,
+        tallies: &Tallies,
+        samples: u32,
+        [start, end]: [f64; 2],
+        volumes: &[f64],
+    ) -> (Seen, Vec<Wanted>) {
         if self.mirrors() {
             return (Seen::default(), Vec::new());
         }
@@ -121,7 +128,8 @@ impl<'a> Conditions<'a> {
             self.state.latest.chambers = (0..model.plan.chambers.len())
                 .map(|chamber| {
                     let zones = &tallies.zones[(chamber + 1) * gases..(chamber + 2) * gases];
-                    self.chamber(zones, f64::from(samples), model.plan.chambers[chamber].volume)
+                    let drawn = model.plan.chambers[chamber].volume;
+                    self.chamber(zones, f64::from(samples), volumes.get(chamber).copied().unwrap_or(drawn))
                 })
                 .collect();
         }
@@ -142,7 +150,7 @@ impl<'a> Conditions<'a> {
 
     /// The state of the start of a run, before any interval.
     pub fn start(&mut self, at_start: &Tallies) {
-        self.state.current = self.see(at_start, 1, [0.0; 2]).0;
+        self.state.current = self.see(at_start, 1, [0.0; 2], &[]).0;
     }
 
     /// From now on the walls follow this state.

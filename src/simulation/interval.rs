@@ -34,6 +34,8 @@ pub struct Interval {
     pub particles: u64,
     /// What the walls that are no mirrors do in it.
     pub coating: Coating,
+    /// The mean volumes of its tallied steps where walls move, m3: of the chambers, then the probes.
+    pub volumes: Vec<f64>,
 }
 
 /// An interval on its way through the device.
@@ -91,6 +93,7 @@ impl Interval {
             momentum: [0.0; 3],
             energy: vec![0.0; steps as usize],
             coating: Coating::default(),
+            volumes: Vec::new(),
             particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
         };
         if let Deal::ById { rank, ranks } = deal {
@@ -116,6 +119,13 @@ impl Interval {
             }
         }
         Ok(interval)
+    }
+
+    /// The times at which its tallies of the zones are taken, s, of an interval that starts at `start`.
+    pub fn tallied_at(&self, plan: &Plan, start: f64) -> impl Iterator<Item = f64> {
+        let steps = (0..self.steps).filter(|&k| tallied(plan, self.first_step + u64::from(k)));
+        let dt = self.dt;
+        steps.map(move |k| start + f64::from(k + 1) * dt).collect::<Vec<f64>>().into_iter()
     }
 
     /// How many of its steps add to the zones.

@@ -16,6 +16,7 @@ mod interrupt;
 mod interval;
 mod ladder;
 mod model;
+mod moving;
 mod observer;
 mod outlook;
 mod reference;

@@ -5,6 +5,7 @@ use crate::plan::{Choice, Measured, MeasuredVent, Plan, PlanError, choose, plan}
 use crate::scene::{Opening, Scene};
 
 use super::coats::Coats;
+use super::moving::Moving;
 use super::outlook::outlook;
 
 pub struct Model {
@@ -12,6 +13,8 @@ pub struct Model {
     pub vessel: Vessel,
     pub plan: Plan,
     pub coats: Coats,
+    /// The walls that move; `vessel` has them as they are drawn.
+    pub moving: Moving,
     /// Of a scene that wished an accuracy or had a budget: what was chosen, now part of `scene`, and why.
     pub choice: Option<Choice>,
 }
@@ -29,6 +32,29 @@ pub enum ModelError {
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
     ))]
     OrificeInWall { orifice: String, point: [f64; 3] },
+    #[error(
+        "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
+    )]
+    #[diagnostic(help(
+        "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"
+    ))]
+    MovingCavity { wall: String },
+    #[error("wall \"{wall}\" moves and has {found} triangles, more than the {limit} that a moving wall may have")]
+    #[diagnostic(help("a flight near it is tested against each of them: use a coarser mesh, or fewer segments"))]
+    MovingTriangles { wall: String, found: usize, limit: usize },
+    #[error("wall \"{wall}\" sweeps over {what}: what lets gas in or out must stay free of moving walls")]
+    #[diagnostic(help("move it out of the box that the wall passes through from its first to its last place"))]
+    Swept { what: String, wall: String },
+    #[error(
+        "chamber \"{chamber}\" is squeezed to {share:.1e} of its volume at {time:.4e} s; a thousandth is the least"
+    )]
+    #[diagnostic(help("let the wall stop earlier: it must not leave the vessel, nor close a chamber"))]
+    Squeezed { chamber: String, share: f64, time: f64 },
+    #[error(
+        "chamber \"{chamber}\": one side of its box lies in the moving walls {walls}, and can go along with one of them"
+    )]
+    #[diagnostic(help("let the side lie in the wall that is to take it along"))]
+    SideOfTwo { chamber: String, walls: String },
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
     VentNowhere { vent: String },
@@ -44,7 +70,8 @@ impl Model {
         let vessel = Vessel::build(&scene.walls)?;
         check_orifices(&scene, &vessel)?;
         let coats = Coats::new(&scene, &vessel)?;
-        let measured = measured(&scene, &vessel, &coats);
+        let moving = Moving::new(&scene, &vessel)?;
+        let measured = measured(&scene, &vessel, &coats, &moving);
         let mut choice = None;
         if scene.model.wish.is_any() {
             let chosen = choose(&scene, &measured, &outlook(&scene, &vessel, &measured, &coats))?;
@@ -53,7 +80,7 @@ impl Model {
             choice = Some(chosen);
         }
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan, coats, choice })
+        Ok(Model { scene, vessel, plan, coats, moving, choice })
     }
 
     /// The plan with the reasons and the forecast of the choice, for people. `plan` is what runs and checkpoints go by.
@@ -64,14 +91,24 @@ impl Model {
         }
         plan
     }
+
+    /// The walls as they are at a time, s.
+    pub fn vessel_at(&self, time: f64) -> std::borrow::Cow<'_, Vessel> {
+        if self.moving.is_empty() {
+            return std::borrow::Cow::Borrowed(&self.vessel);
+        }
+        std::borrow::Cow::Owned(self.moving.vessel_at(&self.vessel, time))
+    }
 }
 
 /// What the plan needs to know of the geometry.
-pub(super) fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats) -> Measured {
-    let (bounds_min, bounds_max) = vessel.bounds;
+pub(super) fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving) -> Measured {
+    let (bounds_min, bounds_max) = moving.bounds(vessel);
+    let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     Measured {
         gas_volume: vessel.gas_volume(),
-        chamber_volumes: vessel.chamber_volumes(&scene.chambers),
+        motion: moving.measured(&chamber_volumes),
+        chamber_volumes,
         bounds_min,
         bounds_max,
         openings: found_openings(scene, vessel),
@@ -151,14 +188,19 @@ mod tests {
             include_str!("../../scenes/tank.toml"),
             include_str!("../../scenes/vent.toml"),
             include_str!("../../scenes/corner.toml"),
+            include_str!("../../scenes/piston.toml"),
             &helium,
         ];
-        let mut ever = [[false; 2]; 7];
+        let mut ever = [[false; 2]; 8];
         for text in scenes {
             let model = model(text);
             let (_, patches) = crate::simulation::setup::patches(&model);
-            let patches =
-                Patches { surfaces: patches.len(), coats: model.coats.coats.len(), vents: model.scene.vents.len() };
+            let patches = Patches {
+                surfaces: patches.len(),
+                coats: model.coats.coats.len(),
+                vents: model.scene.vents.len(),
+                motions: model.moving.count(),
+            };
             let features = Features::of(&model.plan, patches, false, false);
             let flags = [
                 ("collisions", features.collisions),
@@ -168,6 +210,7 @@ mod tests {
                 ("measured surfaces", features.surfaces),
                 ("walls that are no mirrors", features.coats),
                 ("vents", features.vents),
+                ("walls that move", features.moving),
             ];
             for (index, (name, compiled)) in flags.into_iter().enumerate() {
                 assert_eq!(model.plan.left_out.contains(&name), !compiled, "{}: {name}", model.scene.title);

@@ -155,8 +155,8 @@ mod tests {
 
     fn borders_of(text: &str) -> Vec<[usize; 2]> {
         let scene = crate::scene::parse(text, "test.toml", std::path::Path::new("")).unwrap();
-        let Model { scene, vessel, coats, .. } = Model::new(scene).unwrap();
-        let measured = crate::simulation::model::measured(&scene, &vessel, &coats);
+        let Model { scene, vessel, coats, moving, .. } = Model::new(scene).unwrap();
+        let measured = crate::simulation::model::measured(&scene, &vessel, &coats, &moving);
         outlook(&scene, &vessel, &measured, &coats).borders
     }
 

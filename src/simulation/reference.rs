@@ -28,6 +28,7 @@ fn volume(model: &Model) -> ControlVolume {
         openings: plan.openings.iter().map(opening).collect(),
         walls: walls(model),
         vents: vents(model),
+        swept: model.moving.swept.clone(),
         collisions: match plan.method {
             Method::None => Collisions::None,
             Method::ControlVolume => Collisions::Continuum,

@@ -301,7 +301,8 @@ impl<'a> Simulation<'a> {
         }
         let at_end = self.measure()?;
         let own = self.subdomain.particles(self.device)?;
-        let outside = count_outside(&self.model.vessel, &self.model.plan, &own);
+        let vessel = self.model.vessel_at(self.clock.time());
+        let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
         let (particles, owners) = self.gather(own)?.unwrap_or_default();
@@ -348,6 +349,7 @@ impl<'a> Simulation<'a> {
 
     /// Tallies of the particles as they are, of all ranks.
     fn measure(&mut self) -> Result<Tallies, SimulationError> {
+        self.subdomain.place_walls(self.device, &self.model.moving.at(&self.model.plan.grid, self.clock.time()));
         let slot = self.subdomain.at_rest(self.device);
         let mut rec = Recording::new(self.device);
         self.subdomain.tally(&mut rec, &slot);
@@ -394,6 +396,11 @@ impl<'a> Simulation<'a> {
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
         interval.coating = self.conditions.coating(start, end);
+        let moving = &self.model.moving;
+        if !moving.is_empty() {
+            interval.coating.motions = moving.steps(&plan.grid, start, interval.dt, steps);
+            interval.volumes = moving.mean_volumes(self.averages.drawn(), interval.tallied_at(plan, start));
+        }
         self.submit(interval)
     }
 

@@ -89,6 +89,7 @@ mod tests {
     const PATCHES: usize = 2;
     const COATS: usize = 2;
     const VENTS: usize = 1;
+    const MOTIONS: usize = 1;
 
     fn averages(plan: &Plan) -> Averages {
         let layout = Layout {
@@ -98,6 +99,7 @@ mod tests {
             walls: vec![(vec![0, 1], 0.2)],
             coats: COATS,
             vents: VENTS,
+            motions: MOTIONS,
         };
         Averages::new(plan, layout, PATCHES)
     }
@@ -121,6 +123,7 @@ mod tests {
             surfaces: surfaces.collect(),
             coats: vec![CoatSum { energy: 1 << 50, tallied: -interval }; COATS],
             vents: vec![VentSum { energy: interval, left: [3; 16], ..VentSum::default() }; VENTS],
+            works: vec![CoatSum { energy: 3 - interval, tallied: 0 }; MOTIONS],
             blocks: Vec::new(),
             fast: Vec::new(),
         }
@@ -144,6 +147,7 @@ mod tests {
             let mut rows = Vec::new();
             for interval in 1..=9 {
                 averages.add(&tallies(&plan, interval), 1e-6 / interval as f64, 32, 4, &wanted(interval));
+                averages.add_room(1e-6 / interval as f64, 4, &[1e-3 / interval as f64, 2e-3, 1e-4]);
                 if interval % 4 == 0 {
                     rows.push(averages.row(1e-5 * interval as f64, 2000));
                 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, block_volumes, cell_gas, region_bounds, region_contains};
+use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, region_bounds, region_contains};
 use crate::gpu::Device;
 use crate::scene::{Face, Method, Region};
 use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
@@ -61,21 +61,29 @@ impl Setup {
         if plan.method == Method::ControlVolume {
             return Err(SimulationError::NoParticles);
         }
-        let triangle_grid = TriangleGrid::build(&model.vessel, &plan.grid, Walls::tolerance(&plan.grid))?;
+        let moves = |wall: usize| model.moving.motion_of(wall).is_some();
+        let margin = Walls::tolerance(&plan.grid);
+        let still = model.vessel.without(moves);
+        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, moves)?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {
             let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
             !wall.is_convex_cavity()
         };
-        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts);
+        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts)
+            .moving(&triangle_grid, |source| model.moving.motion_of(model.vessel.triangles[source].wall as usize));
         let cells = if plan.method == Method::Cell {
             CellTable::new(&cell_gas(&model.vessel, &plan.grid, &triangle_grid, parts), &plan.grid)?
         } else {
             CellTable::default()
         };
         let zones = zones(model);
-        let tallied =
-            Patches { surfaces: patches.len(), coats: model.coats.coats.len(), vents: model.scene.vents.len() };
+        let tallied = Patches {
+            surfaces: patches.len(),
+            coats: model.coats.coats.len(),
+            vents: model.scene.vents.len(),
+            motions: model.moving.count(),
+        };
         let input = DomainInput {
             plan,
             walls: &walls,
@@ -89,11 +97,20 @@ impl Setup {
             domain: Arc::new(Domain::new(device, &input)?),
             layout: layout(model, &patches),
             patches: patches.len(),
-            volumes: Arc::new(block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2)),
+            volumes: Arc::new(volumes_of_blocks(model, &still)?),
             cut_by: None,
             particles: Arc::new(particles),
         })
     }
+}
+
+/// Without the walls that move: a block that one of them covers in part counts with all of its volume.
+fn volumes_of_blocks(model: &Model, still: &Vessel) -> Result<Vec<f64>, SimulationError> {
+    let plan = &model.plan;
+    if model.moving.is_empty() {
+        return Ok(block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2));
+    }
+    Ok(block_volumes(&still.clone().measured()?, &plan.grid, plan.block_cells_log2))
 }
 
 /// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without
@@ -122,13 +139,16 @@ pub(super) fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
 /// Everything, the chambers, the probes.
 fn zones(model: &Model) -> Vec<GpuZone> {
     let grid = &model.plan.grid;
-    let chambers = model.scene.chambers.iter().map(|chamber| zone_of(chamber.region.as_ref(), grid));
+    let chambers = model.scene.chambers.iter().enumerate().map(|(index, chamber)| GpuZone {
+        carried: model.moving.carried.get(index).copied().unwrap_or(0),
+        ..zone_of(chamber.region.as_ref(), grid)
+    });
     let probes = model.scene.probes.iter().map(|probe| zone_of(Some(&probe.region), grid));
     std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
 }
 
 fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, coats, .. } = model;
+    let Model { scene, vessel, plan, coats, moving, .. } = model;
     let probe_volumes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
@@ -158,6 +178,7 @@ fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
         walls: walls.collect(),
         vents: scene.vents.len(),
         coats: coats.coats.len(),
+        motions: moving.count(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes).collect(),
         chambers: scene.chambers.len(),
         surfaces: surfaces.collect(),

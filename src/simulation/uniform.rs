@@ -12,13 +12,15 @@ use crate::output::Audit;
 use crate::scene::{Scene, Surface};
 
 use super::SimulationError;
-use super::averages::{Row, SurfaceState, ZoneState};
+use super::averages::{MotionState, Row, SurfaceState, ZoneState};
 use super::model::{Model, chamber_of};
 use super::observer::Observer;
 use super::reference::{initial, reference};
 
 /// Parts along each edge into which a triangle is cut to find what chambers it faces.
 const PARTS: u32 = 8;
+/// Parts of a row over which the work of moving walls is summed.
+const WORK_PARTS: u32 = 32;
 
 /// Emits the rows of the whole run and closes its account.
 ///
@@ -35,10 +37,13 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     let surfaces =
         scene.surfaces.iter().map(|surface| facing(scene, &model.vessel, surface)).collect::<Result<Vec<_>, _>>()?;
     let mut received = vec![[0.0; 3]; surfaces.len()];
+    let works = works(model, rows);
+    let mut worked = vec![0.0; model.moving.count()];
     for row in 0..rows as usize {
         let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k]);
         let window = [times[2 * row], times[2 * row + 2]];
-        let zones: Vec<ZoneState> = (0..plan.chambers.len()).map(|index| zone(model, index, &middle[index])).collect();
+        let zones: Vec<ZoneState> =
+            (0..plan.chambers.len()).map(|index| zone(model, index, times[2 * row + 1], &middle[index])).collect();
         let pressed = |chamber: usize| {
             (before[chamber].pressure + 4.0 * middle[chamber].pressure + after[chamber].pressure) / 6.0
         };
@@ -57,6 +62,13 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
             SurfaceState { pressure: sum / area, impulse: *received, hits: 0 }
         });
         let on_surfaces = on_surfaces.collect();
+        let mut motions = Vec::new();
+        for (index, [displacement, velocity]) in model.moving.courses(times[2 * row + 1]).into_iter().enumerate() {
+            let own = works[row][index];
+            worked[index] += own;
+            let power = own / (window[1] - window[0]);
+            motions.push(MotionState { displacement, velocity, work: worked[index], power });
+        }
         observer.row(&Row {
             time: times[2 * row + 1],
             window,
@@ -67,19 +79,46 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
             surfaces: on_surfaces,
             walls: Vec::new(),
             vents: Vec::new(),
+            motions,
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }
-    Ok(audit(model, &states[states.len() - 1]))
+    let work = (!model.moving.is_empty()).then(|| worked.iter().sum());
+    Ok(Audit { work_by_walls: work, ..audit(model, &states[states.len() - 1]) })
 }
 
-fn zone(model: &Model, chamber: usize, state: &State) -> ZoneState {
+/// The work of each moving wall on the gas in each row, J: -p dV, by the mean of p between near times (and not by the
+/// integration of the energy, which this is to check).
+fn works(model: &Model, rows: u32) -> Vec<Vec<f64>> {
+    let moving = &model.moving;
+    if moving.is_empty() {
+        return vec![Vec::new(); rows as usize];
+    }
+    let time = |k: u32| model.plan.end_time * f64::from(k) / f64::from(rows * WORK_PARTS);
+    let times: Vec<f64> = (0..=rows * WORK_PARTS).map(time).collect();
+    let states = reference(model, &times);
+    let mut works = vec![vec![0.0; moving.count()]; rows as usize];
+    for (k, (pair, around)) in states.windows(2).zip(times.windows(2)).enumerate() {
+        for (work, swept) in works[k / WORK_PARTS as usize].iter_mut().zip(&moving.swept) {
+            for (chamber, (before, after)) in pair[0].iter().zip(&pair[1]).enumerate() {
+                let growth = swept.change(chamber, around[1]) - swept.change(chamber, around[0]);
+                *work -= 0.5 * (before.pressure + after.pressure) * growth;
+            }
+        }
+    }
+    works
+}
+
+fn zone(model: &Model, chamber: usize, time: f64, state: &State) -> ZoneState {
     let plan = &model.plan;
+    let drawn = plan.chambers[chamber].volume;
+    let volume = model.moving.swept.iter().fold(drawn, |volume, swept| volume + swept.change(chamber, time));
     let mass: f64 = state.moles.iter().zip(&plan.gases).map(|(n, gas)| n * gas.molar_mass).sum();
     ZoneState {
         pressure: state.pressure,
         temperature: state.temperature,
-        density: mass / plan.chambers[chamber].volume,
+        density: mass / volume,
+        volume,
         velocity: [0.0; 3],
         particles: state.moles.iter().map(|n| n / plan.moles_per_particle).collect(),
     }

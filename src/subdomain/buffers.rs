@@ -6,7 +6,8 @@ use super::cell_table::CellTable;
 use super::constants::Features;
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 use super::walls::Walls;
 
@@ -19,6 +20,8 @@ pub const SURFACE_WORDS: usize = 10;
 /// Words per coat and per vent (`shaders/bounce.wgsl`).
 pub const COAT_WORDS: usize = 4;
 pub const VENT_WORDS: usize = 24;
+/// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
+pub const MOTION_ENTRIES: usize = 128;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 
@@ -93,6 +96,8 @@ pub struct FixedBuffers {
     /// What coats and vents do in the interval at hand.
     pub coats: wgpu::Buffer,
     pub vents: wgpu::Buffer,
+    /// Where the walls that move are in its steps.
+    pub motions: wgpu::Buffer,
     /// The cells whose gas walls part, of a step.
     pub parted: wgpu::Buffer,
 }
@@ -116,6 +121,7 @@ impl FixedBuffers {
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
             coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
+            motions: device.uniform("motions", (MOTION_ENTRIES * size_of::<GpuMotion>()) as u64)?,
             parted: device.storage::<u32>("parted", parted)?,
         })
     }
@@ -341,6 +347,7 @@ impl<'a> Buffers<'a> {
             (_, "weights") => &fixed.weights,
             (_, "coats") => &fixed.coats,
             (_, "vents") => &fixed.vents,
+            (_, "motions") => &fixed.motions,
             (_, "zones") => &domain.zones,
             (_, "cell_volume") => &domain.cell_volume,
             (_, "cell_parts") => &domain.cell_parts,

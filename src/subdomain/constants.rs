@@ -16,6 +16,10 @@ const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
 /// And those of hits on walls.
 const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 
+/// Bounces of a flight in a step before it is cut short; between walls that close in on each other there are more.
+const MOST_BOUNCES: f64 = 32.0;
+const MOST_BOUNCES_MOVING: f64 = 1024.0;
+
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Features {
@@ -32,6 +36,8 @@ pub struct Features {
     /// Walls that exchange heat with the gas, or let it out.
     pub coats: bool,
     pub vents: bool,
+    /// Walls that move.
+    pub moving: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
 }
@@ -42,17 +48,20 @@ pub struct Patches {
     pub surfaces: usize,
     pub coats: usize,
     pub vents: usize,
+    /// Walls that move.
+    pub motions: usize,
 }
 
 impl Patches {
-    /// Words of the tallies of surfaces, and of these and the coats.
-    pub(super) fn ends(&self) -> [usize; 2] {
+    /// Words of the tallies of surfaces, of these and the coats, and of these and the vents.
+    pub(super) fn ends(&self) -> [usize; 3] {
         let surfaces = self.surfaces.max(1) * SURFACE_WORDS;
-        [surfaces, surfaces + self.coats * COAT_WORDS]
+        let coats = surfaces + self.coats * COAT_WORDS;
+        [surfaces, coats, coats + self.vents * VENT_WORDS]
     }
 
     pub(super) fn words(&self) -> usize {
-        self.ends()[1] + self.vents * VENT_WORDS
+        self.ends()[2] + self.motions * COAT_WORDS
     }
 }
 
@@ -68,6 +77,7 @@ impl Features {
             surfaces: patches.surfaces > 0,
             coats: patches.coats > 0,
             vents: patches.vents > 0,
+            moving: patches.motions > 0,
             halo: among_others && plan.method != Method::None,
         }
     }
@@ -81,7 +91,7 @@ pub fn constants(
     scales: &Scales,
 ) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
-    let [coats_at, vents_at] = patches.ends();
+    let [coats_at, vents_at, works_at] = patches.ends();
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
     let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
@@ -120,6 +130,10 @@ pub fn constants(
         ("VENTS", flag(features.vents)),
         ("COATS_AT", coats_at as f64),
         ("VENTS_AT", vents_at as f64),
+        ("WORKS_AT", works_at as f64),
+        ("MOVING", flag(features.moving)),
+        ("MOTIONS", patches.motions as f64),
+        ("MOST_BOUNCES", if features.moving { MOST_BOUNCES_MOVING } else { MOST_BOUNCES }),
         ("IMPULSE_SCALE", scales.velocity),
         ("GASES", plan.gases.len() as f64),
         ("CHAMBERS", plan.chambers.len() as f64),

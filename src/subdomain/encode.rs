@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use super::buffers::{CHUNK, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::kernels::CollisionKernels;
-use super::layout::{GpuCoat, GpuNewborn, GpuStep, GpuVent};
+use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuStep, GpuVent};
 use super::place::Cells;
 use super::{GpuError, Subdomain};
 
@@ -28,11 +28,13 @@ pub struct StepSlot {
     tallies_left: u32,
 }
 
-/// What coats and vents do in an interval; empty where all walls are mirrors.
+/// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
+/// of its steps, `MOST_MOTIONS` entries for each, empty where none does.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coating {
     pub coats: Vec<GpuCoat>,
     pub vents: Vec<GpuVent>,
+    pub motions: Vec<GpuMotion>,
 }
 
 /// Who enters in an interval.
@@ -103,6 +105,7 @@ impl Subdomain {
         // Work that was submitted before has seen the tables of its own interval.
         device.write(&self.fixed.coats, 0, &coating.coats);
         device.write(&self.fixed.vents, 0, &coating.vents);
+        device.write(&self.fixed.motions, 0, &coating.motions);
         let tally_every = u64::from(self.domain.plan.tally_every);
         let tallies = |steps: usize| (first_step + steps as u64) / tally_every;
         let Newborns { of_step, list, first_id, stride } = *newborns;
@@ -196,12 +199,18 @@ impl Subdomain {
                 list: self.particle.list as u32,
                 stride: slot.stride,
                 tallies_left: slot.tallies_left,
+                slot: slot.slot,
                 ..GpuStep::default()
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
         }
         bytes
+    }
+
+    /// Places the walls that move, for tallies outside a step.
+    pub fn place_walls(&self, device: &Device, motions: &[GpuMotion]) {
+        device.write(&self.fixed.motions, 0, motions);
     }
 
     /// The particles as they are, for tallies outside a step.

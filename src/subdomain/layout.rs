@@ -31,7 +31,8 @@ pub struct GpuStep {
     pub list: u32,
     pub stride: u32,
     pub tallies_left: u32,
-    pub pad: [u32; 3],
+    pub slot: u32,
+    pub pad: [u32; 2],
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.
@@ -108,6 +109,21 @@ pub struct GpuTriangle {
     pub c: [u32; 3],
     pub coat: u32,
     pub normal: [f32; 3],
+    pub motion: u32,
+}
+
+/// `Motion` of `shaders/shared/motions.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuMotion {
+    /// Quanta of the grid.
+    pub moved: [i32; 3],
+    pub first: u32,
+    pub velocity: [f32; 3],
+    pub end: u32,
+    pub low: [u32; 3],
+    pub pad: u32,
+    pub high: [u32; 3],
     pub pad2: u32,
 }
 
@@ -143,6 +159,10 @@ pub struct GpuZone {
     pub radius: f32,
     pub axis: [f32; 3],
     pub height: f32,
+    pub carried: u32,
+    pub pad: u32,
+    pub pad2: u32,
+    pub pad3: u32,
 }
 
 /// `Gas` of `shaders/shared/gas.wgsl`.

@@ -23,7 +23,9 @@ use std::sync::Arc;
 
 use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
 
-pub use buffers::{BLOCK_WORDS, CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles};
+pub use buffers::{
+    BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles,
+};
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
@@ -31,8 +33,8 @@ pub use domain::{Domain, DomainInput};
 pub use encode::{Coating, Newborns, StepSlot};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
-    GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
+    GpuVent, GpuWeights, GpuZone,
 };
 pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;

@@ -57,6 +57,8 @@ pub struct Tallies {
     pub surfaces: Vec<SurfaceSum>,
     pub coats: Vec<CoatSum>,
     pub vents: Vec<VentSum>,
+    /// The work that the gas did on each wall that moves.
+    pub works: Vec<CoatSum>,
     pub blocks: Vec<BlockSum>,
     /// Particles that would cross more than a cell in a step of each level of the ladder.
     pub fast: Vec<u32>,
@@ -78,8 +80,13 @@ impl Tallies {
         let rest = &words[counters::WORDS..];
         let (zones, rest) = rest.split_at(sizes.zones);
         let (walls, rest) = rest.split_at(sizes.surfaces);
-        let [coats_at, vents_at] = patches.ends();
-        let (surfaces, coats, vents) = (&walls[..coats_at], &walls[coats_at..vents_at], &walls[vents_at..]);
+        let [coats_at, vents_at, works_at] = patches.ends();
+        let (surfaces, coats) = (&walls[..coats_at], &walls[coats_at..vents_at]);
+        let (vents, works) = (&walls[vents_at..works_at], &walls[works_at..]);
+        let taken = |words: &[u32]| -> Vec<CoatSum> {
+            let sum = |w: &[u32]| CoatSum { energy: signed(w, 0), tallied: signed(w, 2) };
+            words.chunks_exact(COAT_WORDS).map(sum).collect()
+        };
         let block_words = &rest[..sizes.blocks];
         Tallies {
             counters: Counters::from_words(&counter_words),
@@ -100,10 +107,8 @@ impl Tallies {
                     hits: signed(w, 8),
                 })
                 .collect(),
-            coats: coats
-                .chunks_exact(COAT_WORDS)
-                .map(|w| CoatSum { energy: signed(w, 0), tallied: signed(w, 2) })
-                .collect(),
+            coats: taken(coats),
+            works: taken(works),
             vents: vents
                 .chunks_exact(VENT_WORDS)
                 .map(|w| VentSum {
@@ -160,7 +165,7 @@ impl Tallies {
         sums.next().is_none().then_some(all)
     }
 
-    /// The sums of zones, surfaces, coats and vents.
+    /// The sums of zones, surfaces, coats, vents and moving walls.
     fn signed(&mut self) -> impl Iterator<Item = &mut i64> {
         let zones = self.zones.iter_mut().flat_map(|zone| {
             let ZoneSum { number, velocity: [x, y, z], kinetic, spin } = zone;
@@ -175,6 +180,7 @@ impl Tallies {
             let VentSum { energy, tallied, hits, clipped, left } = vent;
             [energy, tallied, hits, clipped].into_iter().chain(left)
         });
-        zones.chain(surfaces).chain(coats).chain(vents)
+        let works = self.works.iter_mut().flat_map(|work| [&mut work.energy, &mut work.tallied]);
+        zones.chain(surfaces).chain(coats).chain(vents).chain(works)
     }
 }

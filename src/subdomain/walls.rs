@@ -58,7 +58,7 @@ impl Walls {
                     c: corner(2),
                     coat: coat.get(triangle.source as usize).copied().unwrap_or(NOBODY),
                     normal: triangle.normal,
-                    pad2: 0,
+                    motion: NOBODY,
                 }
             })
             .collect();
@@ -80,6 +80,16 @@ impl Walls {
             parting: parting(triangle_grid, grid, parts),
             tolerance: Walls::tolerance(grid),
         }
+    }
+}
+
+impl Walls {
+    /// Tells the triangles of walls that move (their motion by triangle of the vessel, or `None`).
+    pub fn moving(mut self, triangle_grid: &TriangleGrid, motion: impl Fn(usize) -> Option<usize>) -> Walls {
+        for (own, fixed) in self.triangles.iter_mut().zip(&triangle_grid.triangles) {
+            own.motion = motion(fixed.source as usize).map_or(NOBODY, |motion| motion as u32);
+        }
+        self
     }
 }
 

@@ -52,6 +52,15 @@ fn the_box_with_its_surfaces_goes_on_from_any_step() {
     restarts(&published("box.toml", 1500, 1.6e-3), 2, [2, 1, 3, 2]);
 }
 
+/// Where its piston is follows from the clock.
+#[test]
+fn a_piston_goes_on_from_any_step() {
+    let mut scene = published("piston.toml", 1200, 1e-3);
+    scene.motions[0].course =
+        corpuscle::scene::Course::Velocity(corpuscle::scene::Curve { points: vec![[0.0, 0.0], [6e-4, 60.0]] });
+    restarts(&scene, 9, [2, 1, 3, 2]);
+}
+
 /// The other methods with collisions.
 #[test]
 fn cells_and_rigid_spheres_go_on_from_any_step() {

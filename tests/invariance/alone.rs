@@ -7,7 +7,7 @@ use corpuscle::subdomain::GpuParticle;
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, plate, tank, venting, venting_freely};
+use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely};
 use crate::whole_run::{Run, run};
 
 /// The scene again, in every way that must not matter.
@@ -58,6 +58,17 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 #[test]
 fn box_has_the_same_bits_in_every_way() {
     every_way(&gas_box());
+}
+
+/// Walls that move, in a straight line and back, among newborns.
+#[test]
+fn pistons_have_the_same_bits_in_every_way() {
+    let model = pistons();
+    let first = run(&model, Options::default());
+    assert!(first.outcome.audit.verdict(&AuditLimits::default()).is_empty(), "{:?}", first.outcome.audit);
+    let last = first.rows.last().expect("a row");
+    assert!(last.motions.iter().all(|motion| motion.work != 0.0), "{:?}", last.motions);
+    every_way(&model);
 }
 
 /// Walls that exchange heat draw random numbers, and follow the gas.

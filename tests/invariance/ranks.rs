@@ -9,7 +9,7 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, gas_box, plate, tank, tube, venting, venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, tank, tube, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -80,6 +80,19 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
     assert!(coarsest > 1.5 * finest, "the step does not change");
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
     assert!(runs[0].outcome.collisions > 1000);
+}
+
+/// Where walls are is a function of the time alone.
+#[test]
+fn pistons_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(7, Forced { seed: 2 }, None) },
+    ];
+    let runs = same(&pistons(), &ways);
+    assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
+    same(&by(Method::None, pistons()), &[Way::new(3, Off, 1)]);
 }
 
 /// With the impulse on its walls.

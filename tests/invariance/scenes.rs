@@ -131,3 +131,26 @@ pub fn tube() -> Model {
     model.scene.end_time = 7.0 * model.plan.time_step;
     Model::new(model.scene).expect("a model")
 }
+
+/// A plate between two chambers, no mirror, is driven faster and faster through gas that flows in, and a ball moves the
+/// other way.
+pub fn pistons() -> Model {
+    model(
+        "end_time = 4e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.06, 0.06]\ngas = \"inside\"\n\
+         [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.03, 0.03, 0.03]\nnormal = [1.0, 0.0, 0.0]\n\
+         u = [0.0, 1.0, 0.0]\nsize = [0.064, 0.06]\nthickness = 0.002\ntemperature = 400.0\naccommodation = 0.5\n\
+         [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.09, 0.015, 0.03]\nradius = 0.008\nsubdivisions = 1\n\
+         gas = \"outside\"\n\
+         [[motion]]\nwall = \"plate\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = [[0.0, 0.0], [2e-4, 150.0]]\n\
+         [[motion]]\nwall = \"ball\"\ndirection = [0.0, 1.0, 0.0]\ndisplacement = [[0.0, 0.0], [2e-4, 0.02], [3e-4, 0.0]]\n\
+         [[chamber]]\nname = \"behind\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.03, 0.06, 0.06] } }\n\
+         pressure = 2e5\ntemperature = 300.0\ngas = { air = 0.5, helium = 0.5 }\n\
+         [[chamber]]\nname = \"before\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.03, 0.03]\ndirection = [1.0, 0.0, 0.0]\narea = 0.001\n\
+         gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.3], [2e-3, 0.3]]\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+         [model]\nparticles = 1200\n[output]\nrows = 8\nsnapshots = 0\n",
+    )
+}

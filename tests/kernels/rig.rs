@@ -201,6 +201,7 @@ impl Rig {
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
+        rig.uniform("motions", &[[0u32; 16]; 128]);
         rig.put("newborns", &[0u32; 12]);
         // A device alone: all are in layer 0, and nobody is told.
         rig.put("layers", &[0u32; MOST_PARTICLES]);

@@ -14,6 +14,7 @@ mod hard_sphere;
 mod heat_curve;
 mod mixing;
 mod orifice;
+mod piston;
 mod planner;
 mod statistics;
 mod two_chambers;

@@ -279,6 +279,7 @@ mod tests {
             density: 1.2,
             velocity: [0.0, -x, 0.3],
             particles: vec![x / 3.0, 0.0],
+            volume: 1e-3,
         };
         Row {
             time: 1e-3 * x,
@@ -290,6 +291,7 @@ mod tests {
             surfaces: vec![SurfaceState::default(); model.scene.surfaces.len()],
             walls: Vec::new(),
             vents: Vec::new(),
+            motions: Vec::new(),
         }
     }
 

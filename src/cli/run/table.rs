@@ -18,6 +18,8 @@ pub struct Owners {
     /// Walls that exchange heat.
     pub walls: Vec<String>,
     pub vents: Vec<String>,
+    /// Walls that move.
+    pub motions: Vec<String>,
 }
 
 impl Owners {
@@ -28,7 +30,10 @@ impl Owners {
         let hot = scene.walls.iter().filter(|wall| wall.heat.is_some());
         let walls: Vec<&str> = hot.map(|wall| wall.name.as_str()).collect();
         let vents: Vec<&str> = scene.vents.iter().map(|vent| vent.name.as_str()).collect();
-        let lists = [&chambers, &probes, &surfaces, &walls, &vents];
+        let moving: Vec<&str> = scene.motions.iter().map(|motion| scene.walls[motion.wall].name.as_str()).collect();
+        // A wall that is hot and moves has all its columns under its name.
+        let cold: Vec<&str> = moving.iter().copied().filter(|name| !walls.contains(name)).collect();
+        let lists = [&chambers, &probes, &surfaces, &walls, &vents, &cold];
         let named = |kind: &str, own: &[&str]| -> Vec<String> {
             let shared = |name: &str| lists.iter().filter(|list| list.contains(&name)).count() > 1;
             own.iter().map(|name| if shared(name) { format!("{kind}:{name}") } else { (*name).to_owned() }).collect()
@@ -39,6 +44,7 @@ impl Owners {
             surfaces: named("surface", &surfaces),
             walls: named("wall", &walls),
             vents: named("vent", &vents),
+            motions: named("wall", &moving),
         }
     }
 }
@@ -62,6 +68,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(pressure_columns(owner));
         columns.push(Column::new(format!("{owner}:temperature"), "k"));
         columns.push(Column::new(format!("{owner}:reference_temperature"), "k"));
+        if !scene.motions.is_empty() {
+            columns.push(Column::new(format!("{owner}:volume"), "m3"));
+        }
         flow_columns(&mut columns, owner, scene);
     }
     for owner in &owners.probes {
@@ -86,6 +95,12 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.push(Column::new(format!("{owner}:mass"), "kg"));
         columns.push(Column::new(format!("{owner}:enthalpy"), "j"));
     }
+    for owner in &owners.motions {
+        columns.push(Column::new(format!("{owner}:displacement"), "m"));
+        columns.push(Column::new(format!("{owner}:velocity"), "m_s"));
+        columns.push(Column::new(format!("{owner}:work"), "j"));
+        columns.push(Column::new(format!("{owner}:power"), "w"));
+    }
     columns
 }
 
@@ -101,6 +116,9 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
     for (chamber, state) in row.chambers.iter().enumerate() {
         let [pressure, temperature] = reference.at(row.time, chamber);
         values.extend([state.pressure, pressure, state.temperature, temperature]);
+        if !row.motions.is_empty() {
+            values.push(state.volume);
+        }
         push_flow(&mut values, state);
     }
     for state in &row.probes {
@@ -118,6 +136,9 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
     for vent in &row.vents {
         values.extend([vent.mass_flow, vent.wanted_mass_flow, vent.discharge, vent.wanted_discharge]);
         values.extend([vent.mass, vent.enthalpy]);
+    }
+    for motion in &row.motions {
+        values.extend([motion.displacement, motion.velocity, motion.work, motion.power]);
     }
     values
 }

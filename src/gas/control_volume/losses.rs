@@ -9,9 +9,9 @@ use crate::gas::wall_heat::heat_flux;
 
 impl ControlVolume {
     /// Opens the vents whose chambers have reached their opening pressure.
-    pub(super) fn open_vents(&self, contents: &[f64], open: &mut [bool]) {
+    pub(super) fn open_vents(&self, time: f64, contents: &[f64], open: &mut [bool]) {
         for (vent, open) in self.vents.iter().zip(open) {
-            *open = opens(&vent.vent, *open, self.side(contents, vent.chamber).pressure());
+            *open = opens(&vent.vent, *open, self.side(contents, vent.chamber, time).pressure());
         }
     }
 
@@ -19,13 +19,13 @@ impl ControlVolume {
     pub(super) fn lose(&self, time: f64, contents: &[f64], open: &[bool], rate: &mut [f64]) {
         let stride = self.stride();
         for wall in &self.walls {
-            let side = self.side(contents, wall.chamber);
+            let side = self.side(contents, wall.chamber, time);
             let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
             let flux = heat_flux(&wall.heat, &self.gases, &concentrations, side.temperature);
             rate[(wall.chamber + 1) * stride - 1] -= wall.area * flux;
         }
         for (open, _) in self.vents.iter().zip(open).filter(|(_, open)| **open) {
-            let side = self.side(contents, open.chamber);
+            let side = self.side(contents, open.chamber, time);
             let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
             let Some(gas) = LocalGas::new(&self.gases, &concentrations, side.temperature) else { continue };
             let moles = open.area * flux(&open.vent, &gas, time) / gas.molar_mass;

@@ -32,6 +32,7 @@ fn two_chambers(length: f64) -> ControlVolume {
         openings: vec![Opening { name: "hole".into(), between: [0, 1], area: 1.6e-3, length }],
         walls: vec![],
         vents: vec![],
+        swept: vec![],
         collisions: Collisions::Particles { diameter: 2.4e-3, moles_per_particle: 5e-6 },
     }
 }

@@ -12,7 +12,7 @@ mod report;
 use super::amounts::{Amounts, highest_temperature};
 use super::decide::mean_states;
 use super::error::{MOST_CELLS, MOST_PARTICLES};
-use super::forecast::{Candidate, Cause, ColumnForecast, Forecaster, Outlook, worst};
+use super::forecast::{Candidate, ColumnForecast, Forecaster, Outlook, worst};
 use super::heat::species;
 use super::resolution::{Extreme, Resolution};
 use super::{Measured, PlanError};
@@ -60,12 +60,15 @@ struct Chooser<'a> {
 /// # Errors
 /// If no plan reaches the accuracy, or even the cheapest is beyond the budget.
 pub fn choose(scene: &Scene, measured: &Measured, outlook: &Outlook) -> Result<Choice, PlanError> {
+    if measured.motion.is_some() {
+        return Err(PlanError::WishOfMotion);
+    }
     let mut unused = Vec::new();
-    let species = species(scene, &mut unused)?;
+    let species = species(scene, measured, &mut unused)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     let forecaster = Forecaster::new(scene, measured, outlook, &species, &amounts);
     let (families, why) = families(scene, measured, &amounts, &forecaster);
-    let (hottest, _) = highest_temperature(scene);
+    let (hottest, _) = highest_temperature(scene, measured);
     let wish = &scene.model.wish;
     let chooser = Chooser {
         scene,
@@ -115,15 +118,8 @@ impl Chooser<'_> {
         if best.error <= accuracy && affordable(&best) {
             return Ok(best);
         }
-        let limit = worst(&best.columns);
-        Err(PlanError::Accuracy {
-            asked: accuracy,
-            floor: best.error,
-            column: limit.map_or_else(String::new, |column| column.name.clone()),
-            cause: limit.and_then(ColumnForecast::main_cause).map_or("nothing", Cause::name),
-            plan: report::words(&best),
-            remedy: self.remedy(wish),
-        })
+        let best_of_all = report::shortfall(&best);
+        Err(PlanError::Accuracy { asked: accuracy, floor: best.error, best: best_of_all, remedy: self.remedy(wish) })
     }
 
     /// The most accurate plan within the budgets.

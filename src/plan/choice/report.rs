@@ -102,6 +102,14 @@ pub fn words(plan: &Possible) -> String {
     }
 }
 
+/// What keeps the best plan from being better.
+pub fn shortfall(plan: &Possible) -> String {
+    let column = worst(&plan.columns);
+    let cause = column.and_then(ColumnForecast::main_cause).map_or("nothing", Cause::name);
+    let name = column.map_or("", |column| column.name.as_str());
+    format!("{}, is {} off in {name} ({cause})", words(plan), significant(plan.error))
+}
+
 fn hole_reason(method: Method, name: &str, knudsen: f64, columns: &[ColumnForecast]) -> Reason {
     let error = |cause: Cause| {
         let parts = columns.iter().flat_map(|column| &column.parts).filter(|part| part.cause == cause);

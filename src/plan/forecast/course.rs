@@ -88,6 +88,8 @@ impl Course {
                 .collect(),
             walls: heated(scene, outlook, &group),
             vents: vents(scene, measured, &group),
+            // Scenes with walls that move are refused before.
+            swept: Vec::new(),
             collisions: Collisions::Continuum,
         };
         let rows = scene.output.rows.max(1);

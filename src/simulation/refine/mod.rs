@@ -67,6 +67,9 @@ pub enum RefineError {
     #[error("the scene has the vent `{vent}`: particles have left, and which of a refined run would have is unknown")]
     #[diagnostic(help("refine a state of a scene without vents"))]
     Vents { vent: String },
+    #[error("the wall `{wall}` moves: the places of children are looked for between walls at rest")]
+    #[diagnostic(help("refine a state of a scene without [[motion]]"))]
+    Motion { wall: String },
     #[error("{times} times the {particles} particles of the run are more than the {limit} that an id can name")]
     TooMany { times: u64, particles: u64, limit: u64 },
     #[error("the refined scene cannot be planned: {0}")]
@@ -102,6 +105,9 @@ impl From<InflowStateError> for RefineError {
 /// # Errors
 /// If the state is not of this model, or the refined scene has too many particles or cannot be planned.
 pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times: u64) -> Result<Refined, RefineError> {
+    if let Some(motion) = parent.scene.motions.first() {
+        return Err(RefineError::Motion { wall: parent.scene.walls[motion.wall].name.clone() });
+    }
     if let Some(vent) = parent.scene.vents.first() {
         return Err(RefineError::Vents { vent: vent.name.clone() });
     }

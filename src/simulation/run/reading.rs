@@ -85,9 +85,10 @@ impl Simulation<'_> {
         let samples = interval.samples(plan);
         self.account.add(plan, &tallies, &interval, samples, &timed);
         let span = [self.read_until - duration, self.read_until];
-        let (seen, wanted) = self.conditions.see(&tallies, samples, span);
+        let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes);
         self.seen.push_back((seen, self.account.state().left()));
         self.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
+        self.averages.add_room(interval.dt, samples, &interval.volumes);
         if self.decomposition.is_some() {
             let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
             self.tuner.measured(slowest, interval.steps, interval.particles);
@@ -111,7 +112,10 @@ impl Simulation<'_> {
     }
 
     pub(super) fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
-        let row = self.averages.row(self.read_until, self.account.state().particles);
+        let mut row = self.averages.row(self.read_until, self.account.state().particles);
+        for (state, [moved, velocity]) in row.motions.iter_mut().zip(self.model.moving.courses(row.time)) {
+            (state.displacement, state.velocity) = (moved, velocity);
+        }
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
         while self.next_row <= self.read_until * (1.0 + 1e-9) {
             self.next_row += spacing;

@@ -15,6 +15,7 @@ pub mod gas_box;
 pub mod holes;
 pub mod losses;
 pub mod mixing;
+pub mod piston;
 pub mod report;
 pub mod shear;
 pub mod statistics;
@@ -232,6 +233,11 @@ pub const CASES: &[Case] = &[
         name: "sound",
         law: "frequency of a standing wave over that of sound at sqrt(gamma k T/m)",
         run: tube::sound,
+    },
+    Case {
+        name: "piston",
+        law: "slow compression 2:1: T over (V0/V)^(gamma-1); fast pistons: pressure behind their shock (Rankine-Hugoniot)",
+        run: piston::pistons,
     },
 ];
 

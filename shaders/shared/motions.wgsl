@@ -1,0 +1,28 @@
+// The walls that move, in each step of an interval.
+
+// Where a wall that moves is in a step.
+struct Motion {
+    // Since the start of the run, at the start of the step, quanta.
+    moved: vec3<i32>,
+    // Its triangles.
+    first: u32,
+    // m/s.
+    velocity: vec3<f32>,
+    end: u32,
+    // The cells that it touches in this step.
+    low: vec3<u32>,
+    pad: u32,
+    high: vec3<u32>,
+    pad2: u32,
+}
+
+// Whether walls move, and how many do. Else not a line more is compiled than walls at rest need.
+override MOVING: bool = false;
+override MOTIONS: u32 = 0;
+// Motions of a step, at most.
+const MOST_MOTIONS: u32 = 4;
+@group(0) @binding(61) var<uniform> motions: array<Motion, 128>;
+
+fn motion_of(m: u32) -> Motion {
+    return motions[step.slot * MOST_MOTIONS + m];
+}

@@ -1,0 +1,77 @@
+//! Walls that move, before the run: how hot they make the gas, and what is not there yet.
+
+use super::render::significant;
+use super::{Measured, MeasuredMotion, PlanError, Reason};
+use crate::gas::Species;
+use crate::scene::{GAS_CONSTANT, Method, Scene};
+
+/// How many times as hot gas of temperature `hottest`, K, can get: compressed isentropically to the least volume, then by
+/// the shock that the fastest wall drives into it (Rankine and Hugoniot), by the gas in which each does most.
+pub fn heating(scene: &Scene, motion: &MeasuredMotion, hottest: f64) -> f64 {
+    let by = |gas: &crate::scene::Gas| {
+        let cv = gas.heat.molar_cv(hottest).max(1.5 * GAS_CONSTANT);
+        let gamma = 1.0 + GAS_CONSTANT / cv;
+        let compressed = libm::pow(motion.least_share.min(1.0), 1.0 - gamma);
+        let sound = (gamma * GAS_CONSTANT * hottest / gas.molar_mass).sqrt();
+        // The Mach number of a shock behind which the gas has the velocity of the wall.
+        let half = 0.25 * (gamma + 1.0) * motion.fastest / sound;
+        let mach2 = (half + (1.0 + half * half).sqrt()).powi(2);
+        let shocked = (2.0 * gamma * mach2 - (gamma - 1.0)) * ((gamma - 1.0) * mach2 + 2.0)
+            / ((gamma + 1.0) * (gamma + 1.0) * mach2);
+        compressed * shocked
+    };
+    scene.gases.iter().map(by).fold(1.0, f64::max)
+}
+
+/// # Errors
+/// If the method cannot have walls that move.
+pub fn check(scene: &Scene, method: Method) -> Result<(), PlanError> {
+    match scene.motions.first() {
+        Some(motion) if method == Method::Cell => {
+            Err(PlanError::MotionInCells { wall: scene.walls[motion.wall].name.clone() })
+        }
+        _ => Ok(()),
+    }
+}
+
+pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
+    let Some(motion) = &measured.motion else { return };
+    let walls: Vec<String> =
+        scene.motions.iter().map(|motion| format!("`{}`", scene.walls[motion.wall].name)).collect();
+    reasons.push(Reason {
+        quantity: "moving walls".into(),
+        value: walls.join(", "),
+        why: format!(
+            "up to {} m/s; all gas has {} of its volume at the end, a chamber {} at least",
+            significant(motion.fastest),
+            significant(motion.final_gas_volume / measured.gas_volume),
+            significant(motion.least_share)
+        ),
+    });
+}
+
+pub fn warnings(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<String> {
+    let Some(motion) = &measured.motion else { return Vec::new() };
+    let mut warnings = Vec::new();
+    if scene.walls.iter().any(|wall| wall.heat.is_some()) {
+        warnings.push(
+            "walls that exchange heat count with their areas as drawn, in the control volume and in heat fluxes, whatever \
+             part of them a moving wall covers"
+                .into(),
+        );
+    }
+    let coldest = scene.chambers.iter().map(|chamber| chamber.temperature).fold(f64::INFINITY, f64::min);
+    let heaviest = species.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
+    let thermal = (GAS_CONSTANT * coldest / heaviest).sqrt();
+    if motion.fastest > FASTEST * thermal {
+        warnings.push(format!(
+            "a wall moves with {} m/s, {} times sqrt(kT/m) of the coldest gas: the shock before it is thinner than a cell",
+            significant(motion.fastest),
+            significant(motion.fastest / thermal)
+        ));
+    }
+    warnings
+}
+
+/// Times sqrt(kT/m).
+const FASTEST: f64 = 4.0;
