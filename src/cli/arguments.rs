@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
 
+use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY};
 use crate::simulation::{CheckpointEvery, WallTime};
 
 const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked, 2 bad input, 3 device trouble, 4 the audit failed.";
@@ -86,11 +87,45 @@ pub struct SceneArguments {
     pub seed: Option<u64>,
 }
 
+/// What a run shall be worth, or may cost; docs/planner.md.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "What the plan shall choose by")]
+pub struct WishArguments {
+    /// Largest predicted error of a pressure, relative (0.02): the plan chooses the cheapest run that reaches it
+    #[arg(long, value_name = "ERROR", value_parser = accuracy)]
+    pub accuracy: Option<f64>,
+    /// Device time that the run may take (90s, 10m, 2h): the plan chooses the most accurate run, if no accuracy is wished
+    #[arg(long, value_name = "TIME")]
+    pub time_budget: Option<WallTime>,
+    /// The most particles that the plan may choose
+    #[arg(long, value_name = "N", conflicts_with = "particles", value_parser = clap::value_parser!(u64).range(1..(1 << 28)))]
+    pub particle_budget: Option<u64>,
+    /// Million particle-steps per second of the device, for the predicted time [default: 3, lavapipe on two cores]
+    #[arg(long, value_name = "MILLIONS", value_parser = rate)]
+    pub device_rate: Option<f64>,
+}
+
+fn accuracy(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(error) if (LEAST_ACCURACY..=MOST_ACCURACY).contains(&error) => Ok(error),
+        _ => Err(format!("a relative error from {LEAST_ACCURACY} to {MOST_ACCURACY} is possible")),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(millions) if millions > 0.0 && millions.is_finite() => Ok(millions),
+        _ => Err("a number above 0 is possible".into()),
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub struct RunArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
+    #[command(flatten)]
+    pub wish: WishArguments,
     /// The folder for the results [default: results/<name of the scene file>]
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
@@ -392,6 +427,8 @@ pub struct StabilityArguments {
 pub struct PlanArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
+    #[command(flatten)]
+    pub wish: WishArguments,
     /// As TOML, with everything that is in the plan.toml of a run
     #[arg(long)]
     pub toml: bool,

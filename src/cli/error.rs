@@ -62,6 +62,9 @@ pub enum CliError {
     Signals(std::io::Error),
     #[error("--balance-threshold {found}: expected a number of at least 1")]
     Threshold { found: f64 },
+    #[error("--device-rate without a wish: it scales the predicted cost of the plan's choices")]
+    #[diagnostic(help("add --accuracy, --time-budget or --particle-budget"))]
+    RateWithoutWish,
     #[error("{option} {found}: expected {expected}")]
     SweepFigure { option: &'static str, found: f64, expected: &'static str },
     #[error("--balance initial with --from: a run that goes on from a checkpoint knows no start to cut by")]
@@ -156,6 +159,7 @@ impl CliError {
             | CliError::StepsDone { .. }
             | CliError::Signals(_)
             | CliError::Threshold { .. }
+            | CliError::RateWithoutWish
             | CliError::SweepFigure { .. }
             | CliError::NoLauncher
             | CliError::InitialFrom

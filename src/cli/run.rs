@@ -78,6 +78,9 @@ pub fn launch(
         for warning in &model.plan.warnings {
             tracing::warn!("{warning}");
         }
+        if let Some(choice) = &model.choice {
+            tracing::info!("{}", choice.summary());
+        }
     }
     if model.plan.method == Method::ControlVolume {
         // Nothing to share out: the first rank does it.
@@ -191,7 +194,7 @@ impl Job<'_> {
         let Some(from) = &self.from else {
             let folder = OutputFolder::create(folder, *force)?;
             folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
-            folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
+            folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
             Environment::of_this_host(command(), adapter).write(folder.path())?;
             let recorder = Recorder::new(model, reference, folder.path(), shown)?;
             return Ok((folder, recorder));

@@ -9,7 +9,7 @@ use crate::simulation::{BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model}
 use super::CliError;
 use super::arguments::{
     Balance, BalanceBy, ExecutionArguments, GhostsThatChoose, RunArguments, SceneArguments, SharingArguments,
-    TuningArguments,
+    TuningArguments, WishArguments,
 };
 use super::run::Wanted;
 
@@ -28,6 +28,30 @@ pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
 /// The scene, its walls and its plan. `path` stands in the message if they are not sound.
 pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
     Model::new(scene).map_err(|error| CliError::model(path, error))
+}
+
+/// The same where the command line may wish an accuracy or set budgets. A wish sets aside how many particles the file asks
+/// for, unless the command line says that too.
+pub fn wished_model(raw: &SceneArguments, wish: &WishArguments) -> Result<Model, CliError> {
+    let mut scene = scene_of(raw)?;
+    let typed = wish.accuracy.is_some() || wish.time_budget.is_some() || wish.particle_budget.is_some();
+    let asked = &mut scene.model.wish;
+    asked.accuracy = wish.accuracy.or(asked.accuracy);
+    asked.time_budget = wish.time_budget.map(|time| time.0.as_secs_f64()).or(asked.time_budget);
+    asked.particle_budget = wish.particle_budget.or(asked.particle_budget);
+    asked.device_rate = wish.device_rate.map(|millions| 1e6 * millions).or(asked.device_rate);
+    if raw.particles.is_some() {
+        asked.particle_budget = None;
+    }
+    if wish.device_rate.is_some() && !asked.is_any() {
+        return Err(CliError::RateWithoutWish);
+    }
+    let aside = if typed && raw.particles.is_none() { scene.model.particles.take() } else { None };
+    let mut model = model_of(&raw.scene, scene)?;
+    if let (Some(choice), Some(particles)) = (&mut model.choice, aside) {
+        choice.set_aside(particles);
+    }
+    Ok(model)
 }
 
 /// A run as it will be done.
@@ -114,7 +138,7 @@ impl Sharing {
 impl RunSettings {
     pub fn new(raw: RunArguments) -> Result<RunSettings, CliError> {
         let path = &raw.scene.scene;
-        let model = model_of(path, scene_of(&raw.scene)?)?;
+        let model = wished_model(&raw.scene, &raw.wish)?;
         let folder = raw.out.unwrap_or_else(|| default_folder(path));
         let execution = Execution::new(raw.execution)?;
         Ok(RunSettings { scene: path.clone(), model, folder, force: raw.force, execution })

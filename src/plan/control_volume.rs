@@ -90,6 +90,8 @@ pub fn plan(
         openings,
         vents: Vec::new(),
         reasons,
+        left_out: Vec::new(),
+        forecast: None,
     })
 }
 

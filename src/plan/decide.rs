@@ -50,7 +50,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     });
     let extreme = Extreme(kinetics::thermal_square(temperature_max, amounts.lightest(scene)));
     motion::reasons(scene, measured, &mut reasons);
-    let states = mean_states(scene, measured, &amounts, [initial_particles, particles]);
+    let states = mean_states(scene, measured, &amounts, [initial_particles as f64, particles as f64]);
     let number_density = states[1].number_density;
     let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
     let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
@@ -108,11 +108,13 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         estimated_steps: resolution.steps as f64,
         grid,
         chambers,
+        left_out: left_out(scene, method, &gases, injected_particles),
         gases,
         openings,
         vents,
         reasons,
         warnings,
+        forecast: None,
     })
 }
 
@@ -125,17 +127,35 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
     method
 }
 
+/// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them.
+fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64) -> Vec<&'static str> {
+    let present = || gases.iter().filter(|gas| gas.particles > 0);
+    let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some());
+    let has = [
+        ("collisions", method != Method::None),
+        ("spin energy", present().any(|gas| gas.species.has_spin())),
+        ("heat capacities that depend on the temperature", present().any(|gas| !gas.species.is_constant())),
+        ("a second gas", present().count() > 1),
+        ("inflow", injected > 0),
+        ("measured surfaces", !scene.surfaces.is_empty()),
+        ("walls that are no mirrors", coated),
+        ("vents", !scene.vents.is_empty()),
+        ("walls that move", !scene.motions.is_empty()),
+    ];
+    has.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
+}
+
 /// At the start and the end, from the particles in the gas volume at each.
-fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, particles: [u64; 2]) -> [MeanState; 2] {
+pub fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, particles: [f64; 2]) -> [MeanState; 2] {
     let (final_mass, initial_mass) = amounts.mean_molar_masses(scene);
-    let state = |count: u64, volume: f64, temperature, molar_mass| MeanState {
-        number_density: count as f64 / volume,
+    let state = |count: f64, volume: f64, temperature, molar_mass| MeanState {
+        number_density: count / volume,
         thermal_square: kinetics::thermal_square(temperature, molar_mass),
     };
     let final_volume = measured.motion.map_or(measured.gas_volume, |motion| motion.final_gas_volume);
     let end = state(particles[1], final_volume, amounts.final_temperature, final_mass);
     // Without initial gas there is no state to limit the step.
-    let start = if particles[0] > 0 {
+    let start = if particles[0] > 0.0 {
         state(particles[0], measured.gas_volume, amounts.initial_temperature, initial_mass)
     } else {
         end

@@ -49,6 +49,25 @@ pub enum PlanError {
          is none; give a constant `cp`, or coefficients fitted to the temperatures of the scene"
     ))]
     HeatCapacity { gas: String, range: [f64; 2], residual: f64, limit: f64 },
+    #[error("no plan is predicted to be within {}: the best, {best}", significant(*asked))]
+    #[diagnostic(help("{remedy}"))]
+    Accuracy { asked: f64, floor: f64, best: String, remedy: String },
+    #[error(
+        "a time budget of {} s is not enough for any plan: the cheapest, {plan}, is predicted to take {} s",
+        significant(*budget), significant(*least)
+    )]
+    #[diagnostic(help(
+        "raise it, or set `device_rate` in [model] to what `cargo bench --bench step` prints for your device"
+    ))]
+    TimeBudget { budget: f64, least: f64, plan: String },
+    #[error("an accuracy or a budget together with [[motion]]: errors beside moving walls are not predicted yet")]
+    #[diagnostic(help("leave out `accuracy`, `time_budget` and `particle_budget`, and set `particles` in [model]"))]
+    WishOfMotion,
+    #[error("no method can run this scene with {particles} particles or more")]
+    #[diagnostic(help(
+        "leave out `diameter`, `rounds` or `particles` in [model]: one of them does not fit the vessel"
+    ))]
+    NoCandidate { particles: f64 },
     #[error("{what}: the method control-volume does not know what leaves through vents and walls yet")]
     #[diagnostic(help(
         "choose a method of particles in [model]; its history has a control volume with these losses beside it"

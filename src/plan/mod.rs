@@ -14,9 +14,11 @@
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;
+mod choice;
 mod control_volume;
 mod decide;
 mod error;
+mod forecast;
 mod heat;
 mod limits;
 mod motion;
@@ -31,8 +33,10 @@ use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
 
+pub use choice::{Alternative, Choice, Forecast, choose};
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
+pub use forecast::{Cause, ColumnForecast, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
 pub use limits::{Bound, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 pub use render::significant;
 
@@ -129,6 +133,12 @@ pub struct Plan {
     pub vents: Vec<VentPlan>,
     pub reasons: Vec<Reason>,
     pub warnings: Vec<String>,
+    /// What the scene lacks, and kernels are therefore compiled without.
+    #[serde(skip)]
+    pub left_out: Vec<&'static str>,
+    /// Of a scene that wishes an accuracy or has a budget.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forecast: Option<Forecast>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -18,6 +18,10 @@ impl Plan {
         }
         let reference = format!("{} K", significant(self.temperature_reference));
         row("final temperature", reference, "mean of all gas, no heat lost");
+        if !self.left_out.is_empty() {
+            let lacks = format!("the scene lacks {}", self.left_out.join(", "));
+            row("not compiled", format!("{} features", self.left_out.len()), &lacks);
+        }
         let mut text = table(&rows);
 
         let counted = |count: u64| if self.method == Method::ControlVolume { String::new() } else { grouped(count) };

@@ -12,7 +12,7 @@ fn chamber(name: &str) -> Chamber {
 }
 
 /// The published tank: 60 L of air, 78.2 g of nitrogen at 700 K in 60 ms, a hole of 40 x 40 mm.
-fn tank() -> (Scene, Measured) {
+pub(in crate::plan) fn tank() -> (Scene, Measured) {
     let peak = 0.0782 / (0.5 * 0.01 + 0.5 * (1.0 + 0.25) * 0.02 + 0.5 * 0.25 * 0.03);
     let inflator = Orifice {
         name: "inflator".into(),

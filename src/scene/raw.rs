@@ -387,6 +387,16 @@ pub struct RawModel {
     pub rounds: Option<At<i64>>,
     /// Rotational collision number Z; 5 unless given.
     pub collision_number: Option<At<f64>>,
+    /// Largest predicted error of a pressure in the history, relative, 0.0001 to 0.5: the plan chooses what reaches it
+    /// at the least cost.
+    pub accuracy: Option<At<f64>>,
+    /// Device time that the run may take, in seconds whatever the units.
+    pub time_budget: Option<At<f64>>,
+    /// The most particles that the plan may choose, 1 to 268435455.
+    pub particle_budget: Option<At<i64>>,
+    /// Million particle-steps per second that the device does (`cargo bench --bench step` prints it), for the predicted
+    /// time; 3 unless given, that of lavapipe on two cores.
+    pub device_rate: Option<At<f64>>,
 }
 
 /// How much is written.

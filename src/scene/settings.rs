@@ -5,13 +5,16 @@ use super::gases::least_collision_number;
 use super::numbers::{bounded, positive, show, small_count};
 use super::raw::{RawGas, RawModel, RawOutput};
 use super::raw_values::At;
-use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, UnitSystem};
+use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, UnitSystem, Wish};
 use super::units::Quantity;
 
 /// Particle ids share a word with flags.
 const MOST_PARTICLES: i64 = (1 << 28) - 1;
 /// Z where the scene gives none.
 const COLLISION_NUMBER: f64 = 5.0;
+/// Range of a wished accuracy.
+pub const LEAST_ACCURACY: f64 = 1e-4;
+pub const MOST_ACCURACY: f64 = 0.5;
 const ROWS: u32 = 200;
 const SNAPSHOTS: u32 = 10;
 
@@ -46,6 +49,38 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
         time_step: raw.time_step.as_ref().map(|t| positive(t, Quantity::Time, units)).transpose()?,
         rounds: raw.rounds.as_ref().map(|n| small_count(n, 1..=8)).transpose()?,
         collision_number: raw.collision_number.as_ref().map(|z| positive(z, Quantity::Pure, units)).transpose()?,
+        wish: wish(raw, units)?,
+    })
+}
+
+fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
+    if let (Some(particles), Some(budget)) = (&raw.particles, &raw.particle_budget) {
+        let later = if particles.span.start > budget.span.start { &particles.span } else { &budget.span };
+        return Err(Problem::value(
+            later,
+            "both `particles` and `particle_budget`",
+            "at most one of them: the first says how many, the second how many at most",
+        ));
+    }
+    let wished = raw.accuracy.is_some() || raw.time_budget.is_some() || raw.particle_budget.is_some();
+    if let Some(rate) = raw.device_rate.as_ref().filter(|_| !wished) {
+        let allowed = "only beside `accuracy`, `time_budget` or `particle_budget`, whose predicted cost it scales";
+        return Err(Problem::value(&rate.span, "`device_rate` without a wish", allowed));
+    }
+    let pure = |at: &Option<At<f64>>| at.as_ref().map(|at| positive(at, Quantity::Pure, units)).transpose();
+    let accuracy = |at: &At<f64>| {
+        let allowed = "a relative error from 0.0001 to 0.5";
+        bounded(at, Quantity::Pure, units, allowed, |e| (LEAST_ACCURACY..=MOST_ACCURACY).contains(&e))
+    };
+    Ok(Wish {
+        accuracy: raw.accuracy.as_ref().map(accuracy).transpose()?,
+        time_budget: pure(&raw.time_budget)?,
+        particle_budget: raw
+            .particle_budget
+            .as_ref()
+            .map(|n| super::numbers::count(n, 1..=MOST_PARTICLES))
+            .transpose()?,
+        device_rate: pure(&raw.device_rate)?.map(|millions| 1e6 * millions),
     })
 }
 

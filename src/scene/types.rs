@@ -359,6 +359,27 @@ pub struct ModelRequest {
     pub rounds: Option<u32>,
     /// Rotational collision number Z (default 5).
     pub collision_number: Option<f64>,
+    pub wish: Wish,
+}
+
+/// What a run shall be worth, or may cost: the plan then chooses what else is not said.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Wish {
+    /// Largest predicted error of a pressure of the history, relative.
+    pub accuracy: Option<f64>,
+    /// Device time, s.
+    pub time_budget: Option<f64>,
+    /// Most particles at the end of the run.
+    pub particle_budget: Option<u64>,
+    /// Particle-steps per second of the device, at the occupancy and step of the plan's own choice.
+    pub device_rate: Option<f64>,
+}
+
+impl Wish {
+    /// Whether anything is wished; how fast the device is, is none.
+    pub fn is_any(&self) -> bool {
+        self.accuracy.is_some() || self.time_budget.is_some() || self.particle_budget.is_some()
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -209,6 +209,16 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     if let Some(rounds) = model.rounds {
         out.count("rounds", u64::from(rounds));
     }
+    let wish = &model.wish;
+    let millions = wish.device_rate.map(|rate| 1e-6 * rate);
+    for (key, value) in [("accuracy", wish.accuracy), ("time_budget", wish.time_budget), ("device_rate", millions)] {
+        if let Some(value) = value {
+            out.number(key, value);
+        }
+    }
+    if let Some(budget) = wish.particle_budget {
+        out.count("particle_budget", budget);
+    }
     out.header("[output]");
     out.count("rows", u64::from(scene.output.rows));
     out.count("snapshots", u64::from(scene.output.snapshots));

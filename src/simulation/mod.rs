@@ -19,6 +19,7 @@ mod ladder;
 mod model;
 mod moving;
 mod observer;
+mod outlook;
 mod reference;
 mod refine;
 mod run;

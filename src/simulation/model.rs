@@ -1,11 +1,12 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
-use crate::plan::{Measured, MeasuredVent, Plan, PlanError, plan};
+use crate::plan::{Choice, Measured, MeasuredVent, Plan, PlanError, choose, plan};
 use crate::scene::{Opening, Scene};
 
 use super::coats::Coats;
 use super::moving::Moving;
+use super::outlook::outlook;
 
 pub struct Model {
     pub scene: Scene,
@@ -16,6 +17,8 @@ pub struct Model {
     pub moving: Moving,
     /// m3 of gas in each probe.
     pub probe_volumes: Vec<f64>,
+    /// Of a scene that wished an accuracy or had a budget: what was chosen, now part of `scene`, and why.
+    pub choice: Option<Choice>,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -65,39 +68,64 @@ pub enum ModelError {
 impl Model {
     /// # Errors
     /// If the walls are not closed, an orifice is not in the gas, or no plan can be made.
-    pub fn new(scene: Scene) -> Result<Model, ModelError> {
+    pub fn new(mut scene: Scene) -> Result<Model, ModelError> {
         let vessel = Vessel::build(&scene.walls)?;
         check_orifices(&scene, &vessel)?;
         let coats = Coats::new(&scene, &vessel)?;
         let moving = Moving::new(&scene, &vessel)?;
-        let (bounds_min, bounds_max) = moving.bounds(&vessel);
-        let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
-        let measured = Measured {
-            gas_volume: vessel.gas_volume(),
-            motion: moving.measured(&chamber_volumes),
-            chamber_volumes,
-            bounds_min,
-            bounds_max,
-            openings: found_openings(&scene, &vessel),
-            smallest_gap: vessel.smallest_gap(),
-            wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
-            probe_volumes: probe_volumes.clone(),
-            vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
-            heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
-        };
+        let measured = measured(&scene, &vessel, &coats, &moving, &probe_volumes);
+        let mut choice = None;
+        if scene.model.wish.is_any() {
+            let chosen = choose(&scene, &measured, &outlook(&scene, &vessel, &measured, &coats))?;
+            // From here on the scene is one that says it all, so that it can be resumed and refined as any other.
+            scene.model = chosen.request.clone();
+            choice = Some(chosen);
+        }
         let plan = plan(&scene, &measured)?;
-        Ok(Model { scene, vessel, plan, coats, moving, probe_volumes })
+        Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
-}
 
-impl Model {
+    /// The plan with the reasons and the forecast of the choice, for people. `plan` is what runs and checkpoints go by.
+    pub fn explained(&self) -> Plan {
+        let mut plan = self.plan.clone();
+        if let Some(choice) = &self.choice {
+            choice.explain(&mut plan);
+        }
+        plan
+    }
+
     /// The walls as they are at a time, s.
     pub fn vessel_at(&self, time: f64) -> std::borrow::Cow<'_, Vessel> {
         if self.moving.is_empty() {
             return std::borrow::Cow::Borrowed(&self.vessel);
         }
         std::borrow::Cow::Owned(self.moving.vessel_at(&self.vessel, time))
+    }
+}
+
+/// What the plan needs to know of the geometry.
+pub(super) fn measured(
+    scene: &Scene,
+    vessel: &Vessel,
+    coats: &Coats,
+    moving: &Moving,
+    probe_volumes: &[f64],
+) -> Measured {
+    let (bounds_min, bounds_max) = moving.bounds(vessel);
+    let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
+    Measured {
+        gas_volume: vessel.gas_volume(),
+        motion: moving.measured(&chamber_volumes),
+        chamber_volumes,
+        bounds_min,
+        bounds_max,
+        openings: found_openings(scene, vessel),
+        smallest_gap: vessel.smallest_gap(),
+        wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
+        probe_volumes: probe_volumes.to_vec(),
+        vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
+        heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
     }
 }
 
@@ -149,4 +177,59 @@ fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+    use crate::subdomain::{Features, Patches};
+
+    fn model(text: &str) -> Model {
+        Model::new(parse(text, "test.toml", std::path::Path::new("")).unwrap()).unwrap()
+    }
+
+    /// What the plan says is left out is what the kernels are compiled without, scene by scene.
+    #[test]
+    fn kernels_are_compiled_without_what_the_scene_lacks() {
+        let helium = include_str!("../../scenes/box.toml").replace("gamma = 1.4", "gamma = 1.6667");
+        let scenes = [
+            include_str!("../../scenes/box.toml"),
+            include_str!("../../scenes/effusion.toml"),
+            include_str!("../../scenes/tank.toml"),
+            include_str!("../../scenes/vent.toml"),
+            include_str!("../../scenes/corner.toml"),
+            include_str!("../../scenes/piston.toml"),
+            &helium,
+        ];
+        let mut ever = [[false; 2]; 8];
+        for text in scenes {
+            let model = model(text);
+            let (_, patches) = crate::simulation::setup::patches(&model);
+            let patches = Patches {
+                surfaces: patches.len(),
+                coats: model.coats.coats.len(),
+                vents: model.scene.vents.len(),
+                motions: model.moving.count(),
+            };
+            let features = Features::of(&model.plan, patches, false, false);
+            let flags = [
+                ("collisions", features.collisions),
+                ("spin energy", features.spin),
+                ("heat capacities that depend on the temperature", features.curves),
+                ("inflow", features.orifices),
+                ("measured surfaces", features.surfaces),
+                ("walls that are no mirrors", features.coats),
+                ("vents", features.vents),
+                ("walls that move", features.moving),
+            ];
+            for (index, (name, compiled)) in flags.into_iter().enumerate() {
+                assert_eq!(model.plan.left_out.contains(&name), !compiled, "{}: {name}", model.scene.title);
+                ever[index][usize::from(compiled)] = true;
+            }
+        }
+        // The check can fail: but for curves, each was once there and once not.
+        assert!(ever.iter().enumerate().all(|(index, seen)| index == 2 || (seen[0] && seen[1])), "{ever:?}");
+        assert!(model(&helium).plan.left_out.contains(&"spin energy"));
+    }
 }

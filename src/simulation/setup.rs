@@ -148,7 +148,7 @@ fn zones(model: &Model) -> Vec<GpuZone> {
 }
 
 fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, coats, moving, probe_volumes } = model;
+    let Model { scene, vessel, plan, coats, moving, probe_volumes, .. } = model;
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
         let triangles = vessel.triangles.iter().filter(|triangle| (triangle.wall, triangle.face) == (wall, face));

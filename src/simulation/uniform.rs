@@ -7,9 +7,9 @@
 use glam::DVec3;
 
 use crate::gas::{FlowIntegral, State, flow_times_of_temperature, flow_times_temperature, thermo};
-use crate::geometry::region_bounds;
+use crate::geometry::{Vessel, region_bounds};
 use crate::output::Audit;
-use crate::scene::Surface;
+use crate::scene::{Scene, Surface};
 
 use super::SimulationError;
 use super::averages::{MotionState, Row, SurfaceState, ZoneState};
@@ -34,7 +34,8 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     let times: Vec<f64> = (0..=2 * rows).map(time).collect();
     let states = reference(model, &times);
     let probes = probes(model)?;
-    let surfaces = scene.surfaces.iter().map(|surface| facing(model, surface)).collect::<Result<Vec<_>, _>>()?;
+    let surfaces =
+        scene.surfaces.iter().map(|surface| facing(scene, &model.vessel, surface)).collect::<Result<Vec<_>, _>>()?;
     let mut received = vec![[0.0; 3]; surfaces.len()];
     let works = works(model, rows);
     let mut worked = vec![0.0; model.moving.count()];
@@ -137,16 +138,17 @@ fn probes(model: &Model) -> Result<Vec<usize>, SimulationError> {
 }
 
 /// A part of a surface and the chamber whose gas presses it.
-struct Face {
-    chamber: usize,
+pub(super) struct Face {
+    pub chamber: usize,
     /// m2.
-    area: f64,
+    pub area: f64,
     /// Area times the unit normal away from the gas.
     outward: DVec3,
 }
 
-fn facing(model: &Model, surface: &Surface) -> Result<Vec<Face>, SimulationError> {
-    let Model { scene, vessel, .. } = model;
+/// # Errors
+/// If no gas lies before the surface.
+pub(super) fn facing(scene: &Scene, vessel: &Vessel, surface: &Surface) -> Result<Vec<Face>, SimulationError> {
     let mut faces: Vec<Face> = Vec::new();
     let vertex = |index: u32| DVec3::from(vessel.vertices[index as usize]);
     let own = vessel.triangles.iter().filter(|triangle| {

@@ -391,3 +391,58 @@ fn a_control_volume_leaves_a_history_without_a_device() {
         outcome(&["sweep", scene, "--devices", "1,2", "--out", folder.path().join("s").to_str().unwrap()]);
     assert!(code == 2 && err.contains("no particles"), "{code} {err}");
 }
+
+/// A wish of the command line chooses another plan for another accuracy, with reasons, and sets `particles` of the file aside;
+/// a time that is too short and a speed that nothing asks for are refused.
+#[test]
+fn a_wish_chooses_the_plan() {
+    let planned = |accuracy: &str| printed(&["plan", "scenes/tank.toml", "--accuracy", accuracy]);
+    let (coarse, fine) = (planned("0.05"), planned("0.01"));
+    let particles = |text: &str| -> u64 {
+        let line = text.lines().find(|line| line.starts_with("particles counted")).unwrap();
+        line.split_whitespace().nth(2).unwrap().replace(',', "").parse().unwrap()
+    };
+    assert!(particles(&fine) > 3 * particles(&coarse), "{coarse}\n{fine}");
+    for text in [&coarse, &fine] {
+        for part in
+            ["wish ", "set aside", "predicted error", "predicted cost", "next cheaper", "next better", "hole vent"]
+        {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+    let kept = printed(&["plan", "scenes/tank.toml", "--accuracy", "0.2", "--particles", "30000"]);
+    assert!(particles(&kept).abs_diff(30_000) < 3 && !kept.contains("set aside"), "{kept}");
+    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--accuracy", "0.001"]);
+    assert!(code == 2 && err.contains("no plan is predicted to be within 0.001"), "{err}");
+    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--device-rate", "5"]);
+    assert!(code == 2 && err.contains("--device-rate without a wish"), "{err}");
+    assert_eq!(outcome(&["plan", "scenes/tank.toml", "--accuracy", "2"]).0, 2);
+}
+
+/// A run of a chosen plan leaves a scene that says it all, the forecast in `plan.toml`, and gives the same bytes as the run of
+/// that scene.
+#[test]
+fn a_chosen_run_can_be_repeated() {
+    let folder = TempDir::new().unwrap();
+    let (wished, again) = (folder.path().join("wished"), folder.path().join("again"));
+    let (code, _, err) = outcome(&[
+        "run",
+        "scenes/corner.toml",
+        "--particle-budget",
+        "3000",
+        "--steps",
+        "64",
+        "--out",
+        wished.to_str().unwrap(),
+    ]);
+    assert_eq!(code, 0, "{err}");
+    let text = |folder: &Path, name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let scene = text(&wished, "scene.toml");
+    assert!(scene.contains("particles = 3000") && !scene.contains("budget"), "{scene}");
+    assert!(text(&wished, "plan.toml").contains("[forecast]"));
+    let file = wished.join("scene.toml");
+    let (code, _, err) = outcome(&["run", file.to_str().unwrap(), "--steps", "64", "--out", again.to_str().unwrap()]);
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(text(&wished, "history.csv"), text(&again, "history.csv"));
+    assert!(!text(&again, "plan.toml").contains("[forecast]"));
+}

@@ -15,6 +15,7 @@ mod heat_curve;
 mod mixing;
 mod orifice;
 mod piston;
+mod planner;
 mod statistics;
 mod two_chambers;
 mod vents;

@@ -21,7 +21,7 @@ pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), 
     }
     let folder = OutputFolder::create(folder, *force)?;
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
-    folder.write_text(PLAN_FILE, &model.plan.to_toml()?)?;
+    folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
     let none = AdapterRecord { name: "none: a control volume".to_owned(), ..AdapterRecord::default() };
     Environment::of_this_host(command(), none).write(folder.path())?;
     let mut recorder = Recorder::without_particles(model, Reference::new(model), folder.path())?;

@@ -1,0 +1,98 @@
+//! The ways to run a scene that the plan chooses from: methods, occupancies, rounds (specification, section 6, points 3 to 5).
+
+use crate::gas::kinetics;
+use crate::plan::amounts::Amounts;
+use crate::plan::resolution::default_occupancy;
+use crate::plan::{Measured, Reason, forecast::Forecaster};
+use crate::scene::{Method, Scene};
+
+/// All candidates but for the number of particles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Family {
+    pub method: Method,
+    /// `None`: follows from the diameter that was asked for, or there are no collisions.
+    pub occupancy: Option<f64>,
+    pub rounds: Option<u32>,
+}
+
+/// Of nitrogen and air, m; of real molecules only whether they meet at all is asked.
+const MOLECULE: f64 = 3.7e-10;
+const AVOGADRO: f64 = 6.022_140_76e23;
+/// Mean free path of the molecules over the size of the vessel from which on they do not meet (specification, section 2).
+const FREE_KNUDSEN: f64 = 1.0;
+/// Rounds of pairing that are compared.
+const ROUNDS: [u32; 2] = [8, 4];
+const USUAL: [f64; 1] = [0.12];
+/// More than the usual one only for sharper fronts.
+const OF_FRONTS: [f64; 3] = [0.12, 0.2, 0.3];
+
+/// The families, cheapest kind first, and why these.
+pub fn families(
+    scene: &Scene,
+    measured: &Measured,
+    amounts: &Amounts,
+    forecaster: &Forecaster<'_>,
+) -> (Vec<Family>, Reason) {
+    let (methods, why) = methods(scene, measured, amounts, forecaster);
+    let occupancies: &[f64] = if forecaster.is_release() { &OF_FRONTS } else { &USUAL };
+    let mut families = Vec::new();
+    for &method in &methods {
+        let collides = !matches!(method, Method::None | Method::ControlVolume);
+        let of_method: Vec<Option<f64>> = match scene.model.occupancy {
+            Some(asked) if collides => vec![Some(asked)],
+            None if collides && scene.model.diameter.is_none() => match method {
+                Method::HardSphere => vec![Some(default_occupancy(method))],
+                _ => occupancies.iter().copied().map(Some).collect(),
+            },
+            _ => vec![None],
+        };
+        let of_rounds: Vec<Option<u32>> = match scene.model.rounds {
+            Some(asked) if method.has_rounds() => vec![Some(asked)],
+            None if method.has_rounds() => ROUNDS.iter().copied().map(Some).collect(),
+            _ => vec![None],
+        };
+        for &occupancy in &of_method {
+            families.extend(of_rounds.iter().map(|&rounds| Family { method, occupancy, rounds }));
+        }
+    }
+    let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
+    (families, Reason { quantity: "methods compared".into(), value: names.join(", "), why })
+}
+
+fn methods(
+    scene: &Scene,
+    measured: &Measured,
+    amounts: &Amounts,
+    forecaster: &Forecaster<'_>,
+) -> (Vec<Method>, String) {
+    if let Some(method) = scene.model.method {
+        return (vec![method], "asked for in the scene".into());
+    }
+    let molecules = amounts.total() * AVOGADRO / measured.gas_volume;
+    let knudsen = kinetics::mean_free_path(molecules, MOLECULE) / libm::cbrt(measured.gas_volume);
+    if knudsen >= FREE_KNUDSEN {
+        let why =
+            format!("the molecules themselves do not meet: Kn {knudsen:.1} of the vessel, of molecules of 0.37 nm");
+        return (vec![Method::None], why);
+    }
+    let mut methods = Vec::new();
+    let mut why = Vec::new();
+    let losses = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some());
+    if forecaster.is_release() {
+        why.push("a release without a wall is no control volume");
+    } else if losses {
+        why.push("the method control-volume does not know vents and walls that keep a temperature");
+    } else {
+        methods.push(Method::ControlVolume);
+    }
+    // Specification, section 6, point 5.
+    if scene.orifices.is_empty() && scene.vents.is_empty() && measured.openings.is_empty() && scene.openings.is_empty()
+    {
+        methods.push(Method::Cell);
+        why.push("cell in open volumes");
+    } else {
+        why.push("closest-approach, not cell, near jets, holes and vents");
+    }
+    methods.push(Method::ClosestApproach);
+    (methods, why.join("; "))
+}

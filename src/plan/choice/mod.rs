@@ -1,0 +1,266 @@
+//! The plan of a scene that wishes an accuracy or has a budget: of all families of runs ([`families`]) and numbers of
+//! particles the cheapest whose forecast error is small enough, or the most accurate that the budget pays for
+//! (specification, section 6, "no more than a scene needs").
+//!
+//! Explicit keys of `[model]` are constraints. What comes out is a request with every choice in it: the plan of that
+//! request, made as any other's, is the plan of the run.
+
+mod cost;
+mod families;
+mod report;
+
+use super::amounts::{Amounts, highest_temperature};
+use super::decide::mean_states;
+use super::error::{MOST_CELLS, MOST_PARTICLES};
+use super::forecast::{Candidate, ColumnForecast, Forecaster, Outlook, worst};
+use super::heat::species;
+use super::resolution::{Extreme, Resolution};
+use super::{Measured, PlanError};
+use crate::gas::kinetics;
+use crate::geometry::Grid;
+use crate::scene::{Method, ModelRequest, Scene, Wish};
+use cost::{Cost, UNIFORM_SECONDS, USUAL_RATE};
+use families::{Family, families};
+
+pub use report::{Alternative, Choice, Forecast};
+
+/// A forecast is good to about a quarter, so the plan aims at this part of the wished error.
+const AIM: f64 = 0.75;
+/// The fewest particles that the plan chooses.
+const FEWEST: f64 = 1000.0;
+/// Counts of particles differ from what was asked by the rounding of chambers and gases.
+const ROOM: f64 = 0.999;
+/// The next cheaper plan may be so much worse; the next better one is so much better.
+const NEXT: f64 = 2.0;
+
+/// A family at a number of particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Possible {
+    pub family: Family,
+    pub candidate: Candidate,
+    pub columns: Vec<ColumnForecast>,
+    pub error: f64,
+    pub cost: Cost,
+}
+
+struct Chooser<'a> {
+    scene: &'a Scene,
+    measured: &'a Measured,
+    amounts: &'a Amounts,
+    forecaster: Forecaster<'a>,
+    families: Vec<Family>,
+    extreme: Extreme,
+    rate: f64,
+    /// Fewest and most particles.
+    range: [f64; 2],
+}
+
+/// What to run of a scene with a wish.
+///
+/// # Errors
+/// If no plan reaches the accuracy, or even the cheapest is beyond the budget.
+pub fn choose(scene: &Scene, measured: &Measured, outlook: &Outlook) -> Result<Choice, PlanError> {
+    if measured.motion.is_some() {
+        return Err(PlanError::WishOfMotion);
+    }
+    let mut unused = Vec::new();
+    let species = species(scene, measured, &mut unused)?;
+    let amounts = Amounts::of(scene, &species, measured)?;
+    let forecaster = Forecaster::new(scene, measured, outlook, &species, &amounts);
+    let (families, why) = families(scene, measured, &amounts, &forecaster);
+    let (hottest, _) = highest_temperature(scene, measured);
+    let wish = &scene.model.wish;
+    let chooser = Chooser {
+        scene,
+        measured,
+        amounts: &amounts,
+        forecaster,
+        families,
+        extreme: Extreme(kinetics::thermal_square(hottest, amounts.lightest(scene))),
+        rate: wish.device_rate.unwrap_or(USUAL_RATE),
+        range: range(scene, &amounts),
+    };
+    let chosen = match wish.accuracy {
+        Some(accuracy) => chooser.accurate(accuracy, wish)?,
+        None => chooser.affordable(wish)?,
+    };
+    Ok(report::choice(&chooser, chosen, why))
+}
+
+/// Fewest and most particles: every chamber has some, and every particle an id.
+fn range(scene: &Scene, amounts: &Amounts) -> [f64; 2] {
+    if let Some(asked) = scene.model.particles {
+        return [asked as f64; 2];
+    }
+    let chambers = amounts.initial.iter().map(|gases| gases.iter().sum::<f64>()).filter(|moles| *moles > 0.0);
+    let least = chambers.fold(f64::INFINITY, f64::min);
+    let most = scene.model.wish.particle_budget.map_or(ROOM * MOST_PARTICLES as f64, |budget| budget as f64);
+    let needed = if least.is_finite() { (amounts.total() / least).ceil() } else { 1.0 };
+    [FEWEST.max(needed).min(most), most]
+}
+
+impl Chooser<'_> {
+    /// The cheapest plan of the wished accuracy.
+    fn accurate(&self, accuracy: f64, wish: &Wish) -> Result<Possible, PlanError> {
+        let affordable = |plan: &Possible| wish.time_budget.is_none_or(|budget| plan.cost.seconds <= budget);
+        // If the aim is out of reach, the wish itself may not be.
+        for error in [AIM * accuracy, accuracy] {
+            if let Some(plan) = self.cheapest(error).filter(affordable) {
+                return Ok(plan);
+            }
+        }
+        // What is the best that can be had?
+        let best = match wish.time_budget {
+            Some(_) => self.affordable(wish)?,
+            None => self.best(|_| true).ok_or_else(|| self.nothing())?,
+        };
+        // A plan between the aim and the wish itself will do.
+        if best.error <= accuracy && affordable(&best) {
+            return Ok(best);
+        }
+        let best_of_all = report::shortfall(&best);
+        Err(PlanError::Accuracy { asked: accuracy, floor: best.error, best: best_of_all, remedy: self.remedy(wish) })
+    }
+
+    /// The most accurate plan within the budgets.
+    fn affordable(&self, wish: &Wish) -> Result<Possible, PlanError> {
+        let budget = wish.time_budget.unwrap_or(f64::INFINITY);
+        if let Some(plan) = self.best(|plan| plan.cost.seconds <= budget) {
+            return Ok(plan);
+        }
+        let least = self.families.iter().filter_map(|family| self.possible(family, self.range[0]));
+        let least = least.min_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds)).ok_or_else(|| self.nothing())?;
+        Err(PlanError::TimeBudget { budget, least: least.cost.seconds, plan: report::words(&least) })
+    }
+
+    fn remedy(&self, wish: &Wish) -> String {
+        let mut remedies = Vec::new();
+        if self.scene.model.particles.is_some() {
+            remedies.push("leave `particles` out of [model]");
+        }
+        if wish.particle_budget.is_some() {
+            remedies.push("raise the particle budget");
+        }
+        if wish.time_budget.is_some() {
+            remedies.push("raise the time budget");
+        }
+        if self.scene.model.method.is_some() {
+            remedies.push("leave `method` out of [model]");
+        }
+        remedies.push("ask for fewer `rows` in [output], which average over longer windows");
+        remedies.push("or wish a larger error");
+        remedies.join(", ")
+    }
+
+    fn nothing(&self) -> PlanError {
+        PlanError::NoCandidate { particles: self.range[0] }
+    }
+
+    /// The cheapest plan with at most this error.
+    fn cheapest(&self, error: f64) -> Option<Possible> {
+        let least = self.families.iter().filter_map(|family| self.least(family, |plan| plan.error <= error));
+        least.min_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds))
+    }
+
+    /// The plan with the least error of those allowed, which are those with few particles.
+    fn best(&self, allowed: impl Fn(&Possible) -> bool) -> Option<Possible> {
+        let most = self.families.iter().filter_map(|family| self.most(family, &allowed));
+        most.min_by(|a, b| a.error.total_cmp(&b.error))
+    }
+
+    /// A family with the fewest particles that are enough.
+    fn least(&self, family: &Family, enough: impl Fn(&Possible) -> bool) -> Option<Possible> {
+        let [fewest, _] = self.range;
+        if let Some(plan) = self.possible(family, fewest).filter(|plan| enough(plan)) {
+            return Some(plan);
+        }
+        let most = self.most(family, |_| true).filter(|plan| enough(plan))?;
+        let (mut low, mut high) = (fewest, most.candidate.particles);
+        while high > 1.03 * low {
+            let middle = (low * high).sqrt();
+            match self.possible(family, middle) {
+                Some(plan) if enough(&plan) => high = middle,
+                _ => low = middle,
+            }
+        }
+        // Two digits, upwards, if that is still possible.
+        let round = |n: f64| {
+            let unit = libm::pow(10.0, (libm::log10(n).floor() - 1.0).max(0.0));
+            (n / unit).ceil() * unit
+        };
+        self.possible(family, round(high)).filter(|plan| enough(plan)).or_else(|| self.possible(family, high))
+    }
+
+    /// A family with the most particles that are possible and allowed.
+    fn most(&self, family: &Family, allowed: impl Fn(&Possible) -> bool) -> Option<Possible> {
+        let [fewest, most] = self.range;
+        if let Some(plan) = self.possible(family, most).filter(|plan| allowed(plan)) {
+            return Some(plan);
+        }
+        let mut found = self.possible(family, fewest).filter(|plan| allowed(plan))?;
+        let (mut low, mut high) = (fewest, most);
+        while high > 1.03 * low {
+            let middle = (low * high).sqrt();
+            match self.possible(family, middle).filter(|plan| allowed(plan)) {
+                Some(plan) => (found, low) = (plan, middle),
+                None => high = middle,
+            }
+        }
+        Some(found)
+    }
+
+    /// `None` if it cannot be run: too many cells, or an impossible number of rounds.
+    fn possible(&self, family: &Family, particles: f64) -> Option<Possible> {
+        let particles = particles.round();
+        let density = particles / self.measured.gas_volume;
+        if family.method == Method::ControlVolume {
+            let candidate =
+                Candidate { method: family.method, particles, occupancy: 0.0, rounds: 0, collisions_per_step: 0.0 };
+            let cost = Cost { particle_steps: 0.0, seconds: UNIFORM_SECONDS };
+            return Some(self.forecast(family, candidate, cost));
+        }
+        let initial = particles * self.amounts.initial_total() / self.amounts.total();
+        let states = mean_states(self.scene, self.measured, self.amounts, [initial, particles]);
+        let request = self.request(family, particles as u64);
+        let end = self.scene.end_time;
+        let resolution =
+            Resolution::choose(family.method, &request, states, self.extreme, end, &mut Vec::new()).ok()?;
+        let grid = Grid::around(self.measured.bounds_min, self.measured.bounds_max, resolution.cell).ok()?;
+        if grid.cell_count() > MOST_CELLS {
+            return None;
+        }
+        let candidate = Candidate {
+            method: family.method,
+            particles,
+            occupancy: kinetics::occupancy(density, resolution.diameter),
+            rounds: resolution.rounds,
+            collisions_per_step: resolution.collisions_per_step,
+        };
+        let cost = Cost::of(family.method, &resolution, 0.5 * (initial + particles), density, self.rate);
+        Some(self.forecast(family, candidate, cost))
+    }
+
+    fn forecast(&self, family: &Family, candidate: Candidate, cost: Cost) -> Possible {
+        let columns = self.forecaster.columns(&candidate);
+        let error = worst(&columns).map_or(0.0, |column| column.error);
+        Possible { family: *family, candidate, columns, error, cost }
+    }
+
+    /// The scene's request with the choices in it.
+    fn request(&self, family: &Family, particles: u64) -> ModelRequest {
+        let asked = &self.scene.model;
+        let uniform = family.method == Method::ControlVolume;
+        ModelRequest {
+            method: Some(family.method),
+            particles: if uniform { asked.particles } else { Some(particles) },
+            diameter: if uniform { None } else { asked.diameter },
+            occupancy: family.occupancy,
+            rounds: family.rounds,
+            wish: Wish::default(),
+            ..asked.clone()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

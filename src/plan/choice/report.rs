@@ -1,0 +1,283 @@
+//! The choice in words: what was chosen, what it is worth and costs, what the next plans would be, and why.
+
+use super::{Chooser, NEXT, Possible};
+use crate::plan::forecast::{Cause, ColumnForecast, worst};
+use crate::plan::render::{grouped, significant};
+use crate::plan::{Plan, Reason};
+use crate::scene::{Method, ModelRequest, Wish};
+use serde::Serialize;
+
+/// What a plan is worth, and what it costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Forecast {
+    /// Relative, of the worst column: see `docs/planner.md`.
+    pub error: f64,
+    /// s of device time, at so many particle-steps a second.
+    pub seconds: f64,
+    pub particle_steps: f64,
+    pub device_rate: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cheaper: Option<Alternative>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub better: Option<Alternative>,
+    pub columns: Vec<ColumnForecast>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alternative {
+    pub method: Method,
+    pub particles: u64,
+    pub error: f64,
+    pub seconds: f64,
+}
+
+/// The request to plan, and what to add to its plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    pub request: ModelRequest,
+    pub forecast: Forecast,
+    reasons: Vec<Reason>,
+}
+
+impl Choice {
+    /// A line for the start of a run.
+    pub fn summary(&self) -> String {
+        let Forecast { error, seconds, .. } = &self.forecast;
+        let method = self.request.method.map_or("", Method::name);
+        format!("{method}: predicted error {}, predicted cost {}", percent(*error), duration(*seconds))
+    }
+
+    /// Says that a wish of the command line has set the scene's `particles` aside.
+    pub fn set_aside(&mut self, particles: u64) {
+        let why = "of the file: the command line wishes something else of the plan; --particles would keep it";
+        self.reasons.insert(1, reason("set aside", format!("particles = {}", grouped(particles)), why.into()));
+    }
+
+    /// Puts the reasons of the choice in the place of those that say "asked for", and the forecast into the plan.
+    pub fn explain(&self, plan: &mut Plan) {
+        let mut reasons = self.reasons.clone();
+        for hole in &plan.openings {
+            reasons.push(hole_reason(plan.method, &hole.name, hole.knudsen, &self.forecast.columns));
+        }
+        for vent in &plan.vents {
+            let length = (vent.area / std::f64::consts::PI).sqrt();
+            let volume: f64 = plan.chambers.iter().map(|chamber| chamber.volume).sum();
+            // d = Kn l / .79 (specification, section 6).
+            let resolved = volume / (0.1 * length / 0.79f64).powi(3);
+            let why = format!("exact in mass; resolved at Kn 0.1 it would take {} particles", grouped(resolved as u64));
+            reasons.push(reason(&format!("vent {}", vent.name), "modelled".into(), why));
+        }
+        for own in &plan.reasons {
+            if reasons.iter().all(|reason| reason.quantity != own.quantity) {
+                reasons.push(own.clone());
+            }
+        }
+        plan.reasons = reasons;
+        plan.forecast = Some(self.forecast.clone());
+    }
+}
+
+fn reason(quantity: &str, value: String, why: String) -> Reason {
+    Reason { quantity: quantity.into(), value, why }
+}
+
+fn percent(error: f64) -> String {
+    format!("{} %", significant(100.0 * error))
+}
+
+/// A time for people.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", significant((100.0 * s).round() / 100.0)),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// A plan in a few words.
+pub fn words(plan: &Possible) -> String {
+    match plan.candidate.method {
+        Method::ControlVolume => "control-volume".into(),
+        method => format!("{} with {} particles", method.name(), grouped(plan.candidate.particles as u64)),
+    }
+}
+
+/// What keeps the best plan from being better.
+pub fn shortfall(plan: &Possible) -> String {
+    let column = worst(&plan.columns);
+    let cause = column.and_then(ColumnForecast::main_cause).map_or("nothing", Cause::name);
+    let name = column.map_or("", |column| column.name.as_str());
+    format!("{}, is {} off in {name} ({cause})", words(plan), significant(plan.error))
+}
+
+fn hole_reason(method: Method, name: &str, knudsen: f64, columns: &[ColumnForecast]) -> Reason {
+    let error = |cause: Cause| {
+        let parts = columns.iter().flat_map(|column| &column.parts).filter(|part| part.cause == cause);
+        parts.map(|part| part.error).fold(0.0, f64::max)
+    };
+    let quantity = format!("hole {name}");
+    if method == Method::ControlVolume {
+        let why =
+            format!("0.84 of isentropic flow, known to 0.02: {} of a pressure", percent(error(Cause::Coefficients)));
+        return reason(&quantity, "modelled".into(), why);
+    }
+    if method == Method::None {
+        return reason(&quantity, "resolved".into(), "free flight: no length to resolve".into());
+    }
+    let why = format!(
+        "Kn {} at the mean density of the end: {} of a pressure",
+        significant(knudsen),
+        percent(error(Cause::Holes))
+    );
+    reason(&quantity, "resolved".into(), why)
+}
+
+fn wish_words(wish: &Wish) -> String {
+    let mut words = Vec::new();
+    words.extend(wish.accuracy.map(|accuracy| format!("accuracy {accuracy}")));
+    words.extend(wish.time_budget.map(|budget| format!("time budget {}", duration(budget))));
+    words.extend(wish.particle_budget.map(|budget| format!("particle budget {}", grouped(budget))));
+    words.join(", ")
+}
+
+fn alternative(plan: &Possible) -> Alternative {
+    Alternative {
+        method: plan.candidate.method,
+        particles: if plan.candidate.method == Method::ControlVolume { 0 } else { plan.candidate.particles as u64 },
+        error: plan.error,
+        seconds: plan.cost.seconds,
+    }
+}
+
+pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choice {
+    let wish = &chooser.scene.model.wish;
+    // Half a plan's cost is no other plan.
+    let cheaper = chooser.cheapest(NEXT * chosen.error).filter(|plan| plan.cost.seconds < 0.8 * chosen.cost.seconds);
+    let better = chooser.cheapest(chosen.error / NEXT).filter(|plan| plan.error < chosen.error);
+    let mut reasons = Vec::new();
+    let asked = if wish.accuracy.is_some() {
+        "the cheapest plan that reaches it, aimed at three quarters of it"
+    } else {
+        "the most accurate plan within it"
+    };
+    reasons.push(reason("wish", wish_words(wish), asked.into()));
+    let column = worst(&chosen.columns);
+    let of = column.map_or_else(
+        || "no column can be wrong".to_string(),
+        |column| {
+            let parts: Vec<String> =
+                column.parts.iter().map(|part| format!("{} {}", part.cause.name(), percent(part.error))).collect();
+            let parts = if parts.is_empty() { "nothing".into() } else { parts.join(", ") };
+            format!("rms over the rows, worst in {}: {parts}", column.name)
+        },
+    );
+    reasons.push(reason("predicted error", percent(chosen.error), of));
+    let others = chosen.columns.iter().filter(|column| !column.asked && column.error > chosen.error);
+    for other in others {
+        let why = format!(
+            "{}; not asked for: where a scene has surfaces or probes, these are",
+            other.main_cause().map_or("", Cause::name)
+        );
+        reasons.push(reason(&format!("error of {}", other.name), percent(other.error), why));
+    }
+    let cost = if chosen.candidate.method == Method::ControlVolume {
+        "an integration of ordinary equations; no device".into()
+    } else {
+        format!(
+            "{:.2e} particle-steps at {} million a second{}; an estimate, good to a factor of two",
+            chosen.cost.particle_steps,
+            significant(1e-6 * chooser.rate),
+            if wish.device_rate.is_some() { "" } else { " (lavapipe, two cores)" }
+        )
+    };
+    reasons.push(reason("predicted cost", duration(chosen.cost.seconds), cost));
+    reasons.push(methods);
+    reasons.push(method_reason(chooser, &chosen));
+    if chosen.candidate.method != Method::ControlVolume {
+        reasons.push(particles_reason(chooser, &chosen));
+        reasons.extend(occupancy_reason(chooser, &chosen));
+        reasons.extend(rounds_reason(chooser, &chosen));
+    }
+    let none = |why: &str| ("none".to_string(), why.to_string());
+    let shown = |plan: &Possible| {
+        (words(plan), format!("predicted error {}, cost {}", percent(plan.error), duration(plan.cost.seconds)))
+    };
+    let (value, why) = cheaper.as_ref().map_or_else(|| none("no plan of twice the error costs less"), shown);
+    reasons.push(reason("next cheaper", value, why));
+    let (value, why) = better.as_ref().map_or_else(|| none("no plan has half the error"), shown);
+    reasons.push(reason("next better", value, why));
+    let forecast = Forecast {
+        error: chosen.error,
+        seconds: chosen.cost.seconds,
+        particle_steps: chosen.cost.particle_steps,
+        device_rate: chooser.rate,
+        cheaper: cheaper.as_ref().map(alternative),
+        better: better.as_ref().map(alternative),
+        columns: chosen.columns.clone(),
+    };
+    let request = chooser.request(&chosen.family, chosen.candidate.particles as u64);
+    Choice { request, forecast, reasons }
+}
+
+/// How many rounds, and why not the other number.
+fn rounds_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Option<Reason> {
+    let rounds = chosen.family.rounds.filter(|_| chooser.scene.model.rounds.is_none())?;
+    let x = significant(chosen.candidate.collisions_per_step);
+    let lost = percent(crate::plan::warnings::lost_events(chosen.candidate.collisions_per_step, rounds));
+    Some(reason("rounds", rounds.to_string(), format!("the cheaper number: {lost} of collisions lost at x = {x}")))
+}
+
+/// Why this method, and whether a control volume would do.
+fn method_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
+    let method = chosen.candidate.method;
+    let name = method.name().to_string();
+    if chooser.scene.model.method.is_some() {
+        return reason("method", name, "asked for".into());
+    }
+    let uniform = chooser.families.iter().find(|family| family.method == Method::ControlVolume);
+    let why = match uniform.and_then(|family| chooser.possible(family, chooser.range[0])) {
+        Some(_) if method == Method::ControlVolume => "suffices: pressures are uniform enough".into(),
+        Some(uniform) => {
+            let column = worst(&uniform.columns);
+            let cause = column.and_then(ColumnForecast::main_cause).map_or("", Cause::name);
+            format!(
+                "a control volume does not suffice: {} off in {} ({cause})",
+                percent(uniform.error),
+                column.map_or("", |column| column.name.as_str())
+            )
+        }
+        None => "the cheapest of those compared".into(),
+    };
+    reason("method", name, why)
+}
+
+fn particles_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
+    let value = grouped(chosen.candidate.particles as u64);
+    if chooser.scene.model.particles.is_some() {
+        return reason("particles", value, "asked for; initial and injected gas together at the end".into());
+    }
+    let fewest = chosen.candidate.particles <= chooser.range[0];
+    let column = worst(&chosen.columns);
+    let why = match column.and_then(|column| column.main_cause().map(|cause| (column, cause))) {
+        Some(_) if fewest => "the fewest that the plan takes; they are enough".into(),
+        Some((column, cause)) => format!("{} decides, of {}", cause.name(), column.name),
+        None => "the fewest that the plan takes".into(),
+    };
+    reason("particles", value, why)
+}
+
+fn occupancy_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Option<Reason> {
+    let asked = &chooser.scene.model;
+    if asked.diameter.is_some() || asked.occupancy.is_some() {
+        return None;
+    }
+    let occupancy = chosen.family.occupancy?;
+    let density = chosen.candidate.particles / chooser.measured.gas_volume;
+    let diameter = crate::gas::kinetics::diameter(density, occupancy);
+    let why = if occupancy > 0.12 {
+        format!("occupancy {occupancy}: sharper fronts for the cost than more particles")
+    } else {
+        format!("occupancy {occupancy}: more buys almost no resolution")
+    };
+    Some(reason("diameter", format!("{} mm", significant(1e3 * diameter)), why))
+}

@@ -1,0 +1,139 @@
+use super::*;
+use crate::plan::forecast::{SeenProbe, SeenSurface};
+use crate::plan::plan;
+use crate::plan::tests::tank;
+use crate::scene::{Face, Probe, Region, Surface};
+
+/// The published tank with a wall that is measured and a probe before the hole.
+fn seen() -> (Scene, Measured, Outlook) {
+    let (mut scene, measured) = tank();
+    scene.model = ModelRequest::default();
+    scene.surfaces = vec![Surface { name: "far".into(), wall: 0, face: Some(Face::Box { axis: 0, positive: true }) }];
+    let region = Region::Box { min: [0.25, -0.03, -0.03], max: [0.31, 0.03, 0.03] };
+    scene.probes = vec![Probe { name: "jet".into(), region }];
+    let outlook = Outlook {
+        sources: vec![Some(0)],
+        surfaces: vec![SeenSurface { faces: vec![(1, 0.15)], whole: false }],
+        probes: vec![SeenProbe { chamber: 1, volume: 2.16e-4 }],
+        ..Outlook::default()
+    };
+    (scene, measured, outlook)
+}
+
+fn chosen(change: impl FnOnce(&mut ModelRequest)) -> Result<Choice, PlanError> {
+    let (mut scene, measured, outlook) = seen();
+    change(&mut scene.model);
+    choose(&scene, &measured, &outlook)
+}
+
+fn wished(accuracy: f64) -> Choice {
+    chosen(|model| model.wish.accuracy = Some(accuracy)).unwrap()
+}
+
+/// A smaller error takes more particles and costs more; the probe in the jet keeps a control volume from sufficing.
+#[test]
+fn smaller_errors_cost_more() {
+    let (coarse, fine) = (wished(0.1), wished(0.04));
+    assert!(coarse.forecast.error <= 0.1 && fine.forecast.error <= 0.04);
+    assert_eq!(fine.request.method, Some(Method::ClosestApproach));
+    assert!(fine.request.particles > coarse.request.particles);
+    assert!(fine.forecast.seconds > 2.0 * coarse.forecast.seconds);
+    // Neither is finer than it must be: a tenth less particles would miss what was aimed at.
+    for (choice, accuracy) in [(&coarse, 0.1), (&fine, 0.04)] {
+        assert!(choice.forecast.error > 0.93 * AIM * accuracy, "{}", choice.forecast.error);
+    }
+}
+
+#[test]
+fn the_next_plans_are_cheaper_and_better() {
+    let choice = wished(0.06);
+    let (cheaper, better) = (choice.forecast.cheaper.unwrap(), choice.forecast.better.unwrap());
+    assert!(cheaper.seconds < choice.forecast.seconds && cheaper.error <= 2.0 * choice.forecast.error);
+    assert!(better.seconds > choice.forecast.seconds && better.error <= 0.5 * choice.forecast.error);
+}
+
+/// The plan of the request is a plan as any other, and has the reasons of the choice.
+#[test]
+fn a_choice_is_a_request_that_says_it_all() {
+    let choice = wished(0.1);
+    let (mut scene, measured, _) = seen();
+    scene.model = choice.request.clone();
+    assert!(!scene.model.wish.is_any());
+    let mut planned = plan(&scene, &measured).unwrap();
+    let bare = planned.clone();
+    assert!(bare.forecast.is_none() && planned.particles.abs_diff(choice.request.particles.unwrap()) <= 4);
+    choice.explain(&mut planned);
+    let text = planned.render();
+    for part in [
+        "predicted error",
+        "predicted cost",
+        "next cheaper",
+        "next better",
+        "hole vent",
+        "a control volume does not suffice",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert_eq!(planned.reasons.iter().filter(|reason| reason.quantity == "particles").count(), 1);
+    assert!(planned.to_toml().unwrap().contains("[[forecast.columns]]"));
+    // Nothing that a run goes by has changed.
+    planned.reasons = bare.reasons.clone();
+    planned.forecast = None;
+    assert_eq!(planned, bare);
+}
+
+/// More time or more particles are a smaller error, and never more than was given.
+#[test]
+fn budgets_are_kept() {
+    let in_time = |budget| chosen(|model| model.wish.time_budget = Some(budget)).unwrap().forecast;
+    let (short, long) = (in_time(60.0), in_time(600.0));
+    assert!(short.seconds <= 60.0 && long.seconds <= 600.0 && long.seconds > 300.0);
+    assert!(long.error < short.error);
+    let few = chosen(|model| model.wish.particle_budget = Some(20_000)).unwrap();
+    assert_eq!(few.request.particles, Some(20_000));
+    let faster = chosen(|model| {
+        model.wish.time_budget = Some(60.0);
+        model.wish.device_rate = Some(3e8);
+    });
+    assert!(faster.unwrap().forecast.error < short.error);
+}
+
+#[test]
+fn what_the_scene_asks_for_is_kept() {
+    let choice = chosen(|model| {
+        model.method = Some(Method::Cell);
+        model.occupancy = Some(0.2);
+        model.wish.accuracy = Some(0.2);
+    });
+    let request = choice.unwrap().request;
+    assert_eq!((request.method, request.occupancy, request.rounds), (Some(Method::Cell), Some(0.2), None));
+    let choice = chosen(|model| {
+        model.particles = Some(30_000);
+        model.wish.accuracy = Some(0.3);
+    });
+    let request = choice.unwrap().request;
+    assert!(request.particles == Some(30_000) || request.method == Some(Method::ControlVolume));
+}
+
+/// What cannot be had is refused with the best that can, what limits it and what to give up.
+#[test]
+fn impossible_wishes_are_refused() {
+    let refused = |change: &dyn Fn(&mut ModelRequest)| chosen(|model| change(model)).unwrap_err();
+    let few = refused(&|model| {
+        model.particles = Some(2_000);
+        model.wish.accuracy = Some(0.01);
+    });
+    let PlanError::Accuracy { asked, floor, best, remedy } = &few else { panic!("{few}") };
+    assert!(*asked == 0.01 && *floor > 0.01 && best.contains("2,000") && remedy.contains("`particles`"));
+    let rigid = refused(&|model| {
+        model.method = Some(Method::HardSphere);
+        model.wish.accuracy = Some(0.01);
+    });
+    let PlanError::Accuracy { best, remedy, .. } = &rigid else { panic!("{rigid}") };
+    assert!(best.contains("pressure of rigid spheres") && remedy.contains("`method`"), "{rigid}");
+    let short = refused(&|model| {
+        model.method = Some(Method::ClosestApproach);
+        model.wish.time_budget = Some(1e-6);
+    });
+    assert!(matches!(short, PlanError::TimeBudget { least, .. } if least > 1e-6));
+}

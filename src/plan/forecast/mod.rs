@@ -1,0 +1,404 @@
+//! How wrong a run will be, before it is made.
+//!
+//! The measure: of a pressure column of `history.csv` (chambers, surfaces, probes) the root mean square over the rows of
+//! the difference to the same column of infinitely many particles, over that column's mean; of a plan that of its worst
+//! column of those that the scene asks to know: its surfaces and probes, or if it has neither its chambers. (The others are
+//! forecast too.) Where gas
+//! is released without a wall the profile of the density counts as a column (mean |rho - exact| over fiftieths of the
+//! longest edge, over the mean density). The limit of infinitely many particles is the gas in the continuum; of the method
+//! `none` it is free flight.
+//!
+//! The parts of an error are independent, or their signs unknown: they add in quadrature. Each is a function with its
+//! source in [`noise`] and [`bias`].
+
+mod bias;
+mod course;
+mod noise;
+mod outlook;
+
+pub use outlook::{Outlook, SeenHeat, SeenProbe, SeenSurface};
+
+use super::Measured;
+use super::amounts::Amounts;
+use super::warnings::lost_events;
+use crate::gas::{Collisions, FlowIntegral, Species, State, kinetics, thermo};
+use crate::scene::{Method, Scene};
+use course::{Course, Moment};
+use serde::Serialize;
+
+/// Gas on two sides of an open border is released if it differs by more than this.
+const RELEASED: f64 = 1e-3;
+
+/// A run that may be chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    pub method: Method,
+    /// At the end of the run, as in a plan.
+    pub particles: f64,
+    /// n pi sigma^3 / 6 at the mean density at the end.
+    pub occupancy: f64,
+    pub rounds: u32,
+    /// x = dt/tau of its largest step.
+    pub collisions_per_step: f64,
+}
+
+/// Why a column is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// Finitely many particles.
+    Noise,
+    /// The Knudsen number of holes.
+    Holes,
+    /// Collisions that a step loses.
+    LostCollisions,
+    /// Rigid spheres have not the ideal gas's pressure.
+    RigidSpheres,
+    /// Fronts as wide as a mean free path.
+    Fronts,
+    /// A control volume knows the coefficients of its holes to two per cent.
+    Coefficients,
+    /// A control volume has no waves.
+    Transit,
+    /// A control volume has no jets.
+    Jets,
+}
+
+impl Cause {
+    pub fn name(self) -> &'static str {
+        match self {
+            Cause::Noise => "noise of the particles",
+            Cause::Holes => "Knudsen number of the holes",
+            Cause::LostCollisions => "lost collisions",
+            Cause::RigidSpheres => "pressure of rigid spheres",
+            Cause::Fronts => "width of fronts",
+            Cause::Coefficients => "discharge coefficients",
+            Cause::Transit => "waves that it lacks",
+            Cause::Jets => "jets that it lacks",
+        }
+    }
+}
+
+/// A column, and its parts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ColumnForecast {
+    pub name: String,
+    /// Whether it counts.
+    pub asked: bool,
+    /// Relative.
+    pub error: f64,
+    pub parts: Vec<Part>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Part {
+    pub cause: Cause,
+    pub error: f64,
+}
+
+impl ColumnForecast {
+    fn new(name: String, asked: bool, parts: Vec<(Cause, f64)>) -> ColumnForecast {
+        let parts: Vec<Part> =
+            parts.into_iter().filter(|part| part.1 > 0.0).map(|(cause, error)| Part { cause, error }).collect();
+        let error = parts.iter().fold(0.0, |sum, part| sum + part.error * part.error).sqrt();
+        ColumnForecast { name, asked, error, parts }
+    }
+
+    /// Its largest part.
+    pub fn main_cause(&self) -> Option<Cause> {
+        self.parts.iter().max_by(|a, b| a.error.total_cmp(&b.error)).map(|part| part.cause)
+    }
+}
+
+/// The column with the largest error of those that count.
+pub fn worst(columns: &[ColumnForecast]) -> Option<&ColumnForecast> {
+    columns.iter().filter(|column| column.asked).max_by(|a, b| a.error.total_cmp(&b.error))
+}
+
+/// All that forecasts of one scene share.
+pub struct Forecaster<'a> {
+    scene: &'a Scene,
+    measured: &'a Measured,
+    outlook: &'a Outlook,
+    course: Course,
+    total: f64,
+    /// The limit of infinitely many particles, of gas that collides; of free flight.
+    limit: [Vec<Vec<State>>; 2],
+    /// By row, moles that vents have let out.
+    left: Vec<f64>,
+}
+
+impl<'a> Forecaster<'a> {
+    pub fn new(
+        scene: &'a Scene,
+        measured: &'a Measured,
+        outlook: &'a Outlook,
+        species: &[Species],
+        amounts: &Amounts,
+    ) -> Forecaster<'a> {
+        let course = Course::new(scene, measured, outlook, species, amounts);
+        let limit = [Collisions::Continuum, Collisions::None].map(|collisions| course.solve(collisions));
+        let left = left(scene, species, amounts, &course, &limit[0]);
+        Forecaster { scene, measured, outlook, course, total: amounts.total(), limit, left }
+    }
+
+    /// Whether gas that differs touches without a wall: no control volume knows what it does.
+    pub fn is_release(&self) -> bool {
+        self.density_step() > 0.0
+    }
+
+    /// Largest difference of the densities of chambers that touch, over the mean; 0 if their pressures agree.
+    fn density_step(&self) -> f64 {
+        let density = |chamber: usize| {
+            let chamber = &self.scene.chambers[chamber];
+            chamber.pressure / chamber.temperature
+        };
+        let whole: f64 = (0..self.scene.chambers.len())
+            .map(|chamber| density(chamber) * self.measured.chamber_volumes[chamber] / self.measured.gas_volume)
+            .sum();
+        let step = |&[a, b]: &[usize; 2]| {
+            let (p, q) = (self.scene.chambers[a].pressure, self.scene.chambers[b].pressure);
+            if (p / q - 1.0).abs() < RELEASED { 0.0 } else { (density(a) - density(b)).abs() / whole }
+        };
+        self.outlook.borders.iter().map(step).fold(0.0, f64::max)
+    }
+
+    /// Every column of a run of this candidate.
+    pub fn columns(&self, candidate: &Candidate) -> Vec<ColumnForecast> {
+        if candidate.method == Method::ControlVolume {
+            return self.uniform_columns();
+        }
+        let run = Run::new(self, candidate);
+        let chambers_count = self.chambers_count();
+        let chambers = self.scene.chambers.iter().enumerate().map(|(index, chamber)| {
+            let group = self.course.group[index];
+            let noise =
+                run.rms(|row| run.common(row, group) + run.part(row, group, self.measured.chamber_volumes[index]));
+            ColumnForecast::new(format!("chamber {}", chamber.name), chambers_count, run.parts(noise, &[(group, 1.0)]))
+        });
+        let surfaces = self.scene.surfaces.iter().zip(&self.outlook.surfaces).map(|(surface, seen)| {
+            let area: f64 = seen.faces.iter().map(|face| face.1).sum();
+            let faces: Vec<(usize, f64)> =
+                seen.faces.iter().map(|&(chamber, own)| (self.course.group[chamber], own / area)).collect();
+            let noise = run.rms(|row| {
+                let of_face = |&(group, share): &(usize, f64)| {
+                    let variance = run.common(row, group) + run.wall(row, group, share * area, seen.whole);
+                    share * share * run.weight(row, group) * variance
+                };
+                faces.iter().map(of_face).sum()
+            });
+            ColumnForecast::new(format!("surface {}", surface.name), true, run.parts(noise, &faces))
+        });
+        let probes = self.scene.probes.iter().zip(&self.outlook.probes).map(|(probe, seen)| {
+            let group = self.course.group[seen.chamber];
+            let noise =
+                run.rms(|row| run.weight(row, group) * (run.common(row, group) + run.part(row, group, seen.volume)));
+            ColumnForecast::new(format!("probe {}", probe.name), true, run.parts(noise, &[(group, 1.0)]))
+        });
+        let mut columns: Vec<ColumnForecast> = chambers.chain(surfaces).chain(probes).collect();
+        let step = self.density_step();
+        if step > 0.0 && candidate.method != Method::None {
+            let spacing = libm::cbrt(self.measured.gas_volume / candidate.particles);
+            let longest = (0..3).map(|k| self.measured.bounds_max[k] - self.measured.bounds_min[k]).fold(0.0, f64::max);
+            let path = bias::effective_path(candidate.method, candidate.occupancy) * spacing / longest;
+            let parts = vec![(Cause::Fronts, bias::of_fronts(path, step))];
+            columns.push(ColumnForecast::new("profile".into(), true, parts));
+        }
+        columns
+    }
+
+    /// Chambers are what a scene asks to know that says nothing else.
+    fn chambers_count(&self) -> bool {
+        self.scene.surfaces.is_empty() && self.scene.probes.is_empty()
+    }
+
+    fn uniform_columns(&self) -> Vec<ColumnForecast> {
+        let (course, limit) = (&self.course, &self.limit[0]);
+        let moments = course.moments(limit);
+        let coefficients = bias::of_coefficients(course, limit);
+        let chambers_count = self.chambers_count();
+        let rms = |of_row: &dyn Fn(usize) -> f64| {
+            ((0..limit.len()).map(|row| of_row(row).powi(2)).sum::<f64>() / limit.len() as f64).sqrt()
+        };
+        let local = |name: String, group: usize, area: f64| {
+            let mean = moments.iter().map(|row| row[group].pressure).sum::<f64>() / moments.len() as f64;
+            let jets = rms(&|row| bias::thrust(course, &moments, row, group) / (mean * area));
+            let transit =
+                rms(&|row| bias::of_transit(course, &moments, row, group) * moments[row][group].pressure / mean);
+            let parts =
+                vec![(Cause::Coefficients, coefficients[group]), (Cause::Transit, transit), (Cause::Jets, jets)];
+            ColumnForecast::new(name, true, parts)
+        };
+        let chambers = self.scene.chambers.iter().enumerate().map(|(index, chamber)| {
+            let group = course.group[index];
+            // Energy of motion in flight, half the thrust over the length of the group, is no pressure yet.
+            let area = libm::pow(course.volumes[group], 2.0 / 3.0);
+            let mean = moments.iter().map(|row| row[group].pressure).sum::<f64>() / moments.len() as f64;
+            let jets = rms(&|row| {
+                let here = &moments[row][group];
+                0.5 * (here.gamma() - 1.0) * bias::thrust(course, &moments, row, group) / (mean * area)
+            });
+            let parts = vec![(Cause::Coefficients, coefficients[group]), (Cause::Jets, jets)];
+            ColumnForecast::new(format!("chamber {}", chamber.name), chambers_count, parts)
+        });
+        let surfaces = self.scene.surfaces.iter().zip(&self.outlook.surfaces).filter_map(|(surface, seen)| {
+            let area: f64 = seen.faces.iter().map(|face| face.1).sum();
+            let most = seen.faces.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(local(format!("surface {}", surface.name), course.group[most.0], area))
+        });
+        let probes = self.scene.probes.iter().zip(&self.outlook.probes).map(|(probe, seen)| {
+            let area = libm::pow(seen.volume, 2.0 / 3.0);
+            local(format!("probe {}", probe.name), course.group[seen.chamber], area)
+        });
+        chambers.chain(surfaces).chain(probes).collect()
+    }
+}
+
+/// Moles that have left through vents till each row.
+fn left(scene: &Scene, species: &[Species], amounts: &Amounts, course: &Course, states: &[Vec<State>]) -> Vec<f64> {
+    let entered = |time: f64| -> f64 {
+        let of_orifice = |orifice: &crate::scene::Orifice| {
+            FlowIntegral::new(&orifice.mass_flow, time).total() / thermo::molar_mass(&orifice.mixture, species)
+        };
+        scene.orifices.iter().map(of_orifice).sum()
+    };
+    let rows = course.times.iter().zip(states).map(|(time, groups)| {
+        let here: f64 = groups.iter().flat_map(|state| &state.moles).sum();
+        (amounts.initial_total() + entered(*time) - here).max(0.0)
+    });
+    if scene.vents.is_empty() { vec![0.0; states.len()] } else { rows.collect() }
+}
+
+/// A candidate's run: the course that its holes give, and the scatter about it.
+struct Run<'a> {
+    forecaster: &'a Forecaster<'a>,
+    moments: Vec<Vec<Moment>>,
+    /// By group, relative.
+    holes: Vec<f64>,
+    method: Method,
+    diameter: f64,
+    occupancy: f64,
+    /// Share of collisions.
+    lost: f64,
+    collision_number: f64,
+    moles_per_particle: f64,
+}
+
+impl<'a> Run<'a> {
+    fn new(forecaster: &'a Forecaster<'a>, candidate: &Candidate) -> Run<'a> {
+        let Candidate { method, particles, occupancy, rounds, collisions_per_step } = *candidate;
+        let course = &forecaster.course;
+        let density = particles / forecaster.measured.gas_volume;
+        let moles_per_particle = forecaster.total / particles;
+        let limit = &forecaster.limit[usize::from(method == Method::None)];
+        let unchanged = method == Method::None || course.control.openings.is_empty();
+        let (states, holes) = if unchanged {
+            (None, vec![0.0; course.volumes.len()])
+        } else {
+            let diameter = bias::diameter_of_holes(method, occupancy, density);
+            let states = course.solve(Collisions::Particles { diameter, moles_per_particle });
+            let holes = bias::differences(&states, limit);
+            (Some(states), holes)
+        };
+        Run {
+            forecaster,
+            moments: course.moments(states.as_ref().unwrap_or(limit)),
+            holes,
+            method,
+            diameter: if method == Method::None { 0.0 } else { kinetics::diameter(density, occupancy) },
+            occupancy,
+            lost: if method.has_rounds() { lost_events(collisions_per_step, rounds) } else { 0.0 },
+            collision_number: forecaster.scene.model.collision_number.unwrap_or(5.0),
+            moles_per_particle,
+        }
+    }
+
+    /// Root of the mean over the rows of a variance.
+    fn rms(&self, variance: impl Fn(usize) -> f64) -> f64 {
+        let rows = self.moments.len();
+        ((0..rows).map(variance).sum::<f64>() / rows as f64).sqrt()
+    }
+
+    /// From a variance over the square of a row's pressure to one over that of the mean pressure.
+    fn weight(&self, row: usize, group: usize) -> f64 {
+        let mean = self.moments.iter().map(|groups| groups[group].pressure).sum::<f64>() / self.moments.len() as f64;
+        (self.moments[row][group].pressure / mean).powi(2)
+    }
+
+    /// The parts of a column that sees groups in these shares.
+    fn parts(&self, noise: f64, shares: &[(usize, f64)]) -> Vec<(Cause, f64)> {
+        let mean = |of: &dyn Fn(usize) -> f64| shares.iter().map(|&(group, share)| share * of(group)).sum::<f64>();
+        let last = self.moments.len() - 1;
+        let rigid =
+            if self.method == Method::HardSphere { kinetics::rigid_compressibility(self.occupancy) - 1.0 } else { 0.0 };
+        vec![
+            (Cause::Noise, noise),
+            (Cause::Holes, mean(&|group| self.holes[group])),
+            (Cause::LostCollisions, mean(&|group| bias::of_lost(self.lost, self.moments[last][group].spin_dof))),
+            (Cause::RigidSpheres, rigid),
+        ]
+    }
+
+    fn particles(&self, row: usize, group: usize) -> f64 {
+        self.moments[row][group].moles / self.moles_per_particle
+    }
+
+    fn collision_time(&self, row: usize, group: usize) -> f64 {
+        let density = self.particles(row, group) / self.forecaster.course.volumes[group];
+        kinetics::collision_time(density, self.diameter, self.moments[row][group].thermal_square)
+    }
+
+    /// Of all gas of a group.
+    fn common(&self, row: usize, group: usize) -> f64 {
+        let Forecaster { course, left, .. } = self.forecaster;
+        let (here, particles) = (&self.moments[row][group], self.particles(row, group));
+        let (time, window, volume) = (course.times[row], course.window, course.volumes[group]);
+        let all: f64 = (0..course.volumes.len()).map(|other| self.particles(row, other)).sum();
+        let mean_speed = kinetics::mean_speed(here.thermal_square);
+        let touching = course.control.openings.iter().filter(|opening| opening.between.contains(&group));
+        let exchanged = |opening: &crate::scene::Opening| {
+            let [a, b] = opening.between.map(|group| course.volumes[group]);
+            0.25 * mean_speed * opening.area * (1.0 / a + 1.0 / b)
+        };
+        let rate: f64 = touching.map(exchanged).sum();
+        let memory = self.collision_number * self.collision_time(row, group) / (1.0 + here.spin_dof / 3.0);
+        let at_start = |group: usize| course.initial[group].moles.iter().sum::<f64>() / self.moles_per_particle;
+        let numbers = noise::Exchange {
+            here: particles,
+            all,
+            here_at_start: at_start(group),
+            all_at_start: (0..course.volumes.len()).map(at_start).sum(),
+            share: volume / course.volumes.iter().sum::<f64>(),
+        };
+        let factor = if self.method == Method::None { 5.0 / 3.0 } else { here.gamma() };
+        let heat = course.control.walls.iter().filter(|wall| wall.chamber == group).map(|wall| {
+            let transfer = wall.heat.transfer;
+            noise::heat_rate(transfer, wall.area, volume, here.moles, here.spin_dof, here.thermal_speed())
+        });
+        let vents = course.control.vents.iter().filter(|vent| vent.chamber == group).count() as f64;
+        let share = vents / course.control.vents.len().max(1) as f64;
+        noise::of_spin(particles, here.spin_dof, memory, time, window)
+            + noise::of_exchange(&numbers, factor, rate, time, window)
+            + noise::of_vents(share * left[row] / self.moles_per_particle, particles, here.spin_dof)
+            + noise::of_heat(particles, here.spin_dof, heat.sum(), time, window)
+    }
+
+    /// Of a part of a group's space.
+    fn part(&self, row: usize, group: usize, volume: f64) -> f64 {
+        let course = &self.forecaster.course;
+        let share = (volume / course.volumes[group]).min(1.0);
+        let all = self.particles(row, group);
+        noise::of_zone(share * all, all, volume, self.moments[row][group].thermal_speed(), course.window)
+    }
+
+    /// Of a wall of a group.
+    fn wall(&self, row: usize, group: usize, area: f64, whole: bool) -> f64 {
+        let course = &self.forecaster.course;
+        let (here, particles) = (&self.moments[row][group], self.particles(row, group));
+        let depth = course.volumes[group] / area;
+        let hits = 0.25 * particles / depth * kinetics::mean_speed(here.thermal_square) * course.window;
+        let face = noise::of_face(whole, depth, here.thermal_speed(), course.window, particles);
+        let axis = if whole { 0.0 } else { noise::of_axis(particles, self.collision_time(row, group), course.window) };
+        noise::of_hits(hits).min(face + axis)
+    }
+}

@@ -1,0 +1,41 @@
+//! What a forecast needs to know of the geometry, beside what every plan does: what the columns of the history see,
+//! where gas flows in, and which chambers touch without a wall between them.
+
+/// Measured where the scene wishes an accuracy or has a budget.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outlook {
+    /// The chamber that each orifice blows into.
+    pub sources: Vec<Option<usize>>,
+    /// Of each surface of the scene.
+    pub surfaces: Vec<SeenSurface>,
+    /// Of each probe of the scene.
+    pub probes: Vec<SeenProbe>,
+    /// Pairs of chambers between which a part of the border is neither wall nor a hole of one.
+    pub borders: Vec<[usize; 2]>,
+    /// Walls that keep a temperature.
+    pub heated: Vec<SeenHeat>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenSurface {
+    /// Chambers that press on it, with the area, m2.
+    pub faces: Vec<(usize, f64)>,
+    /// All of a wall, not a face of it.
+    pub whole: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenProbe {
+    /// That of its middle.
+    pub chamber: usize,
+    /// m3 of gas.
+    pub volume: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenHeat {
+    pub wall: usize,
+    pub chamber: usize,
+    /// m2.
+    pub area: f64,
+}

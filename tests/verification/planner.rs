@@ -1,0 +1,247 @@
+//! Law: a plan that was asked for an accuracy keeps it. Of each scene the true error (the root mean square over the rows and
+//! over several seeds of a pressure less its limit of infinitely many particles, over the mean of the limit, of the worst
+//! column) is at most what was asked, and the predicted one within a factor of two of it.
+//!
+//! The limits are known without particles: gas at rest; two chambers and a hole, a closed vessel that is filled and a tank
+//! with an inflator by the control volume in the continuum; effusion by that of free flight; a vessel that vents by
+//! isentropic flow; a shock tube by the exact Riemann solution, whose measure is that of the profile.
+//!
+//! Statistics: seeds are independent, so their scatter tells how well the true error itself is known; it must be known
+//! to a quarter. The forecast has no constant that was fitted to these scenes.
+
+use corpuscle::plan::{Forecast, worst};
+use corpuscle::scene::{Method, ModelRequest};
+use corpuscle::simulation::{Model, Options, Row, reference};
+use corpuscle::study::verify::tube::SOD;
+
+use crate::whole_run::{model, run};
+
+const REST: &str = "end_time = 2e-3\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
+     max = [0.1, 0.1, 0.1]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\n\
+     gas = \"nitrogen\"\n[[surface]]\nname = \"left\"\nwall = \"box\"\nface = \"-x\"\n[[surface]]\nname = \"right\"\n\
+     wall = \"box\"\nface = \"+x\"\n";
+
+// What is asked for is the gas that is left: a jet into near vacuum is not at rest, as the control volume takes it to be.
+const TWO: &str = "end_time = 1.2e-3\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [-0.02, -0.08, -0.08]\n\
+     max = [0.36, 0.08, 0.08]\ngas = \"inside\"\n[[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [0.0, -0.06, -0.06]\n\
+     max = [0.16, 0.06, 0.06]\nthickness = 0.002\n[[wall.hole]]\nname = \"hole\"\nface = \"+x\"\ncenter = [0.0, 0.0]\n\
+     size = [0.04, 0.04]\n[[chamber]]\nname = \"inner\"\npressure = 1e6\ntemperature = 700.0\ngas = \"nitrogen\"\n\
+     region = { box = { min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] } }\n[[chamber]]\nname = \"tank\"\n\
+     pressure = 2e3\ntemperature = 700.0\ngas = \"nitrogen\"\n[[probe]]\nname = \"left\"\n\
+     region = { box = { min = [0.0, -0.06, -0.06], max = [0.16, 0.06, 0.06] } }\n";
+
+// Without a surface: a face beside a jet has waves that no control volume knows.
+const FILLED: &str = "end_time = 0.01\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
+     max = [0.2, 0.2, 0.2]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\n\
+     gas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.0, 0.1, 0.1]\ndirection = [1.0, 0.0, 0.0]\n\
+     area = 0.005\ngas = \"nitrogen\"\ntemperature = 600.0\nmass_flow = [[0.0, 0.0], [0.004, 1.0], [0.01, 0.0]]\n";
+
+const VENTED: &str = "end_time = 0.006\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
+     max = [0.1, 0.1, 0.1]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 2e5\ntemperature = 400.0\n\
+     gas = \"nitrogen\"\n[[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = 0.015\nexternal_pressure = 0.0\n\
+     [[surface]]\nname = \"side\"\nwall = \"box\"\nface = \"+x\"\n";
+
+const TANK: &str = "end_time = 0.004\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [-0.05, -0.1, -0.1]\n\
+     max = [0.25, 0.1, 0.1]\ngas = \"inside\"\n[[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [0.0, -0.05, -0.05]\n\
+     max = [0.1, 0.05, 0.05]\nthickness = 0.004\n[[wall.hole]]\nname = \"hole\"\nface = \"+x\"\ncenter = [0.0, 0.0]\n\
+     size = [0.03, 0.03]\n[[chamber]]\nname = \"inner\"\npressure = 1e5\ntemperature = 300.0\ngas = \"nitrogen\"\n\
+     region = { box = { min = [0.0, -0.05, -0.05], max = [0.1, 0.05, 0.05] } }\n[[chamber]]\nname = \"tank\"\n\
+     pressure = 1e5\ntemperature = 300.0\ngas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.0, 0.0, 0.0]\n\
+     direction = [1.0, 0.0, 0.0]\narea = 0.004\ngas = \"nitrogen\"\ntemperature = 600.0\n\
+     mass_flow = [[0.0, 0.0], [0.003, 1.0], [0.01, 0.8]]\n";
+
+/// A scene of nitrogen with a wish; particles, since a control volume would do for most of these.
+fn scene(text: &str, request: &str, rows: u32, seed: u64) -> String {
+    // Keys of the top level come before the first table.
+    format!(
+        "seed = {seed}\n{text}[[gas]]\nname = \"nitrogen\"\nmolar_mass = 0.028\ngamma = 1.4\n\
+         [model]\n{request}\n[output]\nrows = {rows}\nsnapshots = 0\n"
+    )
+}
+
+/// Pressures of a row in the order of the forecast's columns.
+fn pressures(row: &Row) -> Vec<f64> {
+    let zones = |zones: &[corpuscle::simulation::ZoneState]| zones.iter().map(|z| z.pressure).collect::<Vec<_>>();
+    let surfaces = row.surfaces.iter().map(|surface| surface.pressure).collect();
+    [zones(&row.chambers), surfaces, zones(&row.probes)].concat()
+}
+
+/// Effusion of gas that does not collide from a chamber into the larger one around it, both mixed: of speed v a share
+/// pi + (1 - pi) exp(-(1/V + 1/V') v A t / 4) is still there, pi = V/(V + V'). Fast particles leave first, so the gas is not
+/// Maxwell's any more, as the control volume takes it to be. By the trapezoidal rule in units of sqrt(kT/m).
+fn effusion_limit(model: &Model, times: &[f64]) -> Vec<Vec<f64>> {
+    let [inner, outer] = [0, 1].map(|k| model.plan.chambers[k].volume);
+    let [first, second] = [0, 1].map(|k| model.scene.chambers[k].pressure);
+    let rate = 0.25 * model.plan.openings[0].area * (1.0 / inner + 1.0 / outer);
+    let speed = (8.314462618 * model.scene.chambers[0].temperature / model.scene.gases[0].molar_mass).sqrt();
+    let share = inner / (inner + outer);
+    let at = |time: &f64| {
+        let (mut stayed, mut all) = (0.0, 0.0);
+        for k in 1..1200 {
+            let u = 0.01 * f64::from(k);
+            let weight = u.powi(4) * (-0.5 * u * u).exp();
+            stayed += weight * (share + (1.0 - share) * (-rate * u * speed * time).exp());
+            all += weight;
+        }
+        let stayed = stayed / all;
+        // What the outer gas sends back of its own is as little as it is.
+        vec![first * stayed, second + first * (1.0 - stayed) * inner / outer]
+    };
+    times.iter().map(at).collect()
+}
+
+/// The limit of every column at the times of the rows: chambers, then surfaces and probes of the first chamber.
+fn limit(model: &Model, rows: &[Row]) -> Vec<Vec<f64>> {
+    let times: Vec<f64> = rows.iter().map(|row| row.time).collect();
+    if model.plan.method == Method::None {
+        return effusion_limit(model, &times);
+    }
+    let states = if !model.scene.vents.is_empty() {
+        reference(model, &times)
+    } else {
+        let mut scene = model.scene.clone();
+        scene.model = ModelRequest { method: Some(Method::ControlVolume), ..ModelRequest::default() };
+        reference(&Model::new(scene).expect("a control volume"), &times)
+    };
+    let of_row = |states: &Vec<corpuscle::gas::State>| {
+        let others = model.scene.surfaces.len() + model.scene.probes.len();
+        let others = std::iter::repeat_n(states[0].pressure, others);
+        states.iter().map(|state| state.pressure).chain(others).collect()
+    };
+    states.iter().map(of_row).collect()
+}
+
+/// Mean squares of the error of each column in one run.
+fn squares(model: &Model) -> Vec<f64> {
+    let rows = run(model, Options::default()).rows;
+    let limit = limit(model, &rows);
+    let count = rows.len() as f64;
+    let of_column = |column: usize| {
+        let mean = limit.iter().map(|row| row[column]).sum::<f64>() / count;
+        let off = rows.iter().zip(&limit).map(|(row, limit)| (pressures(row)[column] - limit[column]).powi(2));
+        off.sum::<f64>() / count / (mean * mean)
+    };
+    (0..limit[0].len()).map(of_column).collect()
+}
+
+/// Root of the mean of squares, and its standard error from their scatter.
+fn root(squares: &[f64]) -> (f64, f64) {
+    let count = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / count;
+    let scatter = squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean.sqrt(), 0.5 * (scatter / count / mean).sqrt())
+}
+
+/// The error of the worst column of those asked for, and its standard error.
+fn true_error(runs: &[Vec<f64>], forecast: &Forecast) -> (f64, f64) {
+    let of_column = |column: usize| root(&runs.iter().map(|run| run[column]).collect::<Vec<_>>());
+    (0..runs[0].len())
+        .filter(|column| forecast.columns[*column].asked)
+        .map(of_column)
+        .fold((0.0, 0.0), |worst, own| if own.0 > worst.0 { own } else { worst })
+}
+
+fn forecast(model: &Model) -> Forecast {
+    model.explained().forecast.expect("a scene with a wish has a forecast")
+}
+
+fn holds(name: &str, asked: f64, predicted: f64, (found, error): (f64, f64)) {
+    println!("{name}: asked {asked}, predicted {predicted:.4}, true {found:.4} +- {error:.4}");
+    assert!(error < 0.25 * found, "{name}: the true error is not known: {found} +- {error}");
+    assert!(found <= asked, "{name}: {found} +- {error}, asked {asked}");
+    assert!((0.5..=2.0).contains(&(predicted / found)), "{name}: predicted {predicted}, true {found} +- {error}");
+}
+
+/// Runs of several seeds of a scene, and whether the law holds.
+fn check(name: &str, text: &str, method: &str, asked: f64, rows: u32, seeds: u64) -> Model {
+    let request = format!("method = \"{method}\"\naccuracy = {asked}");
+    let models: Vec<Model> = (1..=seeds).map(|seed| model(&scene(text, &request, rows, seed))).collect();
+    let predicted = forecast(&models[0]);
+    assert!(predicted.error <= asked);
+    assert_eq!(predicted.error, worst(&predicted.columns).unwrap().error);
+    let runs: Vec<Vec<f64>> = models.iter().map(squares).collect();
+    holds(name, asked, predicted.error, true_error(&runs, &predicted));
+    models.into_iter().next().unwrap()
+}
+
+#[test]
+fn gas_at_rest() {
+    let planned = check("rest", REST, "closest-approach", 0.05, 20, 2);
+    // The check can fail: a sixteenth of the particles is four times as noisy, and the forecast knows that too.
+    let few = format!("method = \"closest-approach\"\nparticles = {}\naccuracy = 0.5", planned.plan.particles / 16);
+    let few = model(&scene(REST, &few, 20, 1));
+    let predicted = forecast(&few);
+    assert!(true_error(&[squares(&few), squares(&few)], &predicted).0 > 0.05);
+    assert!(predicted.error > 3.0 * forecast(&planned).error);
+}
+
+#[test]
+fn two_chambers_and_a_hole() {
+    let planned = check("two chambers", TWO, "closest-approach", 0.05, 12, 3);
+    assert!(planned.plan.openings[0].knudsen < 1.0, "{}", planned.plan.openings[0].knudsen);
+}
+
+#[test]
+fn effusion() {
+    // The published scene, in half its time: a litre within 26 others.
+    let text = include_str!("../../scenes/effusion.toml");
+    let of_seed = |seed: u64| {
+        let mut scene = corpuscle::scene::parse(text, "effusion.toml", std::path::Path::new("")).expect("a scene");
+        (scene.seed, scene.end_time, scene.output.rows, scene.output.snapshots) = (seed, 0.004, 12, 0);
+        scene.model.particles = None;
+        scene.model.wish.accuracy = Some(0.1);
+        Model::new(scene).expect("a plan")
+    };
+    let models: Vec<Model> = (1..=12).map(of_seed).collect();
+    let predicted = forecast(&models[0]);
+    let runs: Vec<Vec<f64>> = models.iter().map(squares).collect();
+    holds("effusion", 0.1, predicted.error, true_error(&runs, &predicted));
+}
+
+#[test]
+fn a_closed_vessel_is_filled() {
+    check("filling", FILLED, "closest-approach", 0.02, 20, 3);
+}
+
+#[test]
+fn a_vessel_vents() {
+    check("vent", VENTED, "closest-approach", 0.06, 20, 6);
+}
+
+#[test]
+fn a_small_tank() {
+    check("tank", TANK, "closest-approach", 0.35, 10, 3);
+}
+
+/// The measure of a release: mean |rho - exact| over fiftieths of the length, over the mean density.
+#[test]
+fn a_release_in_a_tube() {
+    let asked = 0.12;
+    let planned = |seed: u64| {
+        let mut scene = SOD.model().expect("a tube").scene;
+        scene.seed = seed;
+        scene.model = ModelRequest::default();
+        scene.model.wish.accuracy = Some(asked);
+        Model::new(scene).expect("a plan")
+    };
+    let first = planned(1);
+    let mean = 0.5 * (1.0 + 0.1 / 0.8);
+    let errors: Vec<f64> = (1..=2)
+        .map(|seed| {
+            let model = planned(seed);
+            let particles = run(&model, Options::default()).outcome.particles;
+            let tube = corpuscle::study::verify::tube::Tube { particles: model.plan.particles, ..SOD };
+            (tube.errors(&model, tube.end, &particles).expect("an exact solution")[0] / mean).powi(2)
+        })
+        .collect();
+    let predicted = forecast(&first);
+    assert_eq!(worst(&predicted.columns).unwrap().name, "profile");
+    holds("release", asked, predicted.error, root(&errors));
+}
+
+/// Gas at rest needs no particles, and nothing is wrong about it.
+#[test]
+fn a_control_volume_where_it_suffices() {
+    let planned = model(&scene(REST, "accuracy = 0.01", 20, 1));
+    assert_eq!((planned.plan.method, forecast(&planned).error), (Method::ControlVolume, 0.0));
+}
