@@ -92,6 +92,9 @@ pub enum CliError {
     #[error("--repeat with the method `control-volume`: it draws nothing, so that all seeds give the same")]
     #[diagnostic(help("leave out --repeat, or ask for particles with another `method` in [model]"))]
     NothingToRepeat,
+    #[error("the method `control-volume` has no steps of particles to measure")]
+    #[diagnostic(help("leave it out of --methods"))]
+    NothingToBench,
     #[error("--repeat {times} from seed {first} on: seeds are below {}", 1u64 << 56)]
     SeedsBeyond { first: u64, times: u32 },
     #[error("the run with seed {seed} was stopped before its end: there is no mean of {times} runs")]
@@ -161,6 +164,7 @@ impl CliError {
             | CliError::UnknownVerb { .. }
             | CliError::MethodOfCase { .. }
             | CliError::NothingToRepeat
+            | CliError::NothingToBench
             | CliError::SeedsBeyond { .. }
             | CliError::RepeatStopped { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
@@ -180,6 +184,7 @@ fn study_code(error: &StudyError) -> u8 {
         StudyError::Simulation(
             SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
         )
+        | StudyError::Device(_)
         | StudyError::Rank(_) => DEVICE_TROUBLE,
         StudyError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
         StudyError::Start { .. }
