@@ -59,6 +59,8 @@ pub enum Verb {
     Pareto(ParetoArguments),
     /// Map where the methods fail: which quantity breaks first along an axis, and by how much
     Stability(StabilityArguments),
+    /// Measure what a step costs on this device, phase by phase: time, bytes, share of what it can do
+    Bench(BenchArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -376,6 +378,35 @@ pub struct ParetoArguments {
     /// Write into a folder that holds more than an earlier chart
     #[arg(long)]
     pub force: bool,
+    /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
+    #[arg(long, value_name = "INDEX|PCI")]
+    pub gpu: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub struct BenchArguments {
+    /// Published scenes at their start: box, tank, corner
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "box,tank,corner")]
+    pub scene: Vec<String>,
+    /// Particles at the end of the scene, initial and injected
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1e5", value_parser = super::bench::count)]
+    pub particles: Vec<u64>,
+    /// Methods of collision
+    #[arg(
+        long,
+        value_enum,
+        value_name = "METHOD,...",
+        value_delimiter = ',',
+        default_value = "closest-approach,cell,none"
+    )]
+    pub methods: Vec<MethodName>,
+    /// Steps of each run
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..))]
+    pub steps: u64,
+    /// Also write all numbers into this file
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub json: Option<PathBuf>,
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,

@@ -95,6 +95,9 @@ pub enum CliError {
     #[error("--repeat with the method `control-volume`: it draws nothing, so that all seeds give the same")]
     #[diagnostic(help("leave out --repeat, or ask for particles with another `method` in [model]"))]
     NothingToRepeat,
+    #[error("the method `control-volume` has no steps of particles to measure")]
+    #[diagnostic(help("leave it out of --methods"))]
+    NothingToBench,
     #[error("--repeat {times} from seed {first} on: seeds are below {}", 1u64 << 56)]
     SeedsBeyond { first: u64, times: u32 },
     #[error("{failed} of {checks} checks do not pass")]
@@ -172,6 +175,7 @@ impl CliError {
             | CliError::UnknownVerb { .. }
             | CliError::MethodOfCase { .. }
             | CliError::NothingToRepeat
+            | CliError::NothingToBench
             | CliError::SeedsBeyond { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
@@ -190,6 +194,7 @@ fn study_code(error: &StudyError) -> u8 {
         StudyError::Simulation(
             SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
         )
+        | StudyError::Device(_)
         | StudyError::Rank(_) => DEVICE_TROUBLE,
         StudyError::Simulation(SimulationError::Lost { .. } | SimulationError::Ladder { .. }) => AUDIT_FAILED,
         StudyError::Start { .. }

@@ -6,6 +6,7 @@
 
 mod adapters;
 mod arguments;
+mod bench;
 mod check;
 mod completions;
 mod error;
@@ -59,6 +60,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Refine(raw) => refine::refine(raw),
         Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Sweep(raw) => sweep::sweep(raw),
+        Verb::Bench(raw) => bench::bench(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Verify(raw) => verify::verify(raw),
         Verb::Pareto(raw) => pareto::pareto(raw),

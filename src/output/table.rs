@@ -2,7 +2,7 @@
 
 /// Lines of the rows with aligned columns: the first to the left, the others to the right.
 /// Rows may be of different lengths.
-pub(super) fn aligned(rows: &[Vec<String>]) -> String {
+pub fn aligned(rows: &[Vec<String>]) -> String {
     let mut widths: Vec<usize> = Vec::new();
     for row in rows {
         for (column, cell) in row.iter().enumerate() {

@@ -3,6 +3,7 @@
 //! Every rank takes the same decisions, since they follow from tallies summed over all ranks, and runs the same
 //! host code on the inflow. Rank 0 tells the observer.
 
+mod meter;
 mod reading;
 mod snapshots;
 

@@ -4,6 +4,7 @@
 //! on one device ([`emulation`]) and put together by a model ([`modelled`]). What is measured and what is modelled
 //! never stand in one column.
 
+pub mod bench;
 pub mod emulation;
 pub mod launched;
 pub mod modelled;
@@ -76,6 +77,8 @@ pub enum StudyError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Checkpoint(#[from] crate::output::CheckpointError),
+    #[error(transparent)]
+    Device(#[from] crate::gpu::GpuError),
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(transparent)]

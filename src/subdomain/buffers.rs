@@ -152,6 +152,12 @@ impl CellBuffers {
     }
 }
 
+impl CellBuffers {
+    pub fn bytes(&self) -> u64 {
+        [&self.cell_count, &self.chunk_sums, &self.cell_start].iter().map(|buffer| buffer.size()).sum()
+    }
+}
+
 /// What is sent to other devices and received from them, and the cuts that particles are weighed by.
 /// Small on a device alone.
 pub struct ExchangeBuffers {

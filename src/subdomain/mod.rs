@@ -135,6 +135,23 @@ impl Subdomain {
         self.particle.bytes()
     }
 
+    /// Bytes of the buffers that grow with the cells that have bins.
+    pub fn cell_bytes(&self) -> u64 {
+        self.cell.bytes()
+    }
+
+    /// Entries of a particle's neighbour list in the last step, on average; 0 of a method without.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn mean_candidates(&self, device: &Device) -> Result<f64, GpuError> {
+        if !self.domain.features.rounds || self.count == 0 {
+            return Ok(0.0);
+        }
+        let lengths: Vec<u32> = device.read(&self.particle.neighbour_count, self.count as usize)?;
+        Ok(lengths.iter().map(|&length| f64::from(length)).sum::<f64>() / lengths.len() as f64)
+    }
+
     /// Other cells and peers, from the next step on, whose exchange moves the particles there.
     ///
     /// # Errors

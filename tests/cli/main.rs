@@ -76,7 +76,7 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 13] = [
+const VERBS: [&str; 14] = [
     "run",
     "resume",
     "refine",
@@ -84,6 +84,7 @@ const VERBS: [&str; 13] = [
     "verify",
     "pareto",
     "stability",
+    "bench",
     "plan",
     "check",
     "schema",

@@ -1,0 +1,60 @@
+//! `corpuscle bench`: what a step costs on this device, phase by phase.
+
+use std::fs;
+
+use crate::gpu::Device;
+use crate::output::OutputError;
+use crate::scene::Method;
+use crate::study::StudyError;
+use crate::study::bench::{BenchScene, Ceilings, SCENES, measure, report};
+
+use super::CliError;
+use super::arguments::BenchArguments;
+use super::terminal::say;
+
+pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
+    let scenes = raw.scene.iter().map(|name| scene_named(name)).collect::<Result<Vec<_>, _>>()?;
+    let methods: Vec<Method> = raw.methods.iter().map(|&name| Method::from(name)).collect();
+    if methods.contains(&Method::ControlVolume) {
+        return Err(CliError::NothingToBench);
+    }
+    let device = Device::open(raw.gpu.as_deref())?;
+    let ceilings = Ceilings::measure(&device).map_err(StudyError::from)?;
+    say(&format!(
+        "{}: copies {:.2} GB/s (read and written), {:.1} G operations/s\n",
+        device.adapter().info.name,
+        1e-9 * ceilings.copy,
+        1e-9 * ceilings.arithmetic
+    ))?;
+    let mut all = Vec::new();
+    for scene in scenes {
+        for &method in &methods {
+            for &particles in &raw.particles {
+                let measured = measure(&device, scene, method, particles, raw.steps)?;
+                say(&format!("\n{}\n{}", report::line(&measured, &device), report::table(&measured, &ceilings)))?;
+                all.push(measured);
+            }
+        }
+    }
+    if let Some(path) = &raw.json {
+        let text = format!("{:#}\n", report::json(&all, &ceilings, &device));
+        fs::write(path, text).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
+    }
+    Ok(())
+}
+
+fn scene_named(name: &str) -> Result<&'static BenchScene, CliError> {
+    let known = || SCENES.iter().map(|scene| scene.name.to_owned()).collect();
+    let unknown = || CliError::UnknownCase { asked: name.to_owned(), known: known() };
+    SCENES.iter().find(|scene| scene.name == name).ok_or_else(unknown)
+}
+
+/// A whole number, also as `1e6`.
+pub fn count(text: &str) -> Result<u64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    if (1.0..=2e8).contains(&number) && number.fract() == 0.0 {
+        Ok(number as u64)
+    } else {
+        Err(format!("`{text}` is no whole number from 1 to 2e8"))
+    }
+}

@@ -1,0 +1,62 @@
+//! What the device can do at most, measured in the same run: bytes per second of a copy, and fused multiply-adds.
+
+use std::time::Instant;
+
+use crate::gpu::{Device, GpuError, Kernel, Recording, fold};
+
+/// Items of four words: 64 MiB, more than caches hold.
+const ITEMS: u64 = 1 << 22;
+const ITEM_BYTES: f64 = 16.0;
+/// Dispatches of a measurement, and measurements of which the best counts.
+const DISPATCHES: u32 = 8;
+const TURNS: u32 = 5;
+const LOOPS: f64 = 256.0;
+/// Multiplications and additions of a thread in a loop: four vectors of four, two each.
+const OPERATIONS: f64 = 32.0;
+const WORKGROUP: u32 = 64;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ceilings {
+    /// Read and written, bytes/s.
+    pub copy: f64,
+    /// Single-precision operations per second.
+    pub arithmetic: f64,
+}
+
+impl Ceilings {
+    /// # Errors
+    /// If the device fails or has no room.
+    pub fn measure(device: &Device) -> Result<Ceilings, GpuError> {
+        let from = device.storage::<[u32; 4]>("copy_from", ITEMS)?;
+        let to = device.storage::<[u32; 4]>("copy_to", ITEMS)?;
+        let best = |kernel: &str| -> Result<f64, GpuError> {
+            let constants = [("WORKGROUP", f64::from(WORKGROUP)), ("LOOPS", LOOPS)];
+            let compiled = Kernel::new(device, kernel, &constants)?;
+            let bound = compiled.bind(device, |name| match name {
+                "copy_from" => Some(&from),
+                "copy_to" => Some(&to),
+                _ => None,
+            })?;
+            let groups = fold(ITEMS, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
+            let mut best = f64::INFINITY;
+            // The first turn pays for what is compiled and touched for the first time.
+            for turn in 0..=TURNS {
+                let mut recording = Recording::new(device);
+                for _ in 0..DISPATCHES {
+                    bound.dispatch(recording.phase("ceiling"), 0, groups);
+                }
+                let start = Instant::now();
+                let submission = recording.submit();
+                device.wait(&submission)?;
+                if turn > 0 {
+                    best = best.min(start.elapsed().as_secs_f64() / f64::from(DISPATCHES));
+                }
+            }
+            Ok(best)
+        };
+        Ok(Ceilings {
+            copy: 2.0 * ITEM_BYTES * ITEMS as f64 / best("ceiling_copy")?,
+            arithmetic: OPERATIONS * LOOPS * ITEMS as f64 / best("ceiling_arithmetic")?,
+        })
+    }
+}

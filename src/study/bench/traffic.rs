@@ -1,0 +1,95 @@
+//! The bytes that the phases of a step must move, counted from their buffers.
+//!
+//! Each element that a phase reads or writes counts once, however often its threads come back to it: what a cache that
+//! forgets nothing within a phase would leave. So bytes over time are no more than what really moves, and their share of the
+//! copy's rate says how far a phase is from being bound by memory. Walls (some kilobytes) and tallies are left out.
+
+use crate::scene::Method;
+use crate::subdomain::{GpuFlight, GpuNewborn, GpuParticle};
+
+const PARTICLE: f64 = size_of::<GpuParticle>() as f64;
+const FLIGHT: f64 = size_of::<GpuFlight>() as f64;
+const NEWBORN: f64 = size_of::<GpuNewborn>() as f64;
+const WORD: f64 = 4.0;
+
+/// What a run did in its steps, summed over them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Work {
+    pub steps: f64,
+    pub particle_steps: f64,
+    /// Cells times steps.
+    pub cell_steps: f64,
+    /// Entries of the neighbour lists.
+    pub candidates: f64,
+    pub newborns: f64,
+    pub collisions: f64,
+    pub bounces: f64,
+    /// Steps that were tallied, and zones that were.
+    pub tallies: f64,
+    pub zones: f64,
+    /// Intervals.
+    pub intervals: f64,
+}
+
+/// Bytes of a phase over the run; `None` of one that is not counted.
+pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
+    let Work { particle_steps: n, cell_steps: cells, candidates, collisions, .. } = *work;
+    let rounds = method.has_rounds();
+    let collides = method != Method::None;
+    Some(match phase {
+        "inject" => work.newborns * (NEWBORN + PARTICLE),
+        // State in; cell and place in the cell out; the cells' counters.
+        "bin" => n * (PARTICLE + 2.0 * WORD) + cells * 2.0 * WORD,
+        // Counters in twice, cleared, and the starts out.
+        "scan" => cells * 4.0 * WORD,
+        // scatter: bins in, slots out; order: slots and bins in, state in and out, cell and layer out.
+        "sort" => {
+            let order = n * (4.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + cells * WORD;
+            // Flight, middle and mark of the rounds.
+            let of_rounds = if rounds { n * (FLIGHT + 2.0 * WORD) } else { 0.0 };
+            n * 4.0 * WORD + cells * WORD + order + of_rounds
+        }
+        // Middle, cell and layer in; the lists and their lengths out.
+        "neighbours" => n * 4.0 * WORD + cells * WORD + candidates * WORD,
+        // The first round: lists, states and flights in, choices out. Later ones look at few.
+        "choose" => candidates * WORD + n * (WORD + PARTICLE + FLIGHT + 2.0 * WORD),
+        // Choices in, pairs out; states and flights of those that collide in and out.
+        "settle" => n * 2.0 * WORD + collisions * (2.0 * WORD + 4.0 * (PARTICLE + FLIGHT)),
+        // States of the cell in, those that collide out.
+        "collide" => n * PARTICLE + cells * WORD + collisions * 2.0 * PARTICLE,
+        // State in and out; flight and layer where there are any.
+        "advect" => {
+            let flight = if rounds { FLIGHT + WORD } else { 0.0 };
+            let layer = if collides && !rounds { WORD } else { 0.0 };
+            n * (2.0 * PARTICLE + flight + layer) + work.bounces * 2.0 * PARTICLE
+        }
+        // Every zone of a tallied step, and the blocks of each interval, read all states.
+        "tally" => n / work.steps.max(1.0) * PARTICLE * (work.tallies * work.zones + work.intervals),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Free flight reads and writes each state once: the 64 bytes of the specification, section 7.
+    #[test]
+    fn free_flight_moves_each_state_in_and_out() {
+        let work = Work { steps: 10.0, particle_steps: 1000.0, ..Work::default() };
+        assert_eq!(bytes("advect", Method::None, &work), Some(64_000.0));
+        assert_eq!(bytes("exchange", Method::None, &work), None);
+    }
+
+    /// More candidates are more bytes where they are listed and where they are looked at, and nowhere else.
+    #[test]
+    fn candidates_count_where_they_are_read() {
+        let few = Work { steps: 1.0, particle_steps: 100.0, candidates: 500.0, ..Work::default() };
+        let more = Work { candidates: 600.0, ..few };
+        for phase in ["bin", "scan", "sort", "neighbours", "choose", "settle", "advect", "tally"] {
+            let [a, b] = [&few, &more].map(|work| bytes(phase, Method::ClosestApproach, work).unwrap());
+            let listed = matches!(phase, "neighbours" | "choose");
+            assert_eq!(b - a, if listed { 400.0 } else { 0.0 }, "{phase}");
+        }
+    }
+}
