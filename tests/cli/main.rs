@@ -447,3 +447,46 @@ fn a_chosen_run_can_be_repeated() {
     assert_eq!(text(&wished, "history.csv"), text(&again, "history.csv"));
     assert!(!text(&again, "plan.toml").contains("[forecast]"));
 }
+
+/// A bench prints its tables, and its JSON has the same runs with all their phases.
+#[test]
+fn a_bench_measures_each_scene_and_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("bench.json");
+    let path = json.to_str().unwrap();
+    let text = printed(&[
+        "bench",
+        "--scene",
+        "box,tank",
+        "--particles",
+        "2e3",
+        "--steps",
+        "32",
+        "--methods",
+        "cell,none",
+        "--json",
+        path,
+    ]);
+    assert!(text.contains("GB/s") && text.contains("of the target"), "{text}");
+    let value: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    assert!(value["copy_bytes_per_second"].as_f64().unwrap() > 0.0);
+    let runs = value["runs"].as_array().unwrap();
+    let names: Vec<_> = runs.iter().map(|run| (run["scene"].as_str(), run["method"].as_str())).collect();
+    let both = |scene| [(Some(scene), Some("cell")), (Some(scene), Some("none"))];
+    assert_eq!(names, [both("box"), both("tank")].concat());
+    for run in runs {
+        let phases = run["phases"].as_array().unwrap();
+        let collides = run["method"] == "cell";
+        assert_eq!(phases.iter().any(|phase| phase["phase"] == "collide"), collides);
+        // Every phase is counted.
+        assert!(phases.iter().all(|phase| phase["bytes"].is_number()), "{phases:?}");
+    }
+    for (arguments, part) in [
+        (&["bench", "--scene", "sphere"][..], "sphere"),
+        (&["bench", "--methods", "control-volume"][..], "no steps of particles"),
+        (&["bench", "--particles", "1.5"][..], "1.5"),
+    ] {
+        let (code, _, err) = outcome(arguments);
+        assert!(code == 2 && err.contains(part), "{arguments:?}: {err}");
+    }
+}

@@ -7,7 +7,8 @@
 //! isentropic flow; a shock tube by the exact Riemann solution, whose measure is that of the profile.
 //!
 //! Statistics: seeds are independent, so their scatter tells how well the true error itself is known; it must be known
-//! to a quarter. The forecast has no constant that was fitted to these scenes.
+//! to a fifth, and counts as kept or met within three of its standard errors, since each adapter draws another sample. The
+//! forecast has no constant that was fitted to these scenes.
 
 use corpuscle::plan::{Forecast, worst};
 use corpuscle::scene::{Method, ModelRequest};
@@ -147,9 +148,13 @@ fn forecast(model: &Model) -> Forecast {
 
 fn holds(name: &str, asked: f64, predicted: f64, (found, error): (f64, f64)) {
     println!("{name}: asked {asked}, predicted {predicted:.4}, true {found:.4} +- {error:.4}");
-    assert!(error < 0.25 * found, "{name}: the true error is not known: {found} +- {error}");
-    assert!(found <= asked, "{name}: {found} +- {error}, asked {asked}");
-    assert!((0.5..=2.0).contains(&(predicted / found)), "{name}: predicted {predicted}, true {found} +- {error}");
+    assert!(error < 0.2 * found, "{name}: the true error is not known: {found} +- {error}");
+    let [least, most] = [found - 3.0 * error, found + 3.0 * error];
+    assert!(least <= asked, "{name}: {found} +- {error}, asked {asked}");
+    assert!(
+        2.0 * predicted >= least && 0.5 * predicted <= most,
+        "{name}: predicted {predicted}, true {found} +- {error}"
+    );
 }
 
 /// Runs of several seeds of a scene, and whether the law holds.
