@@ -20,6 +20,8 @@ use crate::scene::{GAS_CONSTANT, Opening, Orifice, Vent, VentFlow, WallHeat};
 const TOLERANCE: f64 = 1e-10;
 /// The smallest step as a fraction of the stretch between two kinks or output times.
 const LEAST_STEP: f64 = 1e-7;
+/// Unknowns of a vent.
+const VENTED: usize = 3;
 const BLENDED_DIFFERENCE: f64 = 0.02;
 
 /// Chambers, what flows into them and what connects them.
@@ -94,15 +96,41 @@ pub struct State {
     pub energy: f64,
 }
 
+/// What has left the chambers since the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lost {
+    /// J, to each of the walls.
+    pub heat: Vec<f64>,
+    /// Through each of the vents.
+    pub vented: Vec<Vented>,
+}
+
+/// Through a vent since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vented {
+    /// kg.
+    pub mass: f64,
+    /// J.
+    pub enthalpy: f64,
+    /// kg that isentropic flow through its area would have been, open or not.
+    pub isentropic: f64,
+}
+
 impl ControlVolume {
     /// The chambers at each of `times` (s, from 0, in order), starting from `initial` (one per chamber) at
     /// time 0. Outer index: time.
     pub fn solve(&self, initial: &[Reservoir], times: &[f64]) -> Vec<Vec<State>> {
+        self.solve_with_losses(initial, times).into_iter().map(|(states, _)| states).collect()
+    }
+
+    /// As [`ControlVolume::solve`], and what has left until then.
+    pub fn solve_with_losses(&self, initial: &[Reservoir], times: &[f64]) -> Vec<(Vec<State>, Lost)> {
         let mut contents = Vec::with_capacity(initial.len() * self.stride());
         for reservoir in initial {
             contents.extend_from_slice(&reservoir.moles);
             contents.push(thermo::energy(&reservoir.moles, &self.gases, reservoir.temperature));
         }
+        contents.resize(self.lost_at() + self.walls.len() + VENTED * self.vents.len(), 0.0);
         let mut kinks = self.kinks();
         kinks.extend_from_slice(times);
         kinks.sort_by(f64::total_cmp);
@@ -117,9 +145,23 @@ impl ControlVolume {
                 self.advance(&mut contents, now, end, &mut step, &mut open);
                 now = end;
             }
-            states.push((0..self.volumes.len()).map(|chamber| self.state(&contents, chamber, time)).collect());
+            let chambers = (0..self.volumes.len()).map(|chamber| self.state(&contents, chamber, time)).collect();
+            states.push((chambers, self.lost(&contents)));
         }
         states
+    }
+
+    /// Where what has left is in the vector of unknowns: the heat to each wall, then mass, enthalpy and isentropic mass of
+    /// each vent.
+    fn lost_at(&self) -> usize {
+        self.volumes.len() * self.stride()
+    }
+
+    fn lost(&self, contents: &[f64]) -> Lost {
+        let (heat, vented) = contents[self.lost_at()..].split_at(self.walls.len());
+        let vented =
+            vented.chunks_exact(VENTED).map(|own| Vented { mass: own[0], enthalpy: own[1], isentropic: own[2] });
+        Lost { heat: heat.to_vec(), vented: vented.collect() }
     }
 
     /// Numbers per chamber in the vector of unknowns: moles of each gas, then U.
@@ -196,6 +238,8 @@ impl ControlVolume {
     /// Largest difference over the chamber's total moles or energy.
     fn error(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut worst = 0.0;
+        // What has left is the integral of what changes these.
+        let [a, b] = [a, b].map(|contents| &contents[..self.lost_at()]);
         for (a, b) in a.chunks(self.stride()).zip(b.chunks(self.stride())) {
             let moles: f64 = b[..self.gases.len()].iter().sum();
             for (index, (a, b)) in a.iter().zip(b).enumerate() {

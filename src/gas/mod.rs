@@ -19,7 +19,9 @@ pub mod thermo;
 pub mod vent;
 pub mod wall_heat;
 
-pub use control_volume::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
+pub use control_volume::{
+    Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, Vented, moles_at,
+};
 pub use curve::{
     FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,
     value_held, value_inside, velocity,

@@ -30,7 +30,6 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
     let species = species(scene, measured, &mut reasons)?;
-    vents::check(scene, method)?;
     motion::check(scene, method)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {

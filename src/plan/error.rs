@@ -68,11 +68,6 @@ pub enum PlanError {
         "leave out `diameter`, `rounds` or `particles` in [model]: one of them does not fit the vessel"
     ))]
     NoCandidate { particles: f64 },
-    #[error("{what}: the method control-volume does not know what leaves through vents and walls yet")]
-    #[diagnostic(help(
-        "choose a method of particles in [model]; its history has a control volume with these losses beside it"
-    ))]
-    LossesOfControlVolume { what: String },
     #[error("wall `{wall}` moves, which the method `cell` cannot have yet: the gas volumes of its cells do not follow")]
     #[diagnostic(help("choose `method = \"closest-approach\"` in [model]"))]
     MotionInCells { wall: String },

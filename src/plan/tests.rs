@@ -341,21 +341,14 @@ fn curves_of_the_heat_capacity_are_fitted_or_refused() {
     assert!(matches!(with([20.0, 1e-4, 0.0]).unwrap_err(), PlanError::HeatCapacityLow { .. }));
 }
 
-/// Losses to walls are not there yet of a control volume.
+/// Temperatures of walls are among those of a heat capacity that depends on the temperature.
 #[test]
-fn losses_that_are_not_there_yet_are_refused() {
+fn heat_capacities_cover_the_walls() {
     let cold = |scene: &mut Scene| {
         let heat = WallHeat { temperature: 293.0, transfer: HeatTransfer::Accommodation(1.0) };
         let shape = Shape::Box { min: [0.0; 3], max: [0.4; 3], thickness: None, holes: vec![] };
         scene.walls = vec![Wall { name: "tank".into(), shape, gas: GasSide::Inside, heat: Some(heat) }];
     };
-    assert!(planned(|scene, _| cold(scene)).is_ok());
-    let uniform = planned(|scene, _| {
-        cold(scene);
-        scene.model.method = Some(Method::ControlVolume);
-    });
-    assert_eq!(uniform.unwrap_err(), PlanError::LossesOfControlVolume { what: "wall `tank`".into() });
-    // A gas whose heat capacity depends on the temperature has it over those of the walls too.
     let curved = planned(|scene, _| {
         cold(scene);
         scene.walls[0].heat.as_mut().unwrap().temperature = 200.0;

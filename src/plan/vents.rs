@@ -2,11 +2,11 @@
 //! passing can give it (specification, section 4 "Modelled vent, porosity, leak").
 
 use super::render::significant;
-use super::{Measured, MeasuredVent, PlanError, VentPlan};
+use super::{Measured, MeasuredVent, VentPlan};
 use crate::gas::vent::{LocalGas, UNCLIPPED, flux};
 use crate::gas::wall_heat::accommodation;
 use crate::gas::{Species, moles_at};
-use crate::scene::{Method, Scene, VentFlow};
+use crate::scene::{Scene, VentFlow};
 
 /// The most that a probability of one lets out over p / sqrt(R T / M): n cbar m / 4.
 const KINETIC: f64 = 0.398_942_280_4;
@@ -56,19 +56,6 @@ pub fn planned(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<V
         }
     };
     places.map(plan).collect()
-}
-
-/// What is not there yet.
-///
-/// # Errors
-/// If there are vents or walls that keep a temperature, and the scene is a control volume.
-pub fn check(scene: &Scene, method: Method) -> Result<(), PlanError> {
-    let wall = scene.walls.iter().find(|wall| wall.heat.is_some()).map(|wall| format!("wall `{}`", wall.name));
-    let vent = scene.vents.first().map(|vent| format!("vent `{}`", vent.name));
-    match vent.or(wall) {
-        Some(what) if method == Method::ControlVolume => Err(PlanError::LossesOfControlVolume { what }),
-        _ => Ok(()),
-    }
 }
 
 pub fn warnings(scene: &Scene, species: &[Species], vents: &[VentPlan], measured: &Measured) -> Vec<String> {

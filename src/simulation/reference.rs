@@ -1,7 +1,7 @@
 //! The control volume of a run: the same chambers, openings and curves without space. The reference of runs of
 //! particles, and the method `control-volume` itself.
 
-use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, State, moles_at};
+use crate::gas::{Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at};
 use crate::plan::{OpeningPlan, Plan};
 use crate::scene::{Method, Opening, Scene};
 
@@ -10,6 +10,11 @@ use super::model::{Model, chamber_of};
 /// The reference states of the chambers at `times` (s, ascending); outer index time.
 pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
     volume(model).solve(&initial(&model.scene, &model.plan), times)
+}
+
+/// As [`reference`], and what has left through walls that keep a temperature (those of [`heated_walls`]) and vents.
+pub(super) fn reference_with_losses(model: &Model, times: &[f64]) -> Vec<(Vec<State>, Lost)> {
+    volume(model).solve_with_losses(&initial(&model.scene, &model.plan), times)
 }
 
 fn volume(model: &Model) -> ControlVolume {
@@ -35,6 +40,12 @@ fn volume(model: &Model) -> ControlVolume {
             _ => Collisions::Particles { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle },
         },
     }
+}
+
+/// The scene's walls that the heat of [`Lost`] went to.
+pub(super) fn heated_walls(model: &Model) -> Vec<usize> {
+    let coats = model.coats.coats.iter().map(|coat| coat.wall);
+    coats.filter(|&wall| model.scene.walls[wall].heat.is_some()).collect()
 }
 
 fn walls(model: &Model) -> Vec<HeatedWall> {

@@ -6,16 +6,16 @@
 
 use glam::DVec3;
 
-use crate::gas::{FlowIntegral, State, flow_times_of_temperature, flow_times_temperature, thermo};
+use crate::gas::{FlowIntegral, Lost, State, Vented, flow_times_of_temperature, flow_times_temperature, thermo};
 use crate::geometry::{Vessel, region_bounds};
 use crate::output::Audit;
 use crate::scene::{Scene, Surface};
 
 use super::SimulationError;
-use super::averages::{MotionState, Row, SurfaceState, ZoneState};
+use super::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
 use super::model::{Model, chamber_of};
 use super::observer::Observer;
-use super::reference::{initial, reference};
+use super::reference::{heated_walls, initial, reference, reference_with_losses};
 
 /// Parts along each edge into which a triangle is cut to find what chambers it faces.
 const PARTS: u32 = 8;
@@ -32,7 +32,8 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     // Ends and middles of the windows.
     let time = |half: u32| plan.end_time * f64::from(half) / f64::from(2 * rows);
     let times: Vec<f64> = (0..=2 * rows).map(time).collect();
-    let states = reference(model, &times);
+    let states = reference_with_losses(model, &times);
+    let heated = heated_walls(model);
     let probes = probes(model)?;
     let surfaces =
         scene.surfaces.iter().map(|surface| facing(scene, &model.vessel, surface)).collect::<Result<Vec<_>, _>>()?;
@@ -40,7 +41,8 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     let works = works(model, rows);
     let mut worked = vec![0.0; model.moving.count()];
     for row in 0..rows as usize {
-        let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k]);
+        let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k].0);
+        let [lost_before, lost_after] = [0, 2].map(|k| &states[2 * row + k].1);
         let window = [times[2 * row], times[2 * row + 2]];
         let zones: Vec<ZoneState> =
             (0..plan.chambers.len()).map(|index| zone(model, index, times[2 * row + 1], &middle[index])).collect();
@@ -77,14 +79,54 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
             probes: probes.iter().map(|&chamber| zones[chamber].clone()).collect(),
             chambers: zones,
             surfaces: on_surfaces,
-            walls: Vec::new(),
-            vents: Vec::new(),
+            walls: walls(model, &heated, window, [lost_before, lost_after]),
+            vents: vents(window, [lost_before, lost_after]),
             motions,
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }
     let work = (!model.moving.is_empty()).then(|| worked.iter().sum());
-    Ok(Audit { work_by_walls: work, ..audit(model, &states[states.len() - 1]) })
+    let (end, lost) = &states[states.len() - 1];
+    let heat = (!heated.is_empty()).then(|| lost.heat.iter().sum());
+    Ok(Audit {
+        work_by_walls: work,
+        heat_to_walls: heat,
+        mass_vented: lost.vented.iter().map(|vent| vent.mass).sum(),
+        enthalpy_vented: lost.vented.iter().map(|vent| vent.enthalpy).sum(),
+        ..audit(model, end)
+    })
+}
+
+/// Those that keep a temperature, in the order of the scene; `lost`: until the start and the end of the window.
+fn walls(model: &Model, heated: &[usize], window: [f64; 2], lost: [&Lost; 2]) -> Vec<WallState> {
+    let of_wall = |wall: usize| {
+        let own = heated.iter().enumerate().filter(|(_, of)| **of == wall).map(|(index, _)| index);
+        let [before, after] = lost.map(|lost| own.clone().map(|index| lost.heat[index]).sum::<f64>());
+        let coats = model.coats.coats.iter().filter(|coat| coat.wall == wall);
+        let area: f64 = coats.map(|coat| coat.area).sum();
+        WallState { heat: after, heat_flux: (after - before) / (area * (window[1] - window[0])) }
+    };
+    let kept = (0..model.scene.walls.len()).filter(|&wall| model.scene.walls[wall].heat.is_some());
+    kept.map(of_wall).collect()
+}
+
+/// What passes is what should: there is no particle that could not.
+fn vents(window: [f64; 2], [before, after]: [&Lost; 2]) -> Vec<VentState> {
+    let of_vent = |(before, after): (&Vented, &Vented)| {
+        let mass = after.mass - before.mass;
+        let isentropic = after.isentropic - before.isentropic;
+        let mass_flow = mass / (window[1] - window[0]);
+        let discharge = if isentropic > 0.0 { mass / isentropic } else { 0.0 };
+        VentState {
+            mass_flow,
+            wanted_mass_flow: mass_flow,
+            discharge,
+            wanted_discharge: discharge,
+            mass: after.mass,
+            enthalpy: after.enthalpy,
+        }
+    };
+    before.vented.iter().zip(&after.vented).map(of_vent).collect()
 }
 
 /// The work of each moving wall on the gas in each row, J: -p dV, by the mean of p between near times (and not by the
@@ -328,6 +370,52 @@ mod tests {
         assert!(last.pressure < 3.3e5, "enough has flowed out: {}", last.pressure);
         // The check can fail: isothermal gas would be at 500 K.
         assert!(last.temperature < 475.0);
+    }
+
+    /// Walls with a coefficient take the heat of an exponential, and pores the mass of choked isentropic flow; rows and audit
+    /// have both.
+    #[test]
+    fn heat_and_gas_that_leave_are_in_the_rows_and_in_the_audit() {
+        let cube = |wall: &str, vent: &str, temperature: f64| {
+            run(&format!(
+                "end_time = 0.005\n[[gas]]\nname = \"nitrogen\"\nmolar_mass = 0.028\ngamma = 1.4\n\
+                 [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\n\
+                 gas = \"inside\"\n{wall}\n[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = {temperature}\n\
+                 gas = \"nitrogen\"\n{vent}[output]\nrows = 20\nsnapshots = 0\n"
+            ))
+        };
+        let gas_constant = 8.314462618;
+        // tau = n cv / (h A) of 2.5 ms.
+        let coefficient = 1e5 * 1e-3 / (gas_constant * 600.0) * 2.5 * gas_constant / (0.06 * 2.5e-3);
+        let (model, rows, audit) = cube(&format!("temperature = 300.0\nheat_transfer = {coefficient:e}"), "", 600.0);
+        assert!(audit.verdict(&crate::output::AuditLimits::default()).is_empty());
+        let capacity = coefficient * 0.06 * 2.5e-3;
+        for row in &rows {
+            let expected = 300.0 + 300.0 * (-row.time / 2.5e-3).exp();
+            assert!((row.chambers[0].temperature / expected - 1.0).abs() < 1e-8, "{row:?}");
+            let end = 300.0 + 300.0 * (-row.window[1] / 2.5e-3).exp();
+            assert!((row.walls[0].heat / (capacity * (600.0 - end)) - 1.0).abs() < 1e-7, "{row:?}");
+            let flux = row.walls[0].heat_flux * 0.06 * (row.window[1] - row.window[0]);
+            assert!(flux > 0.0 && flux < row.walls[0].heat * (1.0 + 1e-12));
+        }
+        assert_eq!(audit.heat_to_walls, Some(rows[19].walls[0].heat));
+        assert!((audit.energy_start - audit.energy_end - capacity * 300.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-6);
+        // The check can fail: walls without that are mirrors.
+        assert!(cube("", "", 600.0).2.heat_to_walls.is_none() && model.scene.walls[0].heat.is_some());
+
+        let pores = "[[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = 0.02\nexternal_pressure = 0.0\n";
+        let (_, rows, audit) = cube("", pores, 400.0);
+        assert!(audit.verdict(&crate::output::AuditLimits::default()).is_empty());
+        let choked = 1.4f64.sqrt() * (2.0 / 2.4f64).powi(3);
+        let rate = 0.02 * 0.06 / 1e-3 * choked * (gas_constant * 400.0 / 0.028f64).sqrt();
+        let left = |time: f64| (1.0 + 0.2 * rate * time).powi(-5);
+        for row in &rows {
+            assert!((row.vents[0].mass / audit.mass_start / (1.0 - left(row.window[1])) - 1.0).abs() < 1e-6, "{row:?}");
+            assert!((row.vents[0].discharge - 0.02).abs() < 1e-9);
+        }
+        let vented = rows[19].vents[0];
+        assert_eq!((audit.mass_vented, audit.enthalpy_vented), (vented.mass, vented.enthalpy));
+        assert!(audit.mass_vented > 0.3 * audit.mass_start && audit.energy_error().abs() < 1e-12, "{audit:?}");
     }
 
     #[test]

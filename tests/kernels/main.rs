@@ -8,6 +8,7 @@ mod oracle;
 mod asked;
 mod blocks;
 mod bounce;
+mod ceilings;
 mod choose;
 mod closed;
 mod coats;
@@ -35,6 +36,8 @@ fn every_kernel_has_its_test() {
         "bin",
         "blocks",
         "bounce",
+        "ceiling_arithmetic",
+        "ceiling_copy",
         "choose",
         "collide",
         "collide_parted",

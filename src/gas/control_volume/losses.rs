@@ -3,7 +3,7 @@
 //! dU/dt = -A h (T - T_w), by the same rule as the particles' walls (`wall_heat`); dn/dt = -A G / M, dU/dt = -A G h of a
 //! vent that is open (`vent`).
 
-use super::ControlVolume;
+use super::{ControlVolume, VENTED};
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::heat_flux;
 
@@ -15,25 +15,37 @@ impl ControlVolume {
         }
     }
 
-    /// Takes the losses at a time (s) from the time derivative of the unknowns.
+    /// Takes the losses at a time (s) from the time derivative of the unknowns of the chambers, and adds them to that of what
+    /// has left.
     pub(super) fn lose(&self, time: f64, contents: &[f64], open: &[bool], rate: &mut [f64]) {
         let stride = self.stride();
+        let mut lost = self.lost_at();
         for wall in &self.walls {
             let side = self.side(contents, wall.chamber, time);
             let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
             let flux = heat_flux(&wall.heat, &self.gases, &concentrations, side.temperature);
             rate[(wall.chamber + 1) * stride - 1] -= wall.area * flux;
+            rate[lost] += wall.area * flux;
+            lost += 1;
         }
-        for (open, _) in self.vents.iter().zip(open).filter(|(_, open)| **open) {
+        for (index, (open, is_open)) in self.vents.iter().zip(open).enumerate() {
             let side = self.side(contents, open.chamber, time);
             let concentrations: Vec<f64> = side.moles.iter().map(|moles| moles / side.volume).collect();
             let Some(gas) = LocalGas::new(&self.gases, &concentrations, side.temperature) else { continue };
+            let [mass, enthalpy, isentropic] = [0, 1, 2].map(|k| lost + VENTED * index + k);
+            rate[isentropic] += open.area * gas.isentropic_flux(open.vent.external_pressure);
+            if !is_open {
+                continue;
+            }
             let moles = open.area * flux(&open.vent, &gas, time) / gas.molar_mass;
             let total: f64 = side.moles.iter().sum();
             for (index, own) in side.moles.iter().enumerate() {
                 let flow = moles * own / total;
+                let carried = flow * self.gases[index].enthalpy(1.0, side.temperature);
                 rate[open.chamber * stride + index] -= flow;
-                rate[(open.chamber + 1) * stride - 1] -= flow * self.gases[index].enthalpy(1.0, side.temperature);
+                rate[(open.chamber + 1) * stride - 1] -= carried;
+                rate[mass] += flow * self.gases[index].molar_mass;
+                rate[enthalpy] += carried;
             }
         }
     }

@@ -81,7 +81,7 @@ fn methods(
     if forecaster.is_release() {
         why.push("a release without a wall is no control volume");
     } else if losses {
-        why.push("the method control-volume does not know vents and walls that keep a temperature");
+        why.push("not the method control-volume, whose error beside vents and walls that keep a temperature is not predicted yet");
     } else {
         methods.push(Method::ControlVolume);
     }

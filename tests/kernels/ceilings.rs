@@ -1,0 +1,37 @@
+//! `ceiling_copy` and `ceiling_arithmetic` do the work that `corpuscle bench` counts: every word is copied, every
+//! multiplication and addition is made.
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const ITEMS: usize = 1000;
+
+#[test]
+fn all_words_are_copied() {
+    let mut stream = Stream::new(3);
+    let words: Vec<[u32; 4]> = (0..ITEMS).map(|_| std::array::from_fn(|_| stream.word())).collect();
+    let mut rig = Rig::new(&World::plain());
+    rig.put("copy_from", &words);
+    rig.put("copy_to", &vec![[0u32; 4]; ITEMS]);
+    rig.run("ceiling_copy", ITEMS);
+    assert_eq!(rig.get::<[u32; 4]>("copy_to", ITEMS), words);
+}
+
+/// a <- a factor + term, so many times, from four starts: their sum to f32 rounding.
+#[test]
+fn all_operations_are_made() {
+    let loops = 40;
+    let mut rig = Rig::new(&World::plain());
+    rig.constant("LOOPS", f64::from(loops));
+    rig.put("copy_to", &vec![[0u32; 4]; ITEMS]);
+    rig.run("ceiling_arithmetic", ITEMS);
+    for (k, found) in rig.get::<[f32; 4]>("copy_to", ITEMS).into_iter().enumerate() {
+        let (factor, term) = (0.999 + 1e-9 * k as f64, 1e-3 * (k & 7) as f64);
+        for (axis, &found) in found.iter().enumerate() {
+            let start = 0.1 * (axis + 1) as f64;
+            let sum: f64 =
+                (0..4).map(|chain| (0..loops).fold(start + f64::from(chain) * term, |a, _| a * factor + term)).sum();
+            assert!((f64::from(found) / sum - 1.0).abs() < 1e-5, "{k} {axis}: {found} {sum}");
+        }
+    }
+}
