@@ -34,11 +34,13 @@ pub struct Trigger {
     measured: bool,
     /// The averaged load of each rank over the mean, the averaged mean, and the sum of squared weights of an average.
     loads: Vec<f64>,
+    /// Those of the observation before.
+    before_loads: Vec<f64>,
     mean: f64,
     spread: f64,
     /// Since the last rebalance.
     observations: u32,
-    /// The averaged square of a load's relative difference from its average, and how many it is the mean of.
+    /// Half the averaged square of the difference of two successive loads, and how many it is the mean of.
     noise: f64,
     noise_of: f64,
     /// What is asked more after rebalances in vain: a power of two.
@@ -111,6 +113,7 @@ impl Trigger {
             cost: estimate,
             measured: false,
             loads: Vec::new(),
+            before_loads: Vec::new(),
             mean: 0.0,
             spread: 0.0,
             observations: 0,
@@ -186,15 +189,15 @@ impl Trigger {
         }
         self.observations = self.observations.saturating_add(1);
         let part = (1.0 / f64::from(self.observations)).max(NEW);
-        let mut off_squares = 0.0;
-        for (load, seconds) in self.loads.iter_mut().zip(seconds) {
-            let off = seconds / mean - *load;
-            *load += part * off;
-            off_squares += off * off;
+        let loads: Vec<f64> = seconds.iter().map(|seconds| seconds / mean).collect();
+        for (average, load) in self.loads.iter_mut().zip(&loads) {
+            *average += part * (load - *average);
         }
+        let before = std::mem::replace(&mut self.before_loads, loads);
         if self.observations > 1 {
-            // A new load is off an average that is itself off the true mean.
-            let off_square = off_squares / seconds.len() as f64 / (1.0 + self.spread);
+            // Of two observations, so that a drift is no noise; both have their own.
+            let pairs = self.before_loads.iter().zip(&before);
+            let off_square = pairs.map(|(now, then)| (now - then).powi(2)).sum::<f64>() / (2 * seconds.len()) as f64;
             let freedoms = (seconds.len() - 1) as f64;
             self.noise_of = (self.noise_of + freedoms).min(NOISE_MEMORY.max(freedoms));
             self.noise += freedoms / self.noise_of * (off_square - self.noise);

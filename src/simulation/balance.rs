@@ -15,7 +15,7 @@ use super::decomposition::Decomposition;
 use super::exchange::Traffic;
 
 /// Steps that a rebalance is thought to cost before one was measured.
-const STEPS_OF_A_REBALANCE: f64 = 5.0;
+const STEPS_OF_A_REBALANCE: f64 = 2.0;
 
 /// What a rank had to do in the last step of an interval, and what it did besides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
