@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::gpu::Device;
 use crate::output::{OutputError, OutputFolder, STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE};
+use crate::study::StudyError;
 use crate::study::stability::report::{self, Map};
 use crate::study::stability::{AXES, Axis, Effort};
 
@@ -53,7 +54,7 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
         say(&map)?;
         text += &map;
         // What there is stays, however the rest goes.
-        folder.write_text(STABILITY_FILE, &report::csv(&maps))?;
+        folder.write_text(STABILITY_FILE, &report::csv(&maps).map_err(StudyError::from)?)?;
         folder.write_text(STABILITY_TABLE_FILE, &text)?;
         report::chart(&folder.path().join(STABILITY_CHART_FILE), &maps)?;
         if let Some(path) = &raw.markdown {

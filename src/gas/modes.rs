@@ -205,7 +205,6 @@ mod tests {
             ("propane", [-4.04, 3.048e-1, -1.572e-4], 1e-2),
         ] {
             let modes = fit(cp, [290.0, 900.0]).unwrap();
-            println!("{name}: nu0 {}, {} modes, residual {:.2e}", modes.nu0, modes.modes.len(), modes.residual);
             assert!(modes.residual < most, "{name}: {modes:?}");
             assert!(modes.modes.len() <= MOST_MODES);
         }

@@ -50,5 +50,5 @@ pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};
 pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
 pub use spread::spread as history_spread;
 pub use subdomains::{Frame, subdomain_chart};
-pub use table::{aligned, grouped};
+pub use table::{aligned, figure, grouped};
 pub use timing::{RankTiming, Timing};

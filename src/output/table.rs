@@ -58,6 +58,19 @@ pub(super) fn metric(value: f64) -> String {
     format!("{scaled:.decimals$}{prefix}")
 }
 
+/// A number with so many significant digits, very small and very large ones with an exponent.
+pub fn figure(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e5).contains(&size) {
+        let decimals = (digits - 1 - size.log10().floor() as i32).clamp(0, 6) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,5 +90,15 @@ mod tests {
         assert_eq!(metric(0.5), "0.50 ");
         assert_eq!(metric(12_345.0), "12.3 k ");
         assert_eq!(metric(4e9), "4.00 G ");
+    }
+
+    #[test]
+    fn figures_have_the_digits_asked_for() {
+        for (value, text) in
+            [(0.0, "0"), (1.0, "1.000"), (0.00512, "0.005120"), (293.15, "293.1"), (-3.2e-7, "-3.20e-7")]
+        {
+            assert_eq!(figure(value, 4), text);
+        }
+        assert_eq!(figure(1.0, 3), "1.00");
     }
 }

@@ -5,12 +5,7 @@ use super::render::significant;
 use super::resolution::Resolution;
 use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
-use crate::scene::{Method, Scene};
-
-/// Of an air molecule as a rigid sphere, m (nitrogen 3.7e-10; helium 2.2e-10, SF6 5.5e-10: handbooks, from viscosities).
-const MOLECULE: f64 = 3.7e-10;
-/// J/K.
-const BOLTZMANN: f64 = 1.380_649e-23;
+use crate::scene::{Chamber, GAS_CONSTANT, Method, Scene};
 
 /// Share of collision events lost, by x = dt/tau (first column) for 1 to 4 rounds (specification,
 /// section 2; measured at f = .1, +-.01; gains taken as zero).
@@ -151,14 +146,14 @@ fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
     Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
 }
 
-/// Free flight is right where molecules do not meet either: their mean free path k T / (sqrt2 pi p d^2) over the
-/// smallest passage, or the size of the vessel.
+/// Free flight is right where molecules do not meet either: their mean free path over the smallest passage, or the size
+/// of the vessel.
 fn free_molecules(scene: &Scene, measured: &Measured, openings: &[OpeningPlan]) -> Option<Option<Warning>> {
     let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
     let length = smallest.min(libm::cbrt(measured.gas_volume));
-    let dense = |chamber: &crate::scene::Chamber| chamber.pressure / chamber.temperature;
+    let dense = |chamber: &Chamber| chamber.pressure / (GAS_CONSTANT * chamber.temperature);
     let densest = scene.chambers.iter().max_by(|a, b| dense(a).total_cmp(&dense(b)))?;
-    let path = BOLTZMANN / (std::f64::consts::SQRT_2 * std::f64::consts::PI * dense(densest) * MOLECULE * MOLECULE);
+    let path = kinetics::molecular_mean_free_path(dense(densest));
     let subject = format!("the molecules of chamber `{}`", densest.name);
     Some(Warning::by_table(Quantity::Knudsen, Method::None, &subject, path / length, "another `method`"))
 }

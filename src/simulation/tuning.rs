@@ -4,7 +4,8 @@
 //! Few rounds need a thin halo and many messages, many rounds a thick halo and few messages: what is best
 //! depends on the devices, the network and the size of the subdomains. Ghosts that choose only when asked are less work
 //! and more passes, so that depends on the device, too. Every choice gives the same bits. Each
-//! candidate runs for a few intervals; the fastest stays until the number of particles has changed much.
+//! candidate runs for a few intervals, fewest rounds first, until more rounds have proved slower; the fastest stays until
+//! the number of particles has changed much.
 
 use crate::subdomain::Ghosts;
 
@@ -25,6 +26,8 @@ pub struct HaloOptions {
 
 /// Intervals per candidate; the first of them makes room and is not judged.
 const TRIALS: usize = 3;
+/// If twice the rounds take so many times as long, more are not tried.
+const HOPELESS: f64 = 1.15;
 /// Change of the number of particles after which the choice is made anew.
 const CHANGE: f64 = 1.5;
 
@@ -51,10 +54,9 @@ impl Tuner {
             Some(fixed) => vec![fixed.clamp(1, rounds)],
             None => powers.chain([rounds]).collect(),
         };
-        let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::Asked, Ghosts::All], |ghosts| vec![ghosts]);
-        let halos = |&ghosts: &Ghosts| of_rounds.iter().map(move |&rounds| Halo { rounds, ghosts });
-        let candidates: Vec<Halo> = of_ghosts.iter().flat_map(halos).collect();
-        Tuner::among(candidates)
+        let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::All, Ghosts::Asked], |ghosts| vec![ghosts]);
+        let halos = |&rounds: &u32| of_ghosts.iter().map(move |&ghosts| Halo { rounds, ghosts });
+        Tuner::among(of_rounds.iter().flat_map(halos).collect())
     }
 
     fn among(candidates: Vec<Halo>) -> Tuner {
@@ -77,6 +79,9 @@ impl Tuner {
         if let Some((chosen, _)) = self.chosen {
             self.under_way.push_back(None);
             return chosen;
+        }
+        if self.submitted.is_multiple_of(TRIALS) && self.is_hopeless(self.submitted / TRIALS) {
+            self.submitted = TRIALS * self.candidates.len();
         }
         let trial = self.submitted / TRIALS;
         let judged = !self.submitted.is_multiple_of(TRIALS);
@@ -126,6 +131,25 @@ impl Tuner {
             }
             _ => {}
         }
+    }
+
+    /// Of fewer rounds than the candidate's, more have proved slower.
+    fn is_hopeless(&self, trial: usize) -> bool {
+        let Some(candidate) = self.candidates.get(trial) else { return false };
+        let of_rounds = |rounds: u32| {
+            self.candidates
+                .iter()
+                .zip(&self.fastest)
+                .filter(move |(halo, _)| halo.rounds == rounds)
+                .map(|(_, &cost)| cost)
+        };
+        let mut fewer = self.candidates.iter().map(|halo| halo.rounds).filter(|&rounds| 2 * rounds <= candidate.rounds);
+        fewer.any(|rounds| {
+            let few = of_rounds(rounds).fold(f64::INFINITY, f64::min);
+            // Those not measured yet are infinite.
+            let all_known = of_rounds(2 * rounds).all(f64::is_finite);
+            all_known && of_rounds(2 * rounds).fold(f64::INFINITY, f64::min) > HOPELESS * few
+        })
     }
 
     fn best(&self) -> Halo {
@@ -185,12 +209,25 @@ mod tests {
         assert!(run(&mut Tuner::new(3, ASKED), 9, 1000, |_| 1.0).contains(&3));
     }
 
+    /// Where more rounds prove slower, still more are not tried; where not, all are.
+    #[test]
+    fn what_is_hopeless_is_not_tried() {
+        let mut tuner = Tuner::new(8, ASKED);
+        let ran = run(&mut tuner, 40, 1000, f64::from);
+        assert!(ran.contains(&2) && !ran.contains(&8), "{ran:?}");
+        assert!(ran[14..].iter().all(|&rounds| rounds == 1), "{ran:?}");
+        let ran = run(&mut Tuner::new(8, ASKED), 40, 1000, |rounds| 1.0 / f64::from(rounds));
+        assert!([1, 2, 4, 8].iter().all(|candidate| ran[..12].contains(candidate)), "{ran:?}");
+        assert!(ran[16..].iter().all(|&rounds| rounds == 8), "{ran:?}");
+    }
+
     /// Both ways of the ghosts are tried with each number of rounds, and the better one stays, whichever that is.
     #[test]
     fn ghosts_are_tried_both_ways() {
         for better in [Ghosts::Asked, Ghosts::All] {
             let mut tuner = Tuner::new(4, HaloOptions::default());
-            let cost = |halo: Halo| f64::from(halo.rounds) * if halo.ghosts == better { 1.0 } else { 1.5 };
+            let cost =
+                |halo: Halo| (1.0 + 0.01 * f64::from(halo.rounds)) * if halo.ghosts == better { 1.0 } else { 1.5 };
             let ran = run_halos(&mut tuner, 40, 1000, cost);
             for rounds in [1, 2, 4] {
                 for ghosts in [Ghosts::Asked, Ghosts::All] {

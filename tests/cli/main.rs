@@ -3,8 +3,11 @@
 //! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
 //! whatever adapter the machine has.
 
+mod pareto;
+mod repeat;
 mod stability;
 mod strict;
+mod sweep;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -420,32 +423,33 @@ fn a_wish_chooses_the_plan() {
     assert_eq!(outcome(&["plan", "scenes/tank.toml", "--accuracy", "2"]).0, 2);
 }
 
-/// A run of a chosen plan leaves a scene that says it all, the forecast in `plan.toml`, and gives the same bytes as the run of
-/// that scene.
+/// What a wish chose is in the run's scene: repeated, stopped and resumed, or refined, it is a run like any other.
 #[test]
-fn a_chosen_run_can_be_repeated() {
+fn a_chosen_run_can_be_repeated_resumed_and_refined() {
     let folder = TempDir::new().unwrap();
-    let (wished, again) = (folder.path().join("wished"), folder.path().join("again"));
-    let (code, _, err) = outcome(&[
-        "run",
-        "scenes/corner.toml",
-        "--particle-budget",
-        "3000",
-        "--steps",
-        "64",
-        "--out",
-        wished.to_str().unwrap(),
-    ]);
-    assert_eq!(code, 0, "{err}");
+    let [wished, again, halves, fine] = ["wished", "again", "halves", "fine"].map(|name| folder.path().join(name));
+    let done = |arguments: &[&str], out: &Path| {
+        let (code, _, err) = outcome(&[arguments, &[out.to_str().unwrap()]].concat());
+        assert_eq!(code, 0, "{arguments:?}: {err}");
+    };
+    let wish = ["run", "scenes/corner.toml", "--particle-budget", "3000"];
+    done(&[&wish[..], &["--steps", "128", "--out"]].concat(), &wished);
     let text = |folder: &Path, name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let scene = text(&wished, "scene.toml");
     assert!(scene.contains("particles = 3000") && !scene.contains("budget"), "{scene}");
     assert!(text(&wished, "plan.toml").contains("[forecast]"));
     let file = wished.join("scene.toml");
-    let (code, _, err) = outcome(&["run", file.to_str().unwrap(), "--steps", "64", "--out", again.to_str().unwrap()]);
-    assert_eq!(code, 0, "{err}");
+    done(&["run", file.to_str().unwrap(), "--steps", "128", "--out"], &again);
     assert_eq!(text(&wished, "history.csv"), text(&again, "history.csv"));
     assert!(!text(&again, "plan.toml").contains("[forecast]"));
+    done(&[&wish[..], &["--steps", "64", "--checkpoint-every", "64", "--out"]].concat(), &halves);
+    let half = text(&halves, "history.csv");
+    done(&["refine", halves.to_str().unwrap(), "--times", "2", "--out"], &fine);
+    done(&["resume", "--steps", "128"], &halves);
+    assert!(half.len() < text(&halves, "history.csv").len(), "there were rows to come");
+    assert_eq!(text(&wished, "history.csv"), text(&halves, "history.csv"));
+    done(&["resume", "--steps", "96"], &fine);
+    assert!(text(&fine, "scene.toml").contains("particles = 6000"), "{}", text(&fine, "scene.toml"));
 }
 
 /// A bench prints its tables, and its JSON has the same runs with all their phases.

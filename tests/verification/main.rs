@@ -20,6 +20,7 @@ mod statistics;
 mod two_chambers;
 mod vents;
 mod vessels;
+mod wall_hits;
 mod wall_pressure;
 mod walls;
 #[path = "../whole_run/mod.rs"]

@@ -2,6 +2,9 @@
 //! over several seeds of a pressure less its limit of infinitely many particles, over the mean of the limit, of the worst
 //! column) is at most what was asked, and the predicted one within a factor of two of it.
 //!
+//! Of the first scenes two wishes and two formulas were changed after first results, so they are no blind test; the last
+//! three are.
+//!
 //! The limits are known without particles: gas at rest; two chambers and a hole, a closed vessel that is filled and a tank
 //! with an inflator by the control volume in the continuum; effusion by that of free flight; a vessel that vents by
 //! isentropic flow; a shock tube by the exact Riemann solution, whose measure is that of the profile.
@@ -50,6 +53,26 @@ const TANK: &str = "end_time = 0.004\n[[wall]]\nname = \"tank\"\nshape = \"box\"
      pressure = 1e5\ntemperature = 300.0\ngas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.0, 0.0, 0.0]\n\
      direction = [1.0, 0.0, 0.0]\narea = 0.004\ngas = \"nitrogen\"\ntemperature = 600.0\n\
      mass_flow = [[0.0, 0.0], [0.003, 1.0], [0.01, 0.8]]\n";
+
+// The next three were fixed before the first of their runs, when forecast and aim were final. So was what is asked of them,
+// but for the two holes: of .05 the plan was 80 million particles.
+const SLAB: &str = "end_time = 1.5e-3\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
+     max = [0.3, 0.1, 0.05]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 3e5\ntemperature = 600.0\n\
+     gas = \"nitrogen\"\n[[probe]]\nname = \"end\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.05, 0.1, 0.05] } }\n\
+     [[probe]]\nname = \"middle\"\nregion = { box = { min = [0.12, 0.02, 0.0], max = [0.18, 0.08, 0.05] } }\n";
+
+const TWO_HOLES: &str = "end_time = 2e-3\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0.0, -0.08, -0.08]\n\
+     max = [0.3, 0.08, 0.08]\ngas = \"inside\"\n[[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [0.06, -0.06, -0.06]\n\
+     max = [0.2, 0.06, 0.06]\nthickness = 0.002\n[[wall.hole]]\nname = \"right\"\nface = \"+x\"\ncenter = [0.0, 0.0]\n\
+     size = [0.03, 0.03]\n[[wall.hole]]\nname = \"left\"\nface = \"-x\"\ncenter = [0.0, 0.0]\nsize = [0.03, 0.03]\n\
+     [[chamber]]\nname = \"inner\"\npressure = 3e5\ntemperature = 400.0\ngas = \"nitrogen\"\n\
+     region = { box = { min = [0.06, -0.06, -0.06], max = [0.2, 0.06, 0.06] } }\n[[chamber]]\nname = \"tank\"\n\
+     pressure = 1e5\ntemperature = 400.0\ngas = \"nitrogen\"\n";
+
+const HOT: &str = "end_time = 0.02\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
+     max = [0.4, 0.15, 0.15]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 5e4\ntemperature = 300.0\n\
+     gas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.2, 0.075, 0.0]\ndirection = [0.0, 0.0, 1.0]\n\
+     area = 0.004\ngas = \"nitrogen\"\ntemperature = 900.0\nmass_flow = [[0.0, 0.8], [0.02, 0.2]]\n";
 
 /// A scene of nitrogen with a wish; particles, since a control volume would do for most of these.
 fn scene(text: &str, request: &str, rows: u32, seed: u64) -> String {
@@ -209,6 +232,7 @@ fn a_closed_vessel_is_filled() {
 }
 
 #[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
 fn a_vessel_vents() {
     check("vent", VENTED, "closest-approach", 0.06, 20, 6);
 }
@@ -216,6 +240,23 @@ fn a_vessel_vents() {
 #[test]
 fn a_small_tank() {
     check("tank", TANK, "closest-approach", 0.35, 10, 3);
+}
+
+#[test]
+fn blind_a_slab_of_cells() {
+    check("slab", SLAB, "cell", 0.04, 15, 3);
+}
+
+#[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
+fn blind_two_holes() {
+    check("two holes", TWO_HOLES, "closest-approach", 0.17, 10, 3);
+}
+
+#[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
+fn blind_a_hot_inflow() {
+    check("hot inflow", HOT, "closest-approach", 0.03, 10, 3);
 }
 
 /// The measure of a release: mean |rho - exact| over fiftieths of the length, over the mean density.

@@ -1,5 +1,5 @@
 //! What a run costs: particle-steps times the memory traffic of one (specification, section 7), scaled to what the device
-//! does. An estimate: within a factor of two or so, for dense moments take shorter steps and small runs wait for the device.
+//! does. A rough estimate: dense moments take shorter steps and small runs wait for the device.
 
 use crate::plan::resolution::Resolution;
 use crate::plan::warnings::lost_events;

@@ -15,9 +15,6 @@ pub struct Family {
     pub rounds: Option<u32>,
 }
 
-/// Of nitrogen and air, m; of real molecules only whether they meet at all is asked.
-const MOLECULE: f64 = 3.7e-10;
-const AVOGADRO: f64 = 6.022_140_76e23;
 /// Mean free path of the molecules over the size of the vessel from which on they do not meet (specification, section 2).
 const FREE_KNUDSEN: f64 = 1.0;
 /// Rounds of pairing that are compared.
@@ -68,8 +65,8 @@ fn methods(
     if let Some(method) = scene.model.method {
         return (vec![method], "asked for in the scene".into());
     }
-    let molecules = amounts.total() * AVOGADRO / measured.gas_volume;
-    let knudsen = kinetics::mean_free_path(molecules, MOLECULE) / libm::cbrt(measured.gas_volume);
+    let path = kinetics::molecular_mean_free_path(amounts.total() / measured.gas_volume);
+    let knudsen = path / libm::cbrt(measured.gas_volume);
     if knudsen >= FREE_KNUDSEN {
         let why =
             format!("the molecules themselves do not meet: Kn {knudsen:.1} of the vessel, of molecules of 0.37 nm");

@@ -24,8 +24,9 @@ use families::{Family, families};
 
 pub use report::{Alternative, Choice, Forecast};
 
-/// A forecast is good to about a quarter, so the plan aims at this part of the wished error.
-const AIM: f64 = 0.75;
+/// The largest error that a forecast was found to be short of the true one (.18 of .31, `tests/verification/planner.rs`):
+/// the plan aims at this part of the wished error.
+const AIM: f64 = 0.6;
 /// The fewest particles that the plan chooses.
 const FEWEST: f64 = 1000.0;
 /// Counts of particles differ from what was asked by the rounding of chambers and gases.

@@ -1,6 +1,6 @@
 //! The choice in words: what was chosen, what it is worth and costs, what the next plans would be, and why.
 
-use super::{Chooser, NEXT, Possible};
+use super::{AIM, Chooser, NEXT, Possible};
 use crate::plan::forecast::{Cause, ColumnForecast, worst};
 use crate::plan::render::{grouped, significant};
 use crate::plan::{Plan, Reason};
@@ -155,12 +155,15 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
     let cheaper = chooser.cheapest(NEXT * chosen.error).filter(|plan| plan.cost.seconds < 0.8 * chosen.cost.seconds);
     let better = chooser.cheapest(chosen.error / NEXT).filter(|plan| plan.error < chosen.error);
     let mut reasons = Vec::new();
-    let asked = if wish.accuracy.is_some() {
-        "the cheapest plan that reaches it, aimed at three quarters of it"
-    } else {
-        "the most accurate plan within it"
+    let aim = percent(AIM);
+    let asked = match wish.accuracy {
+        Some(accuracy) if chosen.error <= AIM * accuracy => format!("the cheapest plan that reaches {aim} of it"),
+        Some(_) => {
+            format!("the cheapest plan that reaches it; none reaches {aim} of it, as a forecast needs to be sure")
+        }
+        None => "the most accurate plan within it".to_owned(),
     };
-    reasons.push(reason("wish", wish_words(wish), asked.into()));
+    reasons.push(reason("wish", wish_words(wish), asked));
     let column = worst(&chosen.columns);
     let of = column.map_or_else(
         || "no column can be wrong".to_string(),
@@ -184,7 +187,7 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
         "an integration of ordinary equations; no device".into()
     } else {
         format!(
-            "{:.2e} particle-steps at {} million a second{}; an estimate, good to a factor of two",
+            "{:.2e} particle-steps at {} million a second{}; a rough estimate",
             chosen.cost.particle_steps,
             significant(1e-6 * chooser.rate),
             if wish.device_rate.is_some() { "" } else { " (lavapipe, two cores)" }

@@ -43,8 +43,6 @@ pub const ROUNDS: u32 = 2;
 pub struct Measured {
     pub scene: &'static str,
     pub method: Method,
-    /// Of the plan: those at the end of the scene.
-    pub particles: u64,
     /// x of the plan's step, without collisions 0.
     pub step: f64,
     pub steps: u64,
@@ -131,7 +129,6 @@ pub fn measure(
     Ok(Measured {
         scene: scene.name,
         method,
-        particles,
         step: if collides { STEP } else { 0.0 },
         steps: outcome.steps,
         particle_steps: outcome.particle_steps,

@@ -10,80 +10,36 @@ use super::{Extent, Range, Trials, model_with};
 /// Rows that a discharge needs: two of the start, and a window.
 const LEAST_ROWS: usize = 4;
 
+const QUICK: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[2000], &[0.12], &[0.3], &[8]),
+    Range::new(Method::Cell, &[2000], &[0.12], &[], &[]),
+    Range::new(Method::HardSphere, &[2000], &[0.03], &[0.3], &[2]),
+    Range::new(Method::None, &[2000], &[], &[], &[]),
+];
+const NORMAL: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[4000, 16_000, 64_000], &[0.05, 0.12, 0.3], &[0.1, 0.3, 0.6], &[1, 8]),
+    Range::new(Method::Cell, &[4000, 16_000, 64_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HardSphere, &[4000, 16_000, 64_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
+    Range::new(Method::None, &[4000, 16_000, 64_000], &[], &[], &[]),
+];
+const FULL: &[Range<'static>] = &[
+    Range::new(
+        Method::ClosestApproach,
+        &[16_000, 64_000, 256_000, 1_024_000],
+        &[0.05, 0.12, 0.3],
+        &[0.1, 0.3, 0.6],
+        &[1, 2, 4, 8],
+    ),
+    Range::new(Method::Cell, &[16_000, 64_000, 256_000, 1_024_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HardSphere, &[16_000, 64_000, 256_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
+    Range::new(Method::None, &[16_000, 64_000, 256_000, 1_024_000], &[], &[], &[]),
+];
+
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
     let ranges: &[Range] = match extent {
-        Extent::Quick => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[2000],
-                occupancies: &[0.12],
-                steps: &[0.3],
-                rounds: &[8],
-            },
-            Range { method: Method::Cell, particles: &[2000], occupancies: &[0.12], steps: &[], rounds: &[] },
-            Range { method: Method::HardSphere, particles: &[2000], occupancies: &[0.03], steps: &[0.3], rounds: &[2] },
-            Range { method: Method::None, particles: &[2000], occupancies: &[], steps: &[], rounds: &[] },
-        ],
-        Extent::Normal => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[4000, 16_000, 64_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.1, 0.3, 0.6],
-                rounds: &[1, 8],
-            },
-            Range {
-                method: Method::Cell,
-                particles: &[4000, 16_000, 64_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3, 1.0, 2.0],
-                rounds: &[],
-            },
-            Range {
-                method: Method::HardSphere,
-                particles: &[4000, 16_000, 64_000],
-                occupancies: &[0.01, 0.03, 0.1],
-                steps: &[0.3],
-                rounds: &[8],
-            },
-            Range {
-                method: Method::None,
-                particles: &[4000, 16_000, 64_000],
-                occupancies: &[],
-                steps: &[],
-                rounds: &[],
-            },
-        ],
-        Extent::Full => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[16_000, 64_000, 256_000, 1_024_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.1, 0.3, 0.6],
-                rounds: &[1, 2, 4, 8],
-            },
-            Range {
-                method: Method::Cell,
-                particles: &[16_000, 64_000, 256_000, 1_024_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3, 1.0, 2.0],
-                rounds: &[],
-            },
-            Range {
-                method: Method::HardSphere,
-                particles: &[16_000, 64_000, 256_000],
-                occupancies: &[0.01, 0.03, 0.1],
-                steps: &[0.1, 0.3],
-                rounds: &[2, 8],
-            },
-            Range {
-                method: Method::None,
-                particles: &[16_000, 64_000, 256_000, 1_024_000],
-                occupancies: &[],
-                steps: &[],
-                rounds: &[],
-            },
-        ],
+        Extent::Quick => QUICK,
+        Extent::Normal => NORMAL,
+        Extent::Full => FULL,
     };
     let settings: Vec<_> = ranges.iter().flat_map(Range::settings).collect();
     let scene = emptying_scene()?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::output::{Group, Mark, OutputError, PALETTE, Scatter, Shape, grouped, scatter_chart};
+use crate::output::{Group, Mark, OutputError, PALETTE, Scatter, Shape, figure, grouped, scatter_chart};
 use crate::scene::Method;
 use crate::study::report::table;
 
@@ -192,11 +192,11 @@ impl Chart<'_> {
         let head = ["seconds", "error", "std error", "method", "particles", "f", "x", "rounds", "lost", "warnings"];
         let row = |&index: &usize| {
             let point = &self.points[index];
-            let number = |value: f64| if value > 0.0 { figure(value) } else { "-".to_owned() };
+            let number = |value: f64| if value > 0.0 { figure(value, 3) } else { "-".to_owned() };
             vec![
-                point.cost().map_or_else(|| "-".to_owned(), |[median, ..]| figure(median)),
-                point.error().map_or_else(|| "-".to_owned(), figure),
-                point.standard_error().map_or_else(|| "-".to_owned(), figure),
+                point.cost().map_or_else(|| "-".to_owned(), |[median, ..]| figure(median, 3)),
+                point.error().map_or_else(|| "-".to_owned(), |error| figure(error, 3)),
+                point.standard_error().map_or_else(|| "-".to_owned(), |error| figure(error, 3)),
                 point.method.name().to_owned() + if point.unwished { " (default)" } else { "" },
                 grouped(point.particles),
                 number(point.occupancy),
@@ -239,7 +239,7 @@ impl Chart<'_> {
         let row = |&level: &f64| {
             let cell = |method: &Method| {
                 let place = self.cheapest(level, Some(*method)).and_then(Point::place);
-                place.map_or_else(|| "-".to_owned(), |[seconds, _]| figure(seconds))
+                place.map_or_else(|| "-".to_owned(), |[seconds, _]| figure(seconds, 3))
             };
             std::iter::once(short(level)).chain(methods.iter().map(cell)).collect()
         };
@@ -266,7 +266,7 @@ impl Chart<'_> {
                 (Some([other, _]), Some([own, _])) => format!(
                     "; `{}` takes {} times as long for it",
                     next.map_or("", |point| point.method.name()),
-                    figure(other / own)
+                    figure(other / own, 3)
                 ),
                 _ => "; no other method gets there within these ranges".to_owned(),
             };
@@ -284,14 +284,14 @@ impl Chart<'_> {
                     lines.push(format!(
                         "the least error of `{}` is {}, by {}",
                         method.name(),
-                        figure(error),
+                        figure(error, 3),
                         described(point)
                     ));
                 }
                 (None, Some((point, error))) => lines.push(format!(
                     "all settings of `{}` are beyond its limits; their least error is {}, by {}",
                     method.name(),
-                    figure(error),
+                    figure(error, 3),
                     described(point)
                 )),
                 (None, None) => {}
@@ -327,17 +327,17 @@ impl Chart<'_> {
             .and_then(|other| Some((other, other.place()?[0])))
             .map_or_else(
                 || "nothing as good is cheaper".to_owned(),
-                |(other, own)| format!("{} does it in {} of the time", described(other), figure(own / seconds)),
+                |(other, own)| format!("{} does it in {} of the time", described(other), figure(own / seconds, 3)),
             );
         let taken = self.unwished_particles.map_or_else(String::new, |particles| {
             format!(", where a plan without any wish takes {} particles, more than is run here", grouped(particles))
         });
-        let bar = point.standard_error().map_or_else(String::new, |bar| format!(" +- {}", figure(bar)));
+        let bar = point.standard_error().map_or_else(String::new, |bar| format!(" +- {}", figure(bar, 3)));
         Some(format!(
             "the default is {}{taken}: error {}{bar} in {} s; {share}",
             described(point),
-            figure(error),
-            figure(seconds)
+            figure(error, 3),
+            figure(seconds, 3)
         ))
     }
 }
@@ -349,10 +349,10 @@ fn described(point: &Point) -> String {
         words.push(format!("N = {}", grouped(point.particles)));
     }
     if point.occupancy > 0.0 {
-        words.push(format!("f = {}", figure(point.occupancy)));
+        words.push(format!("f = {}", figure(point.occupancy, 3)));
     }
     if point.step > 0.0 {
-        words.push(format!("x = {}", figure(point.step)));
+        words.push(format!("x = {}", figure(point.step, 3)));
     }
     if point.rounds > 0 {
         words.push(format!("R = {}", point.rounds));
@@ -385,17 +385,4 @@ fn round_numbers(least: f64, most: f64) -> Vec<f64> {
 fn short(value: f64) -> String {
     let decimals = (-value.log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{value:.decimals$}")
-}
-
-/// Three significant digits.
-fn figure(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-4..1e5).contains(&size) {
-        let decimals = (2 - size.log10().floor() as i32).clamp(0, 6) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.2e}")
-    }
 }

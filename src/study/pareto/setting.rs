@@ -48,7 +48,17 @@ pub struct Range<'a> {
     pub rounds: &'a [u32],
 }
 
-impl Range<'_> {
+impl<'a> Range<'a> {
+    pub const fn new(
+        method: Method,
+        particles: &'a [u64],
+        occupancies: &'a [f64],
+        steps: &'a [f64],
+        rounds: &'a [u32],
+    ) -> Range<'a> {
+        Range { method, particles, occupancies, steps, rounds }
+    }
+
     /// An empty list leaves the plan to decide.
     pub fn settings(&self) -> Vec<Setting> {
         fn or_plan<T: Copy>(list: &[T]) -> Vec<Option<T>> {

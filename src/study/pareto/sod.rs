@@ -6,102 +6,40 @@ use crate::study::verify::tube::SOD;
 
 use super::{Extent, Range, Trials, model_with};
 
+const QUICK: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[1000, 4000], &[0.12], &[0.3], &[1, 8]),
+    Range::new(Method::Cell, &[1000, 4000], &[0.12], &[], &[]),
+    Range::new(Method::HardSphere, &[4000], &[0.1], &[0.3], &[2]),
+    Range::new(Method::None, &[4000], &[], &[], &[]),
+];
+/// The most particles only where the others say that it matters: they take most of the time.
+const NORMAL: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[2500, 10_000], &[0.05, 0.12, 0.3], &[0.1, 0.3, 0.6], &[1, 2, 8]),
+    Range::new(Method::ClosestApproach, &[40_000], &[0.05, 0.12, 0.3], &[0.3], &[2, 8]),
+    Range::new(Method::Cell, &[2500, 10_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::Cell, &[40_000], &[0.05, 0.12, 0.3], &[0.3, 2.0], &[]),
+    Range::new(Method::HardSphere, &[2500, 10_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
+    Range::new(Method::HardSphere, &[40_000], &[0.01, 0.03], &[0.3], &[8]),
+    Range::new(Method::None, &[2500, 10_000, 40_000], &[], &[], &[]),
+];
+const FULL: &[Range<'static>] = &[
+    Range::new(
+        Method::ClosestApproach,
+        &[10_000, 40_000, 160_000, 640_000],
+        &[0.05, 0.12, 0.3],
+        &[0.1, 0.3, 0.6],
+        &[1, 2, 4, 8],
+    ),
+    Range::new(Method::Cell, &[10_000, 40_000, 160_000, 640_000, 2_560_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HardSphere, &[10_000, 40_000, 160_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
+    Range::new(Method::None, &[10_000, 40_000, 160_000, 640_000], &[], &[], &[]),
+];
+
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
     let ranges: &[Range] = match extent {
-        Extent::Quick => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[1000, 4000],
-                occupancies: &[0.12],
-                steps: &[0.3],
-                rounds: &[1, 8],
-            },
-            Range { method: Method::Cell, particles: &[1000, 4000], occupancies: &[0.12], steps: &[], rounds: &[] },
-            Range { method: Method::HardSphere, particles: &[4000], occupancies: &[0.1], steps: &[0.3], rounds: &[2] },
-            Range { method: Method::None, particles: &[4000], occupancies: &[], steps: &[], rounds: &[] },
-        ],
-        // The most particles only where the others say that it matters: they take most of the time.
-        Extent::Normal => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[2500, 10_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.1, 0.3, 0.6],
-                rounds: &[1, 2, 8],
-            },
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[40_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3],
-                rounds: &[2, 8],
-            },
-            Range {
-                method: Method::Cell,
-                particles: &[2500, 10_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3, 1.0, 2.0],
-                rounds: &[],
-            },
-            Range {
-                method: Method::Cell,
-                particles: &[40_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3, 2.0],
-                rounds: &[],
-            },
-            Range {
-                method: Method::HardSphere,
-                particles: &[2500, 10_000],
-                occupancies: &[0.01, 0.03, 0.1],
-                steps: &[0.1, 0.3],
-                rounds: &[2, 8],
-            },
-            Range {
-                method: Method::HardSphere,
-                particles: &[40_000],
-                occupancies: &[0.01, 0.03],
-                steps: &[0.3],
-                rounds: &[8],
-            },
-            Range {
-                method: Method::None,
-                particles: &[2500, 10_000, 40_000],
-                occupancies: &[],
-                steps: &[],
-                rounds: &[],
-            },
-        ],
-        Extent::Full => &[
-            Range {
-                method: Method::ClosestApproach,
-                particles: &[10_000, 40_000, 160_000, 640_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.1, 0.3, 0.6],
-                rounds: &[1, 2, 4, 8],
-            },
-            Range {
-                method: Method::Cell,
-                particles: &[10_000, 40_000, 160_000, 640_000, 2_560_000],
-                occupancies: &[0.05, 0.12, 0.3],
-                steps: &[0.3, 1.0, 2.0],
-                rounds: &[],
-            },
-            Range {
-                method: Method::HardSphere,
-                particles: &[10_000, 40_000, 160_000],
-                occupancies: &[0.01, 0.03, 0.1],
-                steps: &[0.1, 0.3],
-                rounds: &[2, 8],
-            },
-            Range {
-                method: Method::None,
-                particles: &[10_000, 40_000, 160_000, 640_000],
-                occupancies: &[],
-                steps: &[],
-                rounds: &[],
-            },
-        ],
+        Extent::Quick => QUICK,
+        Extent::Normal => NORMAL,
+        Extent::Full => FULL,
     };
     let settings: Vec<_> = ranges.iter().flat_map(Range::settings).collect();
     Ok(Trials {

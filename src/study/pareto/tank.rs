@@ -12,96 +12,37 @@ const WINDOW: f64 = 1e-3;
 /// Times per window at which the reference is solved.
 const FINE: usize = 20;
 
+const QUICK: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[1000], &[0.12], &[0.3], &[8]),
+    Range::new(Method::Cell, &[1000], &[0.12], &[], &[]),
+    Range::new(Method::HardSphere, &[1000], &[0.03], &[0.3], &[2]),
+    Range::new(Method::None, &[1000], &[], &[], &[]),
+];
+const NORMAL: &[Range<'static>] = &[
+    Range::new(Method::ClosestApproach, &[1000, 2000, 4000], &[0.05, 0.12, 0.3], &[0.3, 0.6], &[1, 8]),
+    Range::new(Method::Cell, &[1000, 2000, 4000, 8000], &[0.05, 0.12, 0.3], &[0.3, 1.0], &[]),
+    Range::new(Method::HardSphere, &[1000, 2000, 4000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
+    Range::new(Method::None, &[1000, 2000, 4000, 8000], &[], &[], &[]),
+];
+const FULL: &[Range<'static>] = &[
+    Range::new(
+        Method::ClosestApproach,
+        &[4000, 16_000, 64_000, 256_000],
+        &[0.05, 0.12, 0.3],
+        &[0.1, 0.3, 0.6],
+        &[1, 2, 8],
+    ),
+    Range::new(Method::Cell, &[4000, 16_000, 64_000, 256_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HardSphere, &[4000, 16_000, 64_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
+    Range::new(Method::None, &[4000, 16_000, 64_000, 256_000], &[], &[], &[]),
+];
+
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
     // s.
     let (end, ranges): (f64, &[Range]) = match extent {
-        Extent::Quick => (
-            0.003,
-            &[
-                Range {
-                    method: Method::ClosestApproach,
-                    particles: &[1000],
-                    occupancies: &[0.12],
-                    steps: &[0.3],
-                    rounds: &[8],
-                },
-                Range { method: Method::Cell, particles: &[1000], occupancies: &[0.12], steps: &[], rounds: &[] },
-                Range {
-                    method: Method::HardSphere,
-                    particles: &[1000],
-                    occupancies: &[0.03],
-                    steps: &[0.3],
-                    rounds: &[2],
-                },
-                Range { method: Method::None, particles: &[1000], occupancies: &[], steps: &[], rounds: &[] },
-            ],
-        ),
-        Extent::Normal => (
-            0.02,
-            &[
-                Range {
-                    method: Method::ClosestApproach,
-                    particles: &[1000, 2000, 4000],
-                    occupancies: &[0.05, 0.12, 0.3],
-                    steps: &[0.3, 0.6],
-                    rounds: &[1, 8],
-                },
-                Range {
-                    method: Method::Cell,
-                    particles: &[1000, 2000, 4000, 8000],
-                    occupancies: &[0.05, 0.12, 0.3],
-                    steps: &[0.3, 1.0],
-                    rounds: &[],
-                },
-                Range {
-                    method: Method::HardSphere,
-                    particles: &[1000, 2000, 4000],
-                    occupancies: &[0.01, 0.03, 0.1],
-                    steps: &[0.3],
-                    rounds: &[8],
-                },
-                Range {
-                    method: Method::None,
-                    particles: &[1000, 2000, 4000, 8000],
-                    occupancies: &[],
-                    steps: &[],
-                    rounds: &[],
-                },
-            ],
-        ),
-        Extent::Full => (
-            0.1,
-            &[
-                Range {
-                    method: Method::ClosestApproach,
-                    particles: &[4000, 16_000, 64_000, 256_000],
-                    occupancies: &[0.05, 0.12, 0.3],
-                    steps: &[0.1, 0.3, 0.6],
-                    rounds: &[1, 2, 8],
-                },
-                Range {
-                    method: Method::Cell,
-                    particles: &[4000, 16_000, 64_000, 256_000],
-                    occupancies: &[0.05, 0.12, 0.3],
-                    steps: &[0.3, 1.0, 2.0],
-                    rounds: &[],
-                },
-                Range {
-                    method: Method::HardSphere,
-                    particles: &[4000, 16_000, 64_000],
-                    occupancies: &[0.01, 0.03, 0.1],
-                    steps: &[0.3],
-                    rounds: &[8],
-                },
-                Range {
-                    method: Method::None,
-                    particles: &[4000, 16_000, 64_000, 256_000],
-                    occupancies: &[],
-                    steps: &[],
-                    rounds: &[],
-                },
-            ],
-        ),
+        Extent::Quick => (0.003, QUICK),
+        Extent::Normal => (0.02, NORMAL),
+        Extent::Full => (0.1, FULL),
     };
     let mut settings: Vec<Setting> = ranges.iter().flat_map(Range::settings).collect();
     let most_particles = settings.iter().filter_map(|setting| setting.particles).max().unwrap_or(0);

@@ -140,8 +140,11 @@ impl Point {
 
 /// Of one method along an axis.
 pub struct Found<'a> {
-    /// The last value before the first broken one, and the first broken one with what broke.
+    /// The last value until which all hold.
     pub held: Option<f64>,
+    /// The values before the first broken one that the runs do not tell of.
+    pub unclear: Vec<f64>,
+    /// The first broken one with what broke.
     pub broken: Option<(f64, &'a Check)>,
 }
 
@@ -149,8 +152,10 @@ pub struct Found<'a> {
 pub fn first_broken(points: &[Point], method: Method) -> Found<'_> {
     let own = || points.iter().filter(|point| point.method == method);
     let broken = own().find_map(|point| point.worst().map(|check| (point.value, check)));
-    let until = own().take_while(|point| point.state() != State::Broken);
-    Found { held: until.last().map(|point| point.value), broken }
+    let held = own().take_while(|point| point.state() == State::Holds).last().map(|point| point.value);
+    let whole = own().take_while(|point| point.state() != State::Broken);
+    let unclear = whole.filter(|point| point.state() == State::Unclear).map(|point| point.value).collect();
+    Found { held, unclear, broken }
 }
 
 const COLLIDING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell];
@@ -302,6 +307,7 @@ mod tests {
     fn the_first_that_breaks_is_found_with_the_worst_of_its_quantities() {
         let point = |method, value, checks| Point { method, value, checks };
         let points = [
+            point(Method::Cell, 0.5, vec![check("a", 1.0, 0.0)]),
             point(Method::Cell, 1.0, vec![check("a", 1.0, 0.0), check("b", 1.03, 0.02)]),
             point(Method::None, 1.0, vec![check("a", 1.5, 0.0)]),
             point(Method::Cell, 2.0, vec![check("a", 0.9, 0.0), check("b", 1.3, 0.0)]),
@@ -309,14 +315,15 @@ mod tests {
         ];
         let found = first_broken(&points, Method::Cell);
         assert_eq!(
-            (found.held, found.broken.map(|(value, check)| (value, check.quantity.as_str()))),
-            (Some(1.0), Some((2.0, "b")))
+            (found.held, found.unclear, found.broken.map(|(value, check)| (value, check.quantity.as_str()))),
+            (Some(0.5), vec![1.0], Some((2.0, "b"))),
+            "what is unclear does not hold"
         );
         let none = first_broken(&points, Method::None);
         assert!(none.held.is_none() && none.broken.is_some());
         assert!(first_broken(&points, Method::HardSphere).broken.is_none());
-        assert_eq!(points[0].state(), State::Unclear);
-        assert_eq!(points[3].worst().unwrap().quantity, "a");
+        assert_eq!(points[1].state(), State::Unclear);
+        assert_eq!(points[4].worst().unwrap().quantity, "a");
     }
 
     /// Values run one way, from safe to risky; names are unique; the limits are those of the table.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::output::{MapCell, MapRow, OutputError, map_chart};
+use crate::output::{MapCell, MapRow, OutputError, aligned, map_chart};
 use crate::plan::{LIMITS, significant};
 use crate::scene::Method;
 use crate::study::verify::Check;
@@ -13,43 +13,53 @@ use super::{Axis, Effort, Point, State, first_broken};
 /// An axis and the points found along it.
 pub type Map<'a> = (&'a Axis, Vec<Point>);
 
-pub fn csv(maps: &[Map<'_>]) -> String {
-    let mut text = "axis,method,value,quantity,reference,measured,standard_error,allowed,state,guard\n".to_owned();
+/// Columns of the file of [`csv`].
+const COLUMNS: [&str; 10] =
+    ["axis", "method", "value", "quantity", "reference", "measured", "standard_error", "allowed", "state", "guard"];
+
+/// A row for each quantity of each run.
+///
+/// # Errors
+/// Those of the writer, of which none is known.
+pub fn csv(maps: &[Map<'_>]) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
     for (axis, points) in maps {
         for point in points {
             let guard = axis.limit(point.method).map_or_else(String::new, |bound| bound.words());
             for check in &point.checks {
                 let Check { quantity, reference, measured, error, tolerance } = check;
-                let _ = writeln!(
-                    text,
-                    "{},{},{},\"{quantity}\",{reference},{measured:e},{error:e},{tolerance:e},{},{guard}",
+                writer.write_record([
                     axis.name,
                     point.method.name(),
-                    point.value,
-                    State::of(check).word().to_lowercase(),
-                );
+                    &point.value.to_string(),
+                    quantity,
+                    &reference.to_string(),
+                    &format!("{measured:e}"),
+                    &format!("{error:e}"),
+                    &format!("{tolerance:e}"),
+                    &State::of(check).word().to_lowercase(),
+                    &guard,
+                ])?;
             }
         }
     }
-    text
+    let bytes = writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// The points of an axis in such a file; none where one of its runs is missing.
 pub fn points_of(csv: &str, axis: &Axis, effort: Effort) -> Option<Vec<Point>> {
     let mut points: Vec<Point> = Vec::new();
-    for line in csv.lines().skip(1) {
-        let (before, after) = line.split_once(",\"")?;
-        let (quantity, figures) = after.split_once("\",")?;
-        let mut names = before.split(',');
-        if names.next()? != axis.name {
+    for record in csv::Reader::from_reader(csv.as_bytes()).records() {
+        let record = record.ok()?;
+        if record.get(0)? != axis.name {
             continue;
         }
-        let method = names.next()?;
-        let method = axis.methods.iter().copied().find(|known| known.name() == method)?;
-        let value: f64 = names.next()?.parse().ok()?;
-        let figures: Vec<f64> = figures.split(',').take(4).map(str::parse).collect::<Result<_, _>>().ok()?;
-        let [reference, measured, error, tolerance] = figures[..] else { return None };
-        let check = Check::of(quantity, reference, (measured, error), tolerance);
+        let method = axis.methods.iter().copied().find(|known| Some(known.name()) == record.get(1))?;
+        let figure = |column: usize| record.get(column)?.parse::<f64>().ok();
+        let value = figure(2)?;
+        let check = Check::of(record.get(3)?, figure(4)?, (figure(5)?, figure(6)?), figure(7)?);
         match points.last_mut() {
             Some(last) if (last.method, last.value) == (method, value) => last.checks.push(check),
             _ => points.push(Point { method, value, checks: vec![check] }),
@@ -92,15 +102,7 @@ pub fn text((axis, points): &Map<'_>) -> String {
     table.extend(
         rows.into_iter().map(|(method, cells)| std::iter::once(method.name().to_owned()).chain(cells).collect()),
     );
-    let columns = table[0].len();
-    let widths: Vec<usize> =
-        (0..columns).map(|k| table.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
-    let mut text = String::new();
-    for row in &table {
-        let line: String = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}  ")).collect();
-        text += line.trim_end();
-        text.push('\n');
-    }
+    let mut text = aligned(&table);
     for &method in axis.methods {
         if let Some(sentence) = verdict(axis, points, method) {
             let _ = writeln!(text, "  {}: {sentence}", method.name());
@@ -113,7 +115,11 @@ pub fn text((axis, points): &Map<'_>) -> String {
 fn verdict(axis: &Axis, points: &[Point], method: Method) -> Option<String> {
     points.iter().find(|point| point.method == method)?;
     let found = first_broken(points, method);
-    let held = found.held.map_or_else(|| "nowhere held".to_owned(), |value| format!("holds to {value}"));
+    let mut held = found.held.map_or_else(|| "nowhere known to hold".to_owned(), |value| format!("holds to {value}"));
+    if !found.unclear.is_empty() {
+        let values: Vec<String> = found.unclear.iter().map(f64::to_string).collect();
+        let _ = write!(held, "; unclear at {}", values.join(", "));
+    }
     let broken = found.broken.map_or_else(String::new, |(value, check)| {
         if check.measured.is_nan() {
             return format!("; at {value} {}", check.quantity);
@@ -224,29 +230,37 @@ mod tests {
     #[test]
     fn maps_tell_what_broke() {
         let axis = &AXES[0];
-        let check = |measured| Check::of("pressure, p/nkT", 1.0, (measured, 0.001), 0.01);
+        let check = |measured| Check::of("pressure, \"p\"/nkT", 1.0, (measured, 0.001), 0.01);
         let point = |value, measured| Point { method: Method::Cell, value, checks: vec![check(measured)] };
         let map = (axis, vec![point(0.5, 1.001), point(2.0, 1.032)]);
         let text = text(&map);
         for part in [
-            "time-step  0.5    2",
+            "time-step    0.5              2",
             "cell       holds  pressure x3.2",
-            "holds to 0.5; at 2 pressure, p/nkT is 1.032",
+            "holds to 0.5; at 2 pressure, \"p\"/nkT is 1.032",
             "(guard: at most 2)",
         ] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
         let maps = [map];
-        let csv = csv(&maps);
-        assert!(csv.contains("time-step,cell,2,\"pressure, p/nkT\",1,1.032e0,1e-3,1e-2,broken,at most 2\n"), "{csv}");
-        let quick = format!("{csv}time-step,cell,0.2,\"a\",0,0,0,1,holds,\n");
-        assert!(points_of(&quick, axis, Effort::Quick).is_none(), "some runs are missing");
-        let of =
-            |method: &str, value| format!("time-step,{method},{value},\"pressure, p/nkT\",1,1.5e0,1e-3,1e-2,broken,\n");
-        let whole: String = axis.methods.iter().flat_map(|m| [of(m.name(), 0.2), of(m.name(), 2.0)]).collect();
-        let kept = points_of(&format!("head\n{whole}"), axis, Effort::Quick).unwrap();
+        let csv = csv(&maps).unwrap();
+        assert!(
+            csv.contains("time-step,cell,2,\"pressure, \"\"p\"\"/nkT\",1,1.032e0,1e-3,1e-2,broken,at most 2\n"),
+            "{csv}"
+        );
+        assert!(points_of(&csv, axis, Effort::Quick).is_none(), "some runs are missing");
+        let whole: Vec<Point> = axis
+            .methods
+            .iter()
+            .flat_map(|&method| {
+                [0.2, 2.0].map(|value| Point { method, value, checks: vec![check(1.5), check(f64::NAN)] })
+            })
+            .collect();
+        let file = super::csv(&[(axis, whole), (&AXES[1], vec![point(8.0, 1.0)])]).unwrap();
+        let kept = points_of(&file, axis, Effort::Quick).unwrap();
         assert_eq!((kept.len(), kept[5].method, kept[5].value), (6, Method::Cell, 2.0));
-        assert_eq!(kept[0].checks, [Check::of("pressure, p/nkT", 1.0, (1.5, 0.001), 0.01)]);
+        assert_eq!(kept[0].checks[0], check(1.5));
+        assert!(kept[5].checks[1].measured.is_nan() && kept[5].checks[1].quantity == check(0.0).quantity);
         let page = page(&maps, "corpuscle stability time-step", "a device");
         for part in [
             "| method | 0.5 | 2 |",

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::output::figure;
+
 use super::{Case, Check, Curves, Findings, Verdict};
 
 /// Columns of the table: case, quantity, reference, measured, standard error, tolerance, verdict.
@@ -52,29 +54,16 @@ pub fn file(chart: &Curves) -> String {
 }
 
 fn cells(case: &Case, check: &Check) -> [String; 7] {
-    let error = if check.error == 0.0 { "exact".to_owned() } else { figure(check.error) };
+    let error = if check.error == 0.0 { "exact".to_owned() } else { figure(check.error, 4) };
     [
         case.name.to_owned(),
         check.quantity.clone(),
-        figure(check.reference),
-        figure(check.measured),
+        figure(check.reference, 4),
+        figure(check.measured, 4),
         error,
-        figure(check.tolerance),
+        figure(check.tolerance, 4),
         check.verdict().word().to_owned(),
     ]
-}
-
-/// Four significant digits.
-fn figure(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e4).contains(&size) {
-        let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.2e}")
-    }
 }
 
 fn line(cells: &[String; 7]) -> String {
@@ -93,15 +82,6 @@ fn line(cells: &[String; 7]) -> String {
 mod tests {
     use super::super::CASES;
     use super::*;
-
-    #[test]
-    fn figures_have_four_digits() {
-        for (value, text) in
-            [(0.0, "0"), (1.0, "1.000"), (0.00512, "0.005120"), (293.15, "293.1"), (-3.2e-7, "-3.20e-7")]
-        {
-            assert_eq!(figure(value), text);
-        }
-    }
 
     /// The page has a row for each check and says how many pass; bars in a quantity do not end its cell.
     #[test]

@@ -3,16 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
-/// Exit code, standard output and standard error.
-fn outcome(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = assert_cmd::cargo::cargo_bin_cmd!("corpuscle");
-    command.current_dir(ROOT).env("NODEVICE_SELECT", "1").env("NO_COLOR", "1").args(arguments);
-    let output = command.output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-}
+use super::outcome;
 
 fn sweep(out: &Path, more: &[&str]) -> (i32, String, String) {
     let basic = ["sweep", "scenes/corner.toml", "--particles", "2000", "--out", out.to_str().unwrap()];

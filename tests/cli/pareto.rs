@@ -4,16 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
-/// Exit code, standard output and standard error.
-fn outcome(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = assert_cmd::cargo::cargo_bin_cmd!("corpuscle");
-    command.current_dir(ROOT).env("NODEVICE_SELECT", "1").env("NO_COLOR", "1").args(arguments);
-    let output = command.output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-}
+use super::outcome;
 
 fn charted(case: &str, out: &Path, more: &[&str]) -> String {
     let basic = ["pareto", case, "--quick", "--out", out.to_str().unwrap()];
@@ -154,7 +145,7 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
 /// of closest approach at 40,000 particles is .0589, .0533 and .0301, of closest approach at 10,000 .0420, each +-5 %;
 /// `cell` is as good as closest approach.
 #[test]
-#[ignore = "minutes: cargo test --release --test pareto -- --ignored"]
+#[ignore = "minutes: cargo test --release --test cli pareto:: -- --ignored"]
 fn the_chart_of_the_shock_tube_has_the_order_of_the_specification() {
     let folder = tempfile::tempdir().unwrap();
     let (code, _, err) = outcome(&["pareto", "sod", "--out", folder.path().to_str().unwrap()]);
