@@ -95,6 +95,9 @@ pub enum CliError {
     #[error("--repeat with the method `control-volume`: it draws nothing, so that all seeds give the same")]
     #[diagnostic(help("leave out --repeat, or ask for particles with another `method` in [model]"))]
     NothingToRepeat,
+    #[error("--repeat of a scene with `switch`: each seed would have other rows")]
+    #[diagnostic(help("leave out --repeat, or `switch` in [model]"))]
+    RepeatedSwitch,
     #[error("the method `control-volume` has no steps of particles to measure")]
     #[diagnostic(help("leave it out of --methods"))]
     NothingToBench,
@@ -175,6 +178,7 @@ impl CliError {
             | CliError::UnknownVerb { .. }
             | CliError::MethodOfCase { .. }
             | CliError::NothingToRepeat
+            | CliError::RepeatedSwitch
             | CliError::NothingToBench
             | CliError::SeedsBeyond { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,

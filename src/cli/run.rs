@@ -23,7 +23,9 @@ use crate::output::{
 };
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
 use crate::scene::{Method, to_toml};
-use crate::simulation::{Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits};
+use crate::simulation::{
+    Continued, Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits,
+};
 
 use super::CliError;
 use super::arguments::RunArguments;
@@ -181,8 +183,9 @@ impl Job<'_> {
         drawn?;
         recorder.finish(&outcome)?;
         timing::of(comm, &outcome, set_up)?.write(folder.path())?;
-        if outcome.time >= model.plan.end_time {
-            folder.end(&format!("{}\n{}{}", outcome.audit.render(), totals(&outcome), warned(&outcome)))?;
+        if outcome.continued.is_some() || outcome.time >= model.plan.end_time {
+            let account = [outcome.audit.render(), continued(&outcome)].concat();
+            folder.end(&format!("{account}\n{}{}", totals(&outcome), warned(&outcome)))?;
         }
         self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
     }
@@ -229,7 +232,8 @@ impl Job<'_> {
             ))?;
         }
         say(&format!("{}\n", folder.path().display()))?;
-        let failures = outcome.audit.verdict(&limits);
+        let mut failures = outcome.audit.verdict(&limits);
+        failures.extend(outcome.continued.iter().flat_map(|continued| continued.audit.verdict(&limits)));
         if !failures.is_empty() {
             return Err(CliError::Audit { failures });
         }
@@ -281,6 +285,19 @@ fn record(device: &Device) -> AdapterRecord {
     }
 }
 
+/// The account of what a control volume did after the particles; nothing of a run that stayed one of particles.
+fn continued(outcome: &Outcome) -> String {
+    let of = |continued: &Continued| {
+        let [from, until] = [outcome.time, continued.until].map(|time| 1e3 * time);
+        format!(
+            "\nfrom {from:.4} ms to {until:.4} ms as a control volume: {}\n{}",
+            continued.why,
+            continued.audit.render()
+        )
+    };
+    outcome.continued.as_ref().map_or_else(String::new, of)
+}
+
 /// What the whole run has done, without wall times.
 fn totals(outcome: &Outcome) -> String {
     let [shortest, longest] = outcome.step_range.map(|step| 1e6 * step);
@@ -300,7 +317,7 @@ fn warned(outcome: &Outcome) -> String {
 
 /// The audit, the phase table and the totals.
 fn summary(outcome: &Outcome) -> String {
-    let mut text = format!("\n{}\n", outcome.audit.render());
+    let mut text = format!("\n{}{}\n", outcome.audit.render(), continued(outcome));
     if outcome.phases.rows.is_empty() {
         text += "This device does not time its phases.\n";
     } else {

@@ -83,6 +83,17 @@ pub struct Reservoir {
     pub temperature: f64,
 }
 
+/// Where an integration starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beginning {
+    /// s.
+    pub time: f64,
+    /// Moles by gas and internal energy (J) of each chamber.
+    pub chambers: Vec<(Vec<f64>, f64)>,
+    /// Of each vent that opens at a pressure: whether it has.
+    pub open: Vec<bool>,
+}
+
 /// A chamber at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
@@ -125,20 +136,29 @@ impl ControlVolume {
 
     /// As [`ControlVolume::solve`], and what has left until then.
     pub fn solve_with_losses(&self, initial: &[Reservoir], times: &[f64]) -> Vec<(Vec<State>, Lost)> {
-        let mut contents = Vec::with_capacity(initial.len() * self.stride());
-        for reservoir in initial {
-            contents.extend_from_slice(&reservoir.moles);
-            contents.push(thermo::energy(&reservoir.moles, &self.gases, reservoir.temperature));
+        let chamber = |reservoir: &Reservoir| {
+            (reservoir.moles.clone(), thermo::energy(&reservoir.moles, &self.gases, reservoir.temperature))
+        };
+        let chambers = initial.iter().map(chamber).collect();
+        self.solve_from(&Beginning { time: 0.0, chambers, open: vec![false; self.vents.len()] }, times)
+    }
+
+    /// From a later state on; `times` are not before it, and what has left is counted from there.
+    pub fn solve_from(&self, beginning: &Beginning, times: &[f64]) -> Vec<(Vec<State>, Lost)> {
+        let mut contents = Vec::new();
+        for (moles, energy) in &beginning.chambers {
+            contents.extend_from_slice(moles);
+            contents.push(*energy);
         }
         contents.resize(self.lost_at() + self.walls.len() + VENTED * self.vents.len(), 0.0);
         let mut kinks = self.kinks();
         kinks.extend_from_slice(times);
         kinks.sort_by(f64::total_cmp);
         kinks.dedup();
-        let mut kinks = kinks.into_iter().filter(|&t| t > 0.0).peekable();
-        let mut now = 0.0;
+        let mut kinks = kinks.into_iter().filter(|&t| t > beginning.time).peekable();
+        let mut now = beginning.time;
         let mut step = f64::INFINITY;
-        let mut open = vec![false; self.vents.len()];
+        let mut open = beginning.open.clone();
         let mut states = Vec::with_capacity(times.len());
         for &time in times {
             while let Some(end) = kinks.next_if(|&kink| kink <= time) {

@@ -20,7 +20,7 @@ pub mod vent;
 pub mod wall_heat;
 
 pub use control_volume::{
-    Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, Vented, moles_at,
+    Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, Vented, moles_at,
 };
 pub use curve::{
     FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,

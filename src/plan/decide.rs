@@ -13,7 +13,7 @@ use super::warnings::{Decided, warnings};
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::{Species, kinetics};
 use crate::geometry::Grid;
-use crate::scene::{Method, Scene};
+use crate::scene::{Method, Scene, Switch};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
 pub const LADDER_LEVELS: u32 = 12;
@@ -31,6 +31,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let method = method(scene, &mut reasons);
     let species = species(scene, measured, &mut reasons)?;
     motion::check(scene, method)?;
+    switch(scene, &mut reasons)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
@@ -124,6 +125,26 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
     };
     reasons.push(Reason { quantity: "method".into(), value: method.name().into(), why: why.into() });
     method
+}
+
+/// Whether and when the run goes on as a control volume.
+fn switch(scene: &Scene, reasons: &mut Vec<Reason>) -> Result<(), PlanError> {
+    let value = match scene.model.switch {
+        None => return Ok(()),
+        Some(Switch::At(at)) if at >= scene.end_time => {
+            return Err(PlanError::SwitchTime { at, end: scene.end_time });
+        }
+        Some(Switch::At(at)) => format!("at {} ms", significant(1e3 * at)),
+        Some(Switch::WhenUniform { .. }) if scene.probes.is_empty() && scene.surfaces.is_empty() => {
+            return Err(PlanError::SwitchUnseen);
+        }
+        Some(Switch::WhenUniform { lasting }) => {
+            format!("once probes and surfaces have had their chambers' pressures for {} ms", significant(1e3 * lasting))
+        }
+    };
+    let why = "asked for: from there on without particles".into();
+    reasons.push(Reason { quantity: "control volume".into(), value, why });
+    Ok(())
 }
 
 /// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them.

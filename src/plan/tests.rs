@@ -289,6 +289,22 @@ fn what_cannot_be_planned_is_refused() {
         m.chamber_volumes.clear();
     };
     assert_eq!(refused(&nothing), NoGas);
+    let late = |s: &mut Scene, _: &mut Measured| s.model.switch = Some(Switch::At(s.end_time));
+    assert!(matches!(refused(&late), SwitchTime { .. }));
+    let unseen = |s: &mut Scene, _: &mut Measured| {
+        (s.probes, s.surfaces) = (Vec::new(), Vec::new());
+        s.model.switch = Some(Switch::WhenUniform { lasting: 1e-3 });
+    };
+    assert_eq!(refused(&unseen), SwitchUnseen);
+}
+
+/// A switch is told with when.
+#[test]
+fn a_switch_is_among_the_reasons() {
+    let plan = planned(|scene, _| scene.model.switch = Some(Switch::At(0.02))).unwrap();
+    let told = plan.reasons.iter().find(|reason| reason.quantity == "control volume").unwrap();
+    assert_eq!(told.value, "at 20 ms");
+    assert!(planned(|_, _| ()).unwrap().reasons.iter().all(|reason| reason.quantity != "control volume"));
 }
 
 /// A gas with much spin cannot relax in five collisions: Z is raised, not P clipped.

@@ -387,6 +387,10 @@ pub struct RawModel {
     pub rounds: Option<At<i64>>,
     /// Rotational collision number Z; 5 unless given.
     pub collision_number: Option<At<f64>>,
+    /// Go on as a control volume from a time on, or `"when-uniform"`.
+    pub switch: Option<At<RawSwitch>>,
+    /// How long the pressures must have been uniform, with `switch = "when-uniform"`.
+    pub uniform_for: Option<At<f64>>,
     /// Largest predicted error of a pressure in the history, relative, 0.0001 to 0.5: the plan chooses what reaches it
     /// at the least cost.
     pub accuracy: Option<At<f64>>,
@@ -397,6 +401,21 @@ pub struct RawModel {
     /// Million particle-steps per second that the device does (`cargo bench --bench step` prints it), for the predicted
     /// time; 3 unless given, that of lavapipe on two cores.
     pub device_rate: Option<At<f64>>,
+}
+
+/// A time, or what is waited for.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a time, or \"when-uniform\"")]
+pub enum RawSwitch {
+    At(f64),
+    When(When),
+}
+
+/// What is waited for.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub enum When {
+    #[serde(rename = "when-uniform")]
+    Uniform,
 }
 
 /// How much is written.

@@ -3,9 +3,9 @@
 use super::errors::Problem;
 use super::gases::least_collision_number;
 use super::numbers::{bounded, positive, show, small_count};
-use super::raw::{RawGas, RawModel, RawOutput};
+use super::raw::{RawGas, RawModel, RawOutput, RawSwitch, When};
 use super::raw_values::At;
-use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, UnitSystem, Wish};
+use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, Switch, UnitSystem, Wish};
 use super::units::Quantity;
 
 /// Particle ids share a word with flags.
@@ -49,8 +49,45 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
         time_step: raw.time_step.as_ref().map(|t| positive(t, Quantity::Time, units)).transpose()?,
         rounds: raw.rounds.as_ref().map(|n| small_count(n, 1..=8)).transpose()?,
         collision_number: raw.collision_number.as_ref().map(|z| positive(z, Quantity::Pure, units)).transpose()?,
+        switch: switch(raw, units)?,
         wish: wish(raw, units)?,
     })
+}
+
+fn switch(raw: &RawModel, units: UnitSystem) -> Result<Option<Switch>, Problem> {
+    let lasting = raw.uniform_for.as_ref().map(|at| positive(at, Quantity::Time, units)).transpose()?;
+    let Some(asked) = &raw.switch else {
+        return match &raw.uniform_for {
+            Some(at) => Err(Problem::value(&at.span, "`uniform_for`", "only beside `switch = \"when-uniform\"`")),
+            None => Ok(None),
+        };
+    };
+    if raw.accuracy.is_some() || raw.time_budget.is_some() || raw.particle_budget.is_some() {
+        let allowed =
+            "no `switch` beside `accuracy`, `time_budget` or `particle_budget`: what it saves is not predicted yet";
+        return Err(Problem::value(&asked.span, "`switch` with a wish", allowed));
+    }
+    if raw.method == Some(Method::ControlVolume) {
+        let allowed = "no `switch` with the method `control-volume`, which the run would switch to";
+        return Err(Problem::value(&asked.span, "`switch`", allowed));
+    }
+    match (&asked.value, lasting, &raw.uniform_for) {
+        (RawSwitch::At(time), None, _) => {
+            let at = At { value: *time, span: asked.span.clone() };
+            Ok(Some(Switch::At(positive(&at, Quantity::Time, units)?)))
+        }
+        (RawSwitch::When(When::Uniform), Some(lasting), _) => Ok(Some(Switch::WhenUniform { lasting })),
+        (RawSwitch::When(When::Uniform), None, _) => Err(Problem::value(
+            &asked.span,
+            "\"when-uniform\" without `uniform_for`",
+            "both: `uniform_for` says how long the pressures must have been uniform",
+        )),
+        (RawSwitch::At(_), Some(_), at) => Err(Problem::value(
+            at.as_ref().map_or(&asked.span, |at| &at.span),
+            "`uniform_for` with a time to switch at",
+            "only beside `switch = \"when-uniform\"`",
+        )),
+    }
 }
 
 fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {

@@ -359,7 +359,17 @@ pub struct ModelRequest {
     pub rounds: Option<u32>,
     /// Rotational collision number Z (default 5).
     pub collision_number: Option<f64>,
+    pub switch: Option<Switch>,
     pub wish: Wish,
+}
+
+/// When a run of particles goes on as a control volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Switch {
+    /// s.
+    At(f64),
+    /// Once the pressure of all probes and surfaces has been that of their chamber, within the noise, for so long, s.
+    WhenUniform { lasting: f64 },
 }
 
 /// What a run shall be worth, or may cost: the plan then chooses what else is not said.

@@ -209,6 +209,14 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     if let Some(rounds) = model.rounds {
         out.count("rounds", u64::from(rounds));
     }
+    match model.switch {
+        Some(Switch::At(time)) => out.number("switch", time),
+        Some(Switch::WhenUniform { lasting }) => {
+            out.text("switch", "when-uniform");
+            out.number("uniform_for", lasting);
+        }
+        None => {}
+    }
     let wish = &model.wish;
     let millions = wish.device_rate.map(|rate| 1e-6 * rate);
     for (key, value) in [("accuracy", wish.accuracy), ("time_budget", wish.time_budget), ("device_rate", millions)] {

@@ -153,6 +153,12 @@ impl<'a> Conditions<'a> {
         self.state.current = self.see(at_start, 1, [0.0; 2], &[]).0;
     }
 
+    /// Of each vent, whether it has opened.
+    pub fn open_vents(&self) -> Vec<bool> {
+        let seen = &self.state.latest.vents;
+        (0..self.model.scene.vents.len()).map(|index| seen.get(index).is_some_and(|vent| vent.open)).collect()
+    }
+
     /// From now on the walls follow this state.
     pub fn follow(&mut self, seen: Seen) {
         if !self.mirrors() {

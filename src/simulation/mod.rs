@@ -27,6 +27,7 @@ mod run_state;
 mod schedule;
 mod setup;
 mod step;
+mod switch;
 mod tuning;
 mod uniform;
 
@@ -42,7 +43,7 @@ pub use guards::{GuardState, Told};
 pub use interrupt::{Interrupt, Request};
 pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
-pub use observer::{Moment, Observer, Options, Outcome};
+pub use observer::{Continued, Moment, Observer, Options, Outcome};
 pub use reference::reference;
 pub use refine::{RefineError, RefineReport, Refined, refine};
 pub use run::Simulation;
@@ -50,6 +51,7 @@ pub use run_state::{RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;
+pub use switch::{Deviations, SwitchState};
 pub use tuning::HaloOptions;
 pub use uniform::run_uniform;
 

@@ -102,6 +102,17 @@ pub struct Moment<'a> {
     pub stopping: bool,
 }
 
+/// How a run went on as a control volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Continued {
+    /// s.
+    pub until: f64,
+    /// Why from the time of the particles on.
+    pub why: String,
+    /// Of what followed.
+    pub audit: Audit,
+}
+
 /// What a run leaves.
 pub struct Outcome {
     /// By id; on rank 0.
@@ -109,6 +120,8 @@ pub struct Outcome {
     /// The rank that owned each of them.
     pub owners: Vec<u32>,
     pub audit: Audit,
+    /// What a control volume did after the particles.
+    pub continued: Option<Continued>,
     /// What has left its limits, and when, since the start of the run.
     pub warnings: Vec<Told>,
     pub phases: PhaseTable,
@@ -116,7 +129,7 @@ pub struct Outcome {
     pub particle_steps: u64,
     pub collisions: u64,
     pub bounces: u64,
-    /// s; the end time unless the run was stopped earlier.
+    /// s, of the particles; the end time unless the run was stopped earlier, or switched to a control volume.
     pub time: f64,
     /// Intervals that were run again with larger buffers.
     pub repeated: u32,

@@ -1,7 +1,9 @@
 //! The control volume of a run: the same chambers, openings and curves without space. The reference of runs of
 //! particles, and the method `control-volume` itself.
 
-use crate::gas::{Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at};
+use crate::gas::{
+    Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at,
+};
 use crate::plan::{OpeningPlan, Plan};
 use crate::scene::{Method, Opening, Scene};
 
@@ -15,6 +17,13 @@ pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
 /// As [`reference`], and what has left through walls that keep a temperature (those of [`heated_walls`]) and vents.
 pub(super) fn reference_with_losses(model: &Model, times: &[f64]) -> Vec<(Vec<State>, Lost)> {
     volume(model).solve_with_losses(&initial(&model.scene, &model.plan), times)
+}
+
+/// As [`reference_with_losses`], from a later state of particles on: as a control volume knows the gas, in the continuum
+/// unless its particles do not collide.
+pub(super) fn continued_with_losses(model: &Model, beginning: &Beginning, times: &[f64]) -> Vec<(Vec<State>, Lost)> {
+    let collisions = if model.plan.method == Method::None { Collisions::None } else { Collisions::Continuum };
+    ControlVolume { collisions, ..volume(model) }.solve_from(beginning, times)
 }
 
 fn volume(model: &Model) -> ControlVolume {

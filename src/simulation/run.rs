@@ -17,7 +17,7 @@ use crate::subdomain::{GpuFlight, GpuParticle, Place, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::audit::{Account, count_outside};
-use super::averages::Averages;
+use super::averages::{Averages, Row};
 use super::balance::Balance;
 use super::clock::Clock;
 use super::conditions::{Conditions, Seen};
@@ -28,10 +28,12 @@ use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine};
 use super::ladder::{Demand, Ladder};
 use super::model::Model;
-use super::observer::{Moment, Observer, Options, Outcome};
+use super::observer::{Continued, Moment, Observer, Options, Outcome};
 use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::Setup;
+use super::switch::{Switching, beginning};
 use super::tuning::Tuner;
+use super::uniform::continue_uniform;
 
 use reading::all_tallies;
 
@@ -78,6 +80,11 @@ pub struct Simulation<'a> {
     conditions: Conditions<'a>,
     /// With how many particles had left by then.
     seen: VecDeque<(Seen, u64)>,
+    switching: Switching<'a>,
+    /// Whether they say that a control volume does from there on.
+    uniform: VecDeque<bool>,
+    /// No particles from here on.
+    switched: bool,
     submitted: usize,
     spare: Vec<wgpu::Buffer>,
     next_row: f64,
@@ -168,6 +175,9 @@ impl<'a> Simulation<'a> {
             demands: VecDeque::new(),
             conditions: Conditions::new(model),
             seen: VecDeque::new(),
+            switching: Switching::new(model)?,
+            uniform: VecDeque::new(),
+            switched: false,
             submitted: 0,
             spare: Vec::new(),
             next_row: plan.end_time / f64::from(scene.output.rows.max(1)),
@@ -208,6 +218,8 @@ impl<'a> Simulation<'a> {
         simulation.conditions.restore(&state.conditions)?;
         simulation.guards.restore(&state.guards);
         simulation.seen = state.seen.iter().cloned().collect();
+        simulation.uniform = state.uniform.iter().copied().collect();
+        simulation.switching.restore(&state.switch);
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
         simulation.next_snapshot = state.next_snapshot;
@@ -228,6 +240,8 @@ impl<'a> Simulation<'a> {
             conditions: self.conditions.state().clone(),
             guards: self.guards.state().clone(),
             seen: self.seen.iter().cloned().collect(),
+            uniform: self.uniform.iter().copied().collect(),
+            switch: self.switching.state(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
             next_snapshot: self.next_snapshot,
@@ -273,7 +287,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn advance(&mut self, observer: &mut dyn Observer) -> Result<bool, SimulationError> {
-        if self.clock.done() || self.stopped() {
+        if self.clock.done() || self.stopped() || self.switched {
             return Ok(false);
         }
         while self.flying.len() >= AHEAD {
@@ -285,6 +299,12 @@ impl<'a> Simulation<'a> {
             if self.stopping {
                 return Ok(false);
             }
+        }
+        // By what was read until here: as many intervals before the end of the particles as for the step size.
+        self.switched =
+            self.clock.time() >= self.switching.time() || self.uniform.front() == Some(&true) && self.follows();
+        if self.switched {
+            return Ok(false);
         }
         self.submit_next()?;
         if self.snapshot_due() {
@@ -304,15 +324,18 @@ impl<'a> Simulation<'a> {
             self.checkpoint(observer)?;
         }
         let stepping_seconds = self.began.elapsed().as_secs_f64();
-        if self.averages.ready() {
-            self.emit_row(observer)?;
-        }
+        let last = match self.averages.ready() {
+            true => self.emit_row(observer)?,
+            // Its totals go on in a control volume.
+            false => self.averages.row(self.read_until, self.account.state().particles),
+        };
         let at_end = self.measure()?;
         let own = self.subdomain.particles(self.device)?;
         let vessel = self.model.vessel_at(self.clock.time());
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
+        let continued = self.go_on_without_particles(&at_end, &last, observer)?;
         let (particles, owners) = self.gather(own)?.unwrap_or_default();
         Ok(Outcome {
             particles,
@@ -320,6 +343,7 @@ impl<'a> Simulation<'a> {
             traffic: self.exchange.traffic(),
             balance: self.balance.into_records(),
             audit,
+            continued,
             warnings: self.guards.told().to_vec(),
             phases: self.account.phases(),
             steps: self.clock.steps,
@@ -331,6 +355,24 @@ impl<'a> Simulation<'a> {
             step_range: self.account.state().step_range,
             stepping_seconds,
         })
+    }
+
+    /// What a control volume does after the particles, whose state is `at_end`; `last` is the last row of theirs.
+    fn go_on_without_particles(
+        &self,
+        at_end: &Tallies,
+        last: &Row,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Continued>, SimulationError> {
+        let Some(known) = self.switching.known().filter(|_| self.switched) else { return Ok(None) };
+        let (time, until) = (self.clock.time(), self.model.plan.end_time);
+        let rows = self.model.scene.output.rows.max(1);
+        let ends =
+            (1..=rows).map(|row| until * f64::from(row) / f64::from(rows)).filter(|&end| end > time * (1.0 + 1e-9));
+        let beginning = beginning(self.model, at_end, time, self.conditions.open_vents());
+        let ends: Vec<f64> = ends.collect();
+        let audit = continue_uniform(self.model, known, &beginning, &ends, Some(last), observer)?;
+        Ok(Some(Continued { until, why: self.switching.why(time), audit }))
     }
 
     /// A checkpoint, with nothing under way.
@@ -356,6 +398,11 @@ impl<'a> Simulation<'a> {
         self.options.stop_after_steps.is_some_and(|most| self.clock.steps >= most)
     }
 
+    /// Whether the next interval follows what was read.
+    fn follows(&self) -> bool {
+        self.submitted >= AHEAD
+    }
+
     /// Tallies of the particles as they are, of all ranks.
     fn measure(&mut self) -> Result<Tallies, SimulationError> {
         self.subdomain.place_walls(self.device, &self.model.moving.at(&self.model.plan.grid, self.clock.time()));
@@ -375,7 +422,10 @@ impl<'a> Simulation<'a> {
 
     fn submit_next(&mut self) -> Result<(), SimulationError> {
         let plan = &self.model.plan;
-        if self.submitted >= AHEAD
+        if self.follows() {
+            self.uniform.pop_front();
+        }
+        if self.follows()
             && let Some(demand) = self.demands.pop_front()
         {
             let time = self.clock.time();

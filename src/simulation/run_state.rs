@@ -11,6 +11,7 @@ use super::clock::ClockState;
 use super::conditions::{ConditionsState, Seen};
 use super::guards::GuardState;
 use super::ladder::{Demand, LadderState};
+use super::switch::SwitchState;
 use crate::gas::{InflowState, InflowStateError};
 use crate::output::{Checkpoint, CheckpointError};
 use crate::subdomain::GpuParticle;
@@ -39,6 +40,9 @@ pub struct RunState {
     pub demands: Vec<Demand>,
     pub conditions: ConditionsState,
     pub guards: GuardState,
+    /// Whether the same states are those from which on a control volume does, and what is remembered of the rows.
+    pub uniform: Vec<bool>,
+    pub switch: SwitchState,
     /// What the walls have seen of the same states, and how many particles had left by then.
     pub seen: Vec<(Seen, u64)>,
     /// Intervals so far.
@@ -80,6 +84,7 @@ mod tests {
     use crate::simulation::conditions::Wanted;
     use crate::simulation::ladder::Ladder;
     use crate::simulation::model::Model;
+    use crate::simulation::switch::Deviations;
     use crate::subdomain::{CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 
     fn plan() -> Plan {
@@ -206,6 +211,8 @@ mod tests {
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
+            uniform: vec![true, false],
+            switch: vec![Deviations { window: [0.1, 0.1 + 0.2], of_places: vec![[-1e-3, 1e-300]] }],
             conditions: ConditionsState::default(),
             guards: GuardState::default(),
             seen: vec![(Seen::default(), 7)],

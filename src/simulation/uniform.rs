@@ -6,7 +6,9 @@
 
 use glam::DVec3;
 
-use crate::gas::{FlowIntegral, Lost, State, Vented, flow_times_of_temperature, flow_times_temperature, thermo};
+use crate::gas::{
+    Beginning, FlowIntegral, Lost, State, Vented, flow_times_of_temperature, flow_times_temperature, thermo,
+};
 use crate::geometry::{Vessel, region_bounds};
 use crate::output::Audit;
 use crate::scene::{Scene, Surface};
@@ -15,7 +17,7 @@ use super::SimulationError;
 use super::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
 use super::model::{Model, chamber_of};
 use super::observer::Observer;
-use super::reference::{heated_walls, initial, reference, reference_with_losses};
+use super::reference::{continued_with_losses, heated_walls, reference_with_losses};
 
 /// Parts along each edge into which a triangle is cut to find what chambers it faces.
 const PARTS: u32 = 8;
@@ -27,20 +29,78 @@ const WORK_PARTS: u32 = 32;
 /// # Errors
 /// If a probe or a surface lies in no chamber, or the observer stops the run.
 pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, SimulationError> {
-    let Model { scene, plan, .. } = model;
-    let rows = scene.output.rows.max(1);
+    let rows = model.scene.output.rows.max(1);
+    let bounds: Vec<f64> = (0..=rows).map(|row| model.plan.end_time * f64::from(row) / f64::from(rows)).collect();
+    let solved = |times: &[f64]| reference_with_losses(model, times);
+    let known = Known::of(model)?;
+    stretch(model, &known, &solved, &bounds, None, observer)
+}
+
+/// Goes on from a state that particles had and emits the rows that end at `ends`, s, which are after it. `last`: the row
+/// before, whose totals go on. The audit is that of what follows.
+///
+/// # Errors
+/// If the observer stops the run.
+pub(super) fn continue_uniform(
+    model: &Model,
+    known: &Known,
+    beginning: &Beginning,
+    ends: &[f64],
+    last: Option<&Row>,
+    observer: &mut dyn Observer,
+) -> Result<Audit, SimulationError> {
+    let bounds = [&[beginning.time], ends].concat();
+    let solved = |times: &[f64]| continued_with_losses(model, beginning, times);
+    stretch(model, known, &solved, &bounds, last, observer)
+}
+
+/// Where a scene's probes and surfaces are: what a control volume must know of them.
+pub(super) struct Known {
+    /// The chamber of each probe.
+    pub probes: Vec<usize>,
+    /// The faces of each surface.
+    pub surfaces: Vec<Vec<Face>>,
+}
+
+impl Known {
+    /// # Errors
+    /// If a probe or a surface lies in no chamber.
+    pub fn of(model: &Model) -> Result<Known, SimulationError> {
+        let Model { scene, vessel, .. } = model;
+        let surfaces = scene.surfaces.iter().map(|surface| facing(scene, vessel, surface)).collect::<Result<_, _>>()?;
+        Ok(Known { probes: probes(model)?, surfaces })
+    }
+}
+
+/// States, and what has left since the start of the stretch, at times that ascend from it.
+type Solved<'a> = &'a dyn Fn(&[f64]) -> Vec<(Vec<State>, Lost)>;
+
+fn stretch(
+    model: &Model,
+    known: &Known,
+    solved: Solved<'_>,
+    bounds: &[f64],
+    last: Option<&Row>,
+    observer: &mut dyn Observer,
+) -> Result<Audit, SimulationError> {
+    let Model { plan, .. } = model;
+    let rows = bounds.len() - 1;
     // Ends and middles of the windows.
-    let time = |half: u32| plan.end_time * f64::from(half) / f64::from(2 * rows);
-    let times: Vec<f64> = (0..=2 * rows).map(time).collect();
-    let states = reference_with_losses(model, &times);
+    let half = |k: usize| 0.5 * (bounds[k / 2] + bounds[k.div_ceil(2)]);
+    let times: Vec<f64> = (0..=2 * rows).map(half).collect();
+    let states = solved(&times);
     let heated = heated_walls(model);
-    let probes = probes(model)?;
-    let surfaces =
-        scene.surfaces.iter().map(|surface| facing(scene, &model.vessel, surface)).collect::<Result<Vec<_>, _>>()?;
-    let mut received = vec![[0.0; 3]; surfaces.len()];
-    let works = works(model, rows);
-    let mut worked = vec![0.0; model.moving.count()];
-    for row in 0..rows as usize {
+    let Known { probes, surfaces } = known;
+    let before = |pick: &dyn Fn(&Row) -> Vec<f64>| last.map_or_else(Vec::new, pick);
+    let mut received: Vec<[f64; 3]> = match last {
+        Some(row) => row.surfaces.iter().map(|surface| surface.impulse).collect(),
+        None => vec![[0.0; 3]; surfaces.len()],
+    };
+    let works = works(model, solved, bounds);
+    let mut worked = before(&|row| row.motions.iter().map(|motion| motion.work).collect());
+    worked.resize(model.moving.count(), 0.0);
+    let worked_before: f64 = worked.iter().sum();
+    for row in 0..rows {
         let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k].0);
         let [lost_before, lost_after] = [0, 2].map(|k| &states[2 * row + k].1);
         let window = [times[2 * row], times[2 * row + 2]];
@@ -79,13 +139,13 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
             probes: probes.iter().map(|&chamber| zones[chamber].clone()).collect(),
             chambers: zones,
             surfaces: on_surfaces,
-            walls: walls(model, &heated, window, [lost_before, lost_after]),
-            vents: vents(window, [lost_before, lost_after]),
+            walls: walls(model, &heated, window, [lost_before, lost_after], last),
+            vents: vents(window, [lost_before, lost_after], last),
             motions,
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }
-    let work = (!model.moving.is_empty()).then(|| worked.iter().sum());
+    let work = (!model.moving.is_empty()).then(|| worked.iter().sum::<f64>() - worked_before);
     let (end, lost) = &states[states.len() - 1];
     let heat = (!heated.is_empty()).then(|| lost.heat.iter().sum());
     Ok(Audit {
@@ -93,26 +153,28 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
         heat_to_walls: heat,
         mass_vented: lost.vented.iter().map(|vent| vent.mass).sum(),
         enthalpy_vented: lost.vented.iter().map(|vent| vent.enthalpy).sum(),
-        ..audit(model, end)
+        ..audit(model, &states[0].0, end, [bounds[0], bounds[rows]])
     })
 }
 
 /// Those that keep a temperature, in the order of the scene; `lost`: until the start and the end of the window.
-fn walls(model: &Model, heated: &[usize], window: [f64; 2], lost: [&Lost; 2]) -> Vec<WallState> {
-    let of_wall = |wall: usize| {
+fn walls(model: &Model, heated: &[usize], window: [f64; 2], lost: [&Lost; 2], last: Option<&Row>) -> Vec<WallState> {
+    let of_wall = |(index, wall): (usize, usize)| {
+        let earlier = last.map_or(0.0, |row| row.walls[index].heat);
         let own = heated.iter().enumerate().filter(|(_, of)| **of == wall).map(|(index, _)| index);
         let [before, after] = lost.map(|lost| own.clone().map(|index| lost.heat[index]).sum::<f64>());
         let coats = model.coats.coats.iter().filter(|coat| coat.wall == wall);
         let area: f64 = coats.map(|coat| coat.area).sum();
-        WallState { heat: after, heat_flux: (after - before) / (area * (window[1] - window[0])) }
+        WallState { heat: earlier + after, heat_flux: (after - before) / (area * (window[1] - window[0])) }
     };
     let kept = (0..model.scene.walls.len()).filter(|&wall| model.scene.walls[wall].heat.is_some());
-    kept.map(of_wall).collect()
+    kept.enumerate().map(of_wall).collect()
 }
 
 /// What passes is what should: there is no particle that could not.
-fn vents(window: [f64; 2], [before, after]: [&Lost; 2]) -> Vec<VentState> {
-    let of_vent = |(before, after): (&Vented, &Vented)| {
+fn vents(window: [f64; 2], [before, after]: [&Lost; 2], last: Option<&Row>) -> Vec<VentState> {
+    let of_vent = |(index, (before, after)): (usize, (&Vented, &Vented))| {
+        let [earlier, enthalpy] = last.map_or([0.0; 2], |row| [row.vents[index].mass, row.vents[index].enthalpy]);
         let mass = after.mass - before.mass;
         let isentropic = after.isentropic - before.isentropic;
         let mass_flow = mass / (window[1] - window[0]);
@@ -122,27 +184,30 @@ fn vents(window: [f64; 2], [before, after]: [&Lost; 2]) -> Vec<VentState> {
             wanted_mass_flow: mass_flow,
             discharge,
             wanted_discharge: discharge,
-            mass: after.mass,
-            enthalpy: after.enthalpy,
+            mass: earlier + after.mass,
+            enthalpy: enthalpy + after.enthalpy,
         }
     };
-    before.vented.iter().zip(&after.vented).map(of_vent).collect()
+    before.vented.iter().zip(&after.vented).enumerate().map(of_vent).collect()
 }
 
 /// The work of each moving wall on the gas in each row, J: -p dV, by the mean of p between near times (and not by the
 /// integration of the energy, which this is to check).
-fn works(model: &Model, rows: u32) -> Vec<Vec<f64>> {
+fn works(model: &Model, solved: Solved<'_>, bounds: &[f64]) -> Vec<Vec<f64>> {
     let moving = &model.moving;
+    let rows = bounds.len() - 1;
     if moving.is_empty() {
-        return vec![Vec::new(); rows as usize];
+        return vec![Vec::new(); rows];
     }
-    let time = |k: u32| model.plan.end_time * f64::from(k) / f64::from(rows * WORK_PARTS);
-    let times: Vec<f64> = (0..=rows * WORK_PARTS).map(time).collect();
-    let states = reference(model, &times);
-    let mut works = vec![vec![0.0; moving.count()]; rows as usize];
+    let parts = bounds.windows(2).flat_map(|row| {
+        (1..=WORK_PARTS).map(|part| row[0] + (row[1] - row[0]) * f64::from(part) / f64::from(WORK_PARTS))
+    });
+    let times: Vec<f64> = std::iter::once(bounds[0]).chain(parts).collect();
+    let states = solved(&times);
+    let mut works = vec![vec![0.0; moving.count()]; rows];
     for (k, (pair, around)) in states.windows(2).zip(times.windows(2)).enumerate() {
         for (work, swept) in works[k / WORK_PARTS as usize].iter_mut().zip(&moving.swept) {
-            for (chamber, (before, after)) in pair[0].iter().zip(&pair[1]).enumerate() {
+            for (chamber, (before, after)) in pair[0].0.iter().zip(&pair[1].0).enumerate() {
                 let growth = swept.change(chamber, around[1]) - swept.change(chamber, around[0]);
                 *work -= 0.5 * (before.pressure + after.pressure) * growth;
             }
@@ -185,7 +250,7 @@ pub(super) struct Face {
     /// m2.
     pub area: f64,
     /// Area times the unit normal away from the gas.
-    outward: DVec3,
+    pub outward: DVec3,
 }
 
 /// # Errors
@@ -235,30 +300,33 @@ fn parts() -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-fn audit(model: &Model, end: &[State]) -> Audit {
+/// Of the time between two states.
+fn audit(model: &Model, start: &[State], end: &[State], [from, until]: [f64; 2]) -> Audit {
     let Model { scene, plan, .. } = model;
     let species = plan.species();
     let mass = |moles: &[f64]| moles.iter().zip(&species).map(|(n, gas)| n * gas.molar_mass).sum::<f64>();
-    let start = initial(scene, plan);
     let (mut injected, mut enthalpy) = (0.0, 0.0);
     // By the curves themselves, not by the integration that this is to check.
     for orifice in &scene.orifices {
         let molar_mass = thermo::molar_mass(&orifice.mixture, &species);
         let (flow, temperature) = (&orifice.mass_flow, &orifice.temperature);
-        injected += FlowIntegral::new(flow, plan.end_time).total();
-        enthalpy += if thermo::is_constant(&orifice.mixture, &species) {
-            let specific = thermo::molar_enthalpy(&orifice.mixture, &species, 1.0) / molar_mass;
-            specific * flow_times_temperature(flow, temperature, plan.end_time)
-        } else {
-            let specific = |t: f64| thermo::molar_enthalpy(&orifice.mixture, &species, t) / molar_mass;
-            flow_times_of_temperature(flow, temperature, plan.end_time, specific)
+        injected += FlowIntegral::new(flow, until).total() - FlowIntegral::new(flow, from).total();
+        let by = |time: f64| {
+            if thermo::is_constant(&orifice.mixture, &species) {
+                let specific = thermo::molar_enthalpy(&orifice.mixture, &species, 1.0) / molar_mass;
+                specific * flow_times_temperature(flow, temperature, time)
+            } else {
+                let specific = |t: f64| thermo::molar_enthalpy(&orifice.mixture, &species, t) / molar_mass;
+                flow_times_of_temperature(flow, temperature, time, specific)
+            }
         };
+        enthalpy += by(until) - by(from);
     }
     Audit {
-        mass_start: start.iter().map(|chamber| mass(&chamber.moles)).sum(),
+        mass_start: start.iter().map(|state| mass(&state.moles)).sum(),
         mass_injected: injected,
         mass_end: end.iter().map(|state| mass(&state.moles)).sum(),
-        energy_start: start.iter().map(|own| thermo::energy(&own.moles, &species, own.temperature)).sum(),
+        energy_start: start.iter().map(|state| state.energy).sum(),
         enthalpy_injected: enthalpy,
         energy_end: end.iter().map(|state| state.energy).sum(),
         ..Audit::default()

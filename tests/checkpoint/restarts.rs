@@ -61,6 +61,19 @@ fn a_piston_goes_on_from_any_step() {
     restarts(&scene, 9, [2, 1, 3, 2]);
 }
 
+/// What it remembers of the rows, and what it has decided, is in the checkpoint.
+#[test]
+fn a_run_that_switches_goes_on_from_any_step() {
+    let mut scene = tank(0.004);
+    scene.model.switch = Some(corpuscle::scene::Switch::WhenUniform { lasting: 2.5e-3 });
+    scene.output.rows = 100;
+    let case = restarts(&scene, 11, [1, 3, 2, 1]);
+    assert!(case.said.contains(" as a control volume: the pressures of all probes"), "{}", case.said);
+    scene.model.switch = Some(corpuscle::scene::Switch::At(0.003));
+    let case = restarts(&scene, 12, [2, 1, 1, 3]);
+    assert!(case.said.contains(" as a control volume: asked for"), "{}", case.said);
+}
+
 /// The other methods with collisions.
 #[test]
 fn cells_and_rigid_spheres_go_on_from_any_step() {

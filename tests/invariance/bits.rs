@@ -50,7 +50,10 @@ impl Bits {
                 .flat_map(|particles| bytemuck::cast_slice::<_, u8>(particles).to_vec())
                 .collect(),
             counts: [run.outcome.steps, run.outcome.particle_steps, run.outcome.collisions, run.outcome.bounces],
-            audit: format!("{:?} {:?} {:?}", run.outcome.audit, run.outcome.step_range, run.outcome.warnings),
+            audit: format!(
+                "{:?} {:?} {:?} {:?}",
+                run.outcome.audit, run.outcome.step_range, run.outcome.warnings, run.outcome.continued
+            ),
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, tank, tube, venting, venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, switching, tank, tube, venting,
+    venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -93,6 +94,19 @@ fn pistons_have_the_same_bits_on_any_number_of_ranks() {
     let runs = same(&pistons(), &ways);
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
     same(&by(Method::None, pistons()), &[Way::new(3, Off, 1)]);
+}
+
+/// When it switches follows from rows, which are the same.
+#[test]
+fn a_run_that_switches_has_the_same_bits_on_any_number_of_ranks() {
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way::new(7, Off, None),
+    ];
+    let runs = same(&switching(), &ways);
+    let outcome = &runs[0].outcome;
+    assert!(outcome.continued.is_some() && outcome.time > 6e-4, "{:?} at {}", outcome.continued, outcome.time);
 }
 
 /// With the impulse on its walls.

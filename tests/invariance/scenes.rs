@@ -132,6 +132,22 @@ pub fn tube() -> Model {
     Model::new(model.scene).expect("a model")
 }
 
+/// A short jet into a box with a vent and a warm wall, that goes on as a control volume once pressures are uniform.
+pub fn switching() -> Model {
+    model(
+        "end_time = 4e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+         temperature = 350.0\naccommodation = 0.3\n\
+         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+         [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.002\n\
+         gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.7], [6e-4, 0.0]]\n\
+         [[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = 0.01\nexternal_pressure = 1e5\n\
+         [[surface]]\nname = \"behind\"\nwall = \"box\"\nface = \"-x\"\n[[probe]]\nname = \"corner\"\n\
+         region = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.04, 0.04] } }\n\
+         [model]\nparticles = 2000\nswitch = \"when-uniform\"\nuniform_for = 5e-4\n[output]\nrows = 40\nsnapshots = 0\n",
+    )
+}
+
 /// A plate between two chambers, no mirror, is driven faster and faster through gas that flows in, and a ball moves the
 /// other way.
 pub fn pistons() -> Model {

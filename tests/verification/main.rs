@@ -17,6 +17,7 @@ mod orifice;
 mod piston;
 mod planner;
 mod statistics;
+mod switch;
 mod two_chambers;
 mod vents;
 mod vessels;

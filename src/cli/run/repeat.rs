@@ -27,6 +27,9 @@ pub fn repeat(
     if model.plan.method == Method::ControlVolume {
         return Err(CliError::NothingToRepeat);
     }
+    if model.scene.model.switch.is_some() {
+        return Err(CliError::RepeatedSwitch);
+    }
     if first + u64::from(times) > SEEDS {
         return Err(CliError::SeedsBeyond { first, times });
     }

@@ -192,4 +192,33 @@ fn a_vent_empties_a_chamber_isentropically() {
     }
     let closed = tank(1.1e5).solve(std::slice::from_ref(&start), &times);
     assert_eq!(closed[1][0].moles, start.moles);
+
+    // From a state on the way, with the vent open as it is by then, all goes on as it would have.
+    let middle = &tank(9e4).solve(std::slice::from_ref(&start), &[0.02])[0][0];
+    assert!(middle.pressure < 8e4, "below the opening pressure: {}", middle.pressure);
+    let on = |open| {
+        let chambers = vec![(middle.moles.clone(), middle.energy)];
+        tank(9e4).solve_from(&Beginning { time: 0.02, chambers, open: vec![open] }, &[0.02, 0.05])
+    };
+    let whole = &tank(9e4).solve(std::slice::from_ref(&start), &times)[1][0];
+    let gone_on = on(true);
+    assert_eq!(gone_on[0].0[0].energy, middle.energy);
+    assert!(relative(gone_on[1].0[0].moles[0], whole.moles[0]) < 1e-9);
+    assert!(relative(gone_on[1].0[0].energy, whole.energy) < 1e-9);
+    assert!(relative(gone_on[1].1.vented[0].mass, (middle.moles[0] - whole.moles[0]) * 0.029) < 1e-8);
+    assert_eq!(on(false)[1].0[0].moles, middle.moles, "a vent that had not opened");
+}
+
+/// Inflow and openings go on from a later state by the clock.
+#[test]
+fn a_control_volume_goes_on_from_a_later_state() {
+    let tank = ControlVolume { sources: vec![Source { chamber: 0, orifice: inflator() }], ..two_chambers(0.04) };
+    let start = [air(101_325.0, 0.002, 293.0), air(101_325.0, 0.058, 293.0)];
+    let whole = tank.solve(&start, &[0.03, 0.1]);
+    let chambers = whole[0].iter().map(|state| (state.moles.clone(), state.energy)).collect();
+    let gone_on = tank.solve_from(&Beginning { time: 0.03, chambers, open: vec![] }, &[0.1]);
+    for (found, expected) in gone_on[0].0.iter().zip(&whole[1]) {
+        assert!(relative(found.pressure, expected.pressure) < 1e-8, "{found:?} {expected:?}");
+        assert!(found.moles.iter().zip(&expected.moles).all(|(a, b)| relative(*a, *b) < 1e-8));
+    }
 }

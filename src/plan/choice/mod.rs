@@ -64,6 +64,9 @@ pub fn choose(scene: &Scene, measured: &Measured, outlook: &Outlook) -> Result<C
     if measured.motion.is_some() {
         return Err(PlanError::WishOfMotion);
     }
+    if scene.model.switch.is_some() {
+        return Err(PlanError::WishOfSwitch);
+    }
     let mut unused = Vec::new();
     let species = species(scene, measured, &mut unused)?;
     let amounts = Amounts::of(scene, &species, measured)?;
@@ -257,6 +260,7 @@ impl Chooser<'_> {
             diameter: if uniform { None } else { asked.diameter },
             occupancy: family.occupancy,
             rounds: family.rounds,
+            switch: None,
             wish: Wish::default(),
             ..asked.clone()
         }

@@ -2,7 +2,7 @@ use super::*;
 use crate::plan::forecast::{SeenProbe, SeenSurface};
 use crate::plan::plan;
 use crate::plan::tests::tank;
-use crate::scene::{Face, Probe, Region, Surface};
+use crate::scene::{Face, Probe, Region, Surface, Switch};
 
 /// The published tank with a wall that is measured and a probe before the hole.
 fn seen() -> (Scene, Measured, Outlook) {
@@ -136,4 +136,9 @@ fn impossible_wishes_are_refused() {
         model.wish.time_budget = Some(1e-6);
     });
     assert!(matches!(short, PlanError::TimeBudget { least, .. } if least > 1e-6));
+    let switching = refused(&|model| {
+        model.switch = Some(Switch::At(1e-3));
+        model.wish.accuracy = Some(0.1);
+    });
+    assert!(matches!(switching, PlanError::WishOfSwitch));
 }

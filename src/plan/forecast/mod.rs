@@ -13,7 +13,7 @@
 
 mod bias;
 mod course;
-mod noise;
+pub(super) mod noise;
 mod outlook;
 
 pub use outlook::{Outlook, SeenHeat, SeenProbe, SeenSurface};

@@ -42,6 +42,8 @@ pub fn state(
         account: account.state().clone(),
         inflow: inflow.state(),
         demands: Vec::new(),
+        uniform: Vec::new(),
+        switch: Vec::new(),
         conditions: parent.conditions.clone(),
         guards: GuardState::default(),
         seen: Vec::new(),

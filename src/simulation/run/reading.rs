@@ -2,6 +2,7 @@
 //! ranks, go into the account, the averages, the step size and the balance.
 
 use crate::simulation::SimulationError;
+use crate::simulation::averages::Row;
 use crate::simulation::balance::Load;
 use crate::simulation::exchange::Traffic;
 use crate::simulation::guards::{Shown, Told};
@@ -107,9 +108,12 @@ impl Simulation<'_> {
             }
         }
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
+        let mut uniform = false;
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
-            self.emit_row(observer)?;
+            let row = self.emit_row(observer)?;
+            uniform = self.switching.row(&row);
         }
+        self.uniform.push_back(uniform);
         observer.progress(
             self.read_until,
             interval.first_step + u64::from(interval.steps),
@@ -118,7 +122,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    pub(super) fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+    pub(super) fn emit_row(&mut self, observer: &mut dyn Observer) -> Result<Row, SimulationError> {
         let mut row = self.averages.row(self.read_until, self.account.state().particles);
         for (state, [moved, velocity]) in row.motions.iter_mut().zip(self.model.moving.courses(row.time)) {
             (state.displacement, state.velocity) = (moved, velocity);
@@ -129,7 +133,8 @@ impl Simulation<'_> {
             self.next_row += spacing;
         }
         observer.row(&row)?;
-        self.tell(&told, observer)
+        self.tell(&told, observer)?;
+        Ok(row)
     }
 
     /// Tells what has left its limits; a strict run ends there, on all ranks alike.
