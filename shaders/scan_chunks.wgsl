@@ -1,7 +1,7 @@
 //! uses: step.wgsl
-// Scan, part 2: the sums of the chunks become their exclusive prefix sums.
+// Scan, part 2: the sums of the chunks become their exclusive prefix sums, and the sum of all stands behind them.
 //
-// Reads and writes `chunk_sums`. One workgroup; each thread takes one contiguous share.
+// Reads and writes `chunk_sums` (one more than there are chunks). One workgroup; each thread takes one contiguous share.
 
 override CHUNK: u32;
 override SCAN_THREADS: u32 = 128;
@@ -37,5 +37,8 @@ fn scan_chunks(@builtin(local_invocation_index) thread: u32) {
         let own = chunk_sums[k];
         chunk_sums[k] = before;
         before += own;
+    }
+    if (begin < end && end == count) {
+        chunk_sums[count] = before;
     }
 }

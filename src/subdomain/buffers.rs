@@ -146,7 +146,7 @@ impl CellBuffers {
         Ok(CellBuffers {
             capacity: bins,
             cell_count: device.storage::<u32>("cell_count", bins)?,
-            chunk_sums: device.storage::<u32>("chunk_sums", bins.div_ceil(CHUNK))?,
+            chunk_sums: device.storage::<u32>("chunk_sums", bins.div_ceil(CHUNK) + 1)?,
             cell_start: device.storage::<u32>("cell_start", bins + 1)?,
         })
     }

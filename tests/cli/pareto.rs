@@ -131,14 +131,14 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
         let flat = err.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(code == 2 && parts.iter().all(|part| flat.contains(part)), "{options:?}: {err}");
     };
-    refused(&["pipe"], &["`pipe`", "sod, tank, orifice"]);
+    refused(&["pipe"], &["`pipe`", "sod, tank, orifice, piston"]);
     refused(&["sod", "--methods", "control-volume"], &["no `control-volume`", "closest-approach, cell"]);
     refused(&["sod", "--quick", "--full"], &["--full"]);
     refused(&["sod", "--repeat", "0"], &["--repeat"]);
     refused(&["sod", "--methods", "dsmc"], &["dsmc"]);
     refused(&[], &["CASE"]);
     let (code, text, _) = outcome(&["pareto", "--list"]);
-    assert!(code == 0 && ["sod", "tank", "orifice"].iter().all(|name| text.contains(name)), "{text}");
+    assert!(code == 0 && ["sod", "tank", "orifice", "piston"].iter().all(|name| text.contains(name)), "{text}");
 }
 
 /// The measured table of the specification, section 2: the mean error of the density of free flight, of rigid spheres and

@@ -36,21 +36,23 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let Work { particle_steps: n, cell_steps: cells, candidates, collisions, .. } = *work;
     let rounds = method.has_rounds();
     let collides = method != Method::None;
+    // With a particle: at most so many.
+    let filled = cells.min(n);
     Some(match phase {
         "inject" => work.newborns * (NEWBORN + PARTICLE),
         // State in; cell and place in the cell out; the cells' counters.
-        "bin" => n * (PARTICLE + 2.0 * WORD) + cells * 2.0 * WORD,
-        // Counters in twice, cleared, and the starts out.
-        "scan" => cells * 4.0 * WORD,
+        "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
+        // Counters in, and the starts out; where there are particles the counters again, and cleared.
+        "scan" => cells * 2.0 * WORD,
         // scatter: bins in, slots out; order: slots and bins in, state in and out, cell and layer out.
         "sort" => {
-            let order = n * (4.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + cells * WORD;
+            let order = n * (4.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + filled * WORD;
             // Flight, middle and mark of the rounds.
             let of_rounds = if rounds { n * (FLIGHT + 2.0 * WORD) } else { 0.0 };
-            n * 4.0 * WORD + cells * WORD + order + of_rounds
+            n * 4.0 * WORD + filled * WORD + order + of_rounds
         }
         // Middle, cell and layer in; the lists and their lengths out.
-        "neighbours" => n * 4.0 * WORD + cells * WORD + candidates * WORD,
+        "neighbours" => n * 4.0 * WORD + filled * WORD + candidates * WORD,
         // The first round: lists, states and flights in, choices out. Later ones look at few.
         "choose" => candidates * WORD + n * (WORD + PARTICLE + FLIGHT + 2.0 * WORD),
         // Choices in, pairs out; states and flights of those that collide in and out.

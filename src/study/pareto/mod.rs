@@ -8,6 +8,7 @@
 
 pub mod front;
 mod orifice;
+mod piston;
 mod point;
 pub mod report;
 mod setting;
@@ -57,6 +58,11 @@ pub const CASES: &[Case] = &[
         name: "orifice",
         law: "discharge through a resolved hole into near-vacuum against that of a thin orifice in a continuum",
         trials: orifice::trials,
+    },
+    Case {
+        name: "piston",
+        law: "a piston at half the thermal speed: pressure on it against Rankine and Hugoniot",
+        trials: piston::trials,
     },
 ];
 

@@ -9,6 +9,7 @@ use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::study::verify::filling::{energy_error, enthalpy};
 use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of, emptying_scene};
+use crate::study::verify::piston::{Piston, on_piston, shock_pressure};
 use crate::study::verify::tube::{SOD, Tube};
 use crate::study::verify::{Check, Run, model_from, run, scene_of};
 
@@ -19,15 +20,25 @@ use super::at_rest::of_any;
 const FLOW: f64 = 0.07;
 /// At 160,000 particles, and how it falls with their number (specification, section 8: .024; section 2: N^-.26).
 const PROFILE: f64 = 0.024;
+/// Of the pressure behind a shock that is a few mean free paths wide.
+const ON_PISTON: f64 = 0.05;
+/// Occupancies of holes' runs, the second of rigid spheres.
+const USUAL: f64 = 0.12;
+const THIN: f64 = 0.03;
 /// rad.
 const CONE: f64 = 0.2;
 
 pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let particles = match effort {
-        Effort::Quick => 4000,
-        Effort::Usual => 8_000,
-        Effort::Full => 64_000,
+    // Enough for noise, and so many that the gas is no denser than plans make it: lambda/d = 1/(sqrt2 pi (6 f/pi)^(2/3)).
+    let [least, most] = match effort {
+        Effort::Quick => [4000, 4000],
+        Effort::Usual => [8000, 64_000],
+        Effort::Full => [64_000, 512_000],
     };
+    let occupancy = if method == Method::HardSphere { THIN } else { USUAL };
+    let path_over_spacing = 1.0 / (2f64.sqrt() * PI * (6.0 * occupancy / PI).powf(2.0 / 3.0));
+    let resolving = VOLUME * (path_over_spacing / (knudsen * RADIUS)).powi(3);
+    let particles = if method == Method::None { least } else { (resolving as u64).clamp(least, most) };
     let mut scene = emptying_scene()?;
     scene.model.method = Some(method);
     scene.model.particles = Some(particles);
@@ -41,6 +52,29 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
     let mut checks = of_any(&model, &run);
     let relative = (found / CONTINUUM_COEFFICIENT, error / CONTINUUM_COEFFICIENT);
     checks.push(Check::of("flow, Cd over that of a continuum", 1.0, relative, FLOW));
+    Ok(checks)
+}
+
+pub(super) fn wall_speed(
+    device: &Device,
+    method: Method,
+    speed: f64,
+    effort: Effort,
+) -> Result<Vec<Check>, StudyError> {
+    let particles = match effort {
+        Effort::Quick => 4000,
+        Effort::Usual => 16_000,
+        Effort::Full => 64_000,
+    };
+    let piston = Piston::shock(particles, speed);
+    let mut scene = piston.scene()?;
+    scene.model.method = Some(method);
+    let model = model_from("piston", scene)?;
+    let run = run(device, &model, Options::default())?;
+    let (found, error) = on_piston(&piston, &run);
+    let expected = shock_pressure(speed);
+    let mut checks = of_any(&model, &run);
+    checks.push(Check::of("pressure on the piston over p1", expected, (found, error), ON_PISTON * expected));
     Ok(checks)
 }
 

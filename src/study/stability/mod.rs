@@ -159,6 +159,7 @@ pub fn first_broken(points: &[Point], method: Method) -> Found<'_> {
 }
 
 const COLLIDING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell];
+const MOVING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::None];
 const ALL: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
 
 fn of_table(quantity: Quantity) -> impl Fn(Method) -> Option<Bound> {
@@ -218,7 +219,7 @@ pub const AXES: &[Axis] = &[
         runs: "gas at rest in a slit, at the occupancy of time-step and x = 0.2",
         methods: COLLIDING,
         quick: &[2.0, 0.5],
-        usual: &[2.0, 1.0, 0.5, 0.25],
+        usual: &[4.0, 2.0, 1.0, 0.5, 0.25],
         full: &[8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.1],
         limit: |method| of_table(Quantity::Gap)(method),
         run: at_rest::gap,
@@ -237,7 +238,8 @@ pub const AXES: &[Axis] = &[
     Axis {
         name: "knudsen",
         what: "Knudsen number of a hole, of its radius, at the start",
-        runs: "discharge through a square hole into near-vacuum against the 0.84 of a continuum",
+        runs: "discharge through a square hole into near-vacuum against the 0.84 of a continuum, of at most 64,000 particles at \
+               occupancy 0.12 (rigid spheres 0.03) where the noise of 8,000 allows",
         methods: ALL,
         quick: &[0.3, 1.0],
         usual: &[0.1, 0.3, 1.0],
@@ -248,6 +250,17 @@ pub const AXES: &[Axis] = &[
             _ => of_table(Quantity::Knudsen)(method),
         },
         run: flows::knudsen,
+    },
+    Axis {
+        name: "wall-speed",
+        what: "speed of a piston over sqrt(kT/m)",
+        runs: "a piston that starts at once into gas at rest, until its shock is at the far end, against Rankine and Hugoniot",
+        methods: MOVING,
+        quick: &[0.1, 1.0],
+        usual: &[0.1, 0.5, 1.0, 2.0],
+        full: &[0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0],
+        limit: |_| None,
+        run: flows::wall_speed,
     },
     Axis {
         name: "density-ratio",

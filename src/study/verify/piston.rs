@@ -6,12 +6,12 @@
 //! the piston feels p/p1 = 1 + 2 gamma/(gamma+1) (M^2 - 1), and so does on the gas the work p A u t.
 
 use crate::gpu::Device;
+use crate::scene::Scene;
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
-use super::witness::model_of;
-use super::{Check, Effort, Findings, Run, run};
+use super::{Check, Effort, Findings, Run, model_from, run, scene_of};
 
 pub const GAMMA: f64 = 1.4;
 const MOLAR_MASS: f64 = 0.028;
@@ -47,7 +47,7 @@ impl Piston {
 
     /// # Errors
     /// If no plan can be made for it.
-    pub fn model(&self) -> Result<Model, StudyError> {
+    pub fn scene(&self) -> Result<Scene, StudyError> {
         let Piston { particles, seed, speed, pushed } = *self;
         let width = 0.5 * LENGTH;
         let speed = speed * (GAS_CONSTANT * TEMPERATURE / MOLAR_MASS).sqrt();
@@ -65,7 +65,13 @@ impl Piston {
             back = -(pushed + 0.1) * LENGTH,
             wide = width + 0.003,
         );
-        model_of("piston", &text)
+        scene_of("piston", &text)
+    }
+
+    /// # Errors
+    /// As [`Piston::scene`].
+    pub fn model(&self) -> Result<Model, StudyError> {
+        model_from("piston", self.scene()?)
     }
 
     /// # Errors
