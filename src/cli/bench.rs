@@ -26,21 +26,36 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
         1e-9 * ceilings.copy,
         1e-9 * ceilings.arithmetic
     ))?;
-    let mut all = Vec::new();
+    let (mut all, mut failed) = (Vec::new(), Vec::new());
     for scene in scenes {
         for &method in &methods {
             for &particles in &raw.particles {
-                let measured = measure(&device, scene, method, particles, raw.steps)?;
-                say(&format!("\n{}\n{}", report::line(&measured, &device), report::table(&measured, &ceilings)))?;
-                all.push(measured);
+                // What the device has no room for leaves the others.
+                match measure(&device, scene, method, particles, raw.steps) {
+                    Ok(measured) => {
+                        let table = report::table(&measured, &ceilings);
+                        say(&format!("\n{}\n{table}", report::line(&measured, &device)))?;
+                        all.push(measured);
+                    }
+                    Err(error) => {
+                        let what = format!("{}, {}, {particles} particles", scene.name, method.name());
+                        say(&format!("\n{what}: not measured: {error}\n"))?;
+                        failed.push((what, error));
+                    }
+                }
             }
         }
     }
     if let Some(path) = &raw.json {
-        let text = format!("{:#}\n", report::json(&all, &ceilings, &device));
+        let missing: Vec<(String, String)> =
+            failed.iter().map(|(what, error)| (what.clone(), error.to_string())).collect();
+        let text = format!("{:#}\n", report::json(&all, &missing, &ceilings, &device));
         fs::write(path, text).map_err(|source| OutputError::Io { action: "write", path: path.clone(), source })?;
     }
-    Ok(())
+    match failed.into_iter().next() {
+        None => Ok(()),
+        Some((_, error)) => Err(error.into()),
+    }
 }
 
 fn scene_named(name: &str) -> Result<&'static BenchScene, CliError> {

@@ -184,7 +184,7 @@ impl Job<'_> {
         recorder.finish(&outcome)?;
         timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         if outcome.continued.is_some() || outcome.time >= model.plan.end_time {
-            let account = [outcome.audit.render(), continued(&outcome)].concat();
+            let account = [outcome.audit.render(), continued(model, &outcome)].concat();
             folder.end(&format!("{account}\n{}{}", totals(&outcome), warned(&outcome)))?;
         }
         self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
@@ -219,7 +219,7 @@ impl Job<'_> {
             tracing::warn!("{warning}");
         }
         if !self.quiet {
-            say(&summary(outcome))?;
+            say(&summary(&self.settings.model, outcome))?;
             let seconds = self.started.elapsed().as_secs_f64();
             say(&format!("wall time {seconds:.1} s, of which set-up {:.1} s\n", set_up.as_secs_f64()))?;
         }
@@ -286,7 +286,7 @@ fn record(device: &Device) -> AdapterRecord {
 }
 
 /// The account of what a control volume did after the particles; nothing of a run that stayed one of particles.
-fn continued(outcome: &Outcome) -> String {
+fn continued(model: &Model, outcome: &Outcome) -> String {
     let of = |continued: &Continued| {
         let [from, until] = [outcome.time, continued.until].map(|time| 1e3 * time);
         format!(
@@ -295,7 +295,13 @@ fn continued(outcome: &Outcome) -> String {
             continued.audit.render()
         )
     };
-    outcome.continued.as_ref().map_or_else(String::new, of)
+    match &outcome.continued {
+        Some(continued) => of(continued),
+        None if model.scene.model.switch.is_some() && outcome.time >= model.plan.end_time => {
+            "\nno control volume took over: the pressures were not uniform for so long before the end\n".to_owned()
+        }
+        None => String::new(),
+    }
 }
 
 /// What the whole run has done, without wall times.
@@ -316,8 +322,8 @@ fn warned(outcome: &Outcome) -> String {
 }
 
 /// The audit, the phase table and the totals.
-fn summary(outcome: &Outcome) -> String {
-    let mut text = format!("\n{}{}\n", outcome.audit.render(), continued(outcome));
+fn summary(model: &Model, outcome: &Outcome) -> String {
+    let mut text = format!("\n{}{}\n", outcome.audit.render(), continued(model, outcome));
     if outcome.phases.rows.is_empty() {
         text += "This device does not time its phases.\n";
     } else {

@@ -264,7 +264,12 @@ impl ControlVolume {
             let moles: f64 = b[..self.gases.len()].iter().sum();
             for (index, (a, b)) in a.iter().zip(b).enumerate() {
                 let scale = if index < self.gases.len() { moles } else { b.abs() };
-                let error = if scale > 0.0 { (a - b).abs() / scale } else { f64::NAN };
+                let error = match scale > 0.0 {
+                    true => (a - b).abs() / scale,
+                    // An empty chamber that stays so.
+                    false if a == b => 0.0,
+                    false => f64::NAN,
+                };
                 if error > worst || error.is_nan() {
                     worst = error;
                 }

@@ -31,7 +31,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let method = method(scene, &mut reasons);
     let species = species(scene, measured, &mut reasons)?;
     motion::check(scene, method)?;
-    switch(scene, &mut reasons)?;
+    switch(scene, method, &mut reasons)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
@@ -128,13 +128,19 @@ fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
 }
 
 /// Whether and when the run goes on as a control volume.
-fn switch(scene: &Scene, reasons: &mut Vec<Reason>) -> Result<(), PlanError> {
+fn switch(scene: &Scene, method: Method, reasons: &mut Vec<Reason>) -> Result<(), PlanError> {
     let value = match scene.model.switch {
         None => return Ok(()),
         Some(Switch::At(at)) if at >= scene.end_time => {
             return Err(PlanError::SwitchTime { at, end: scene.end_time });
         }
         Some(Switch::At(at)) => format!("at {} ms", significant(1e3 * at)),
+        Some(Switch::WhenUniform { lasting }) if lasting >= scene.end_time => {
+            return Err(PlanError::SwitchTime { at: lasting, end: scene.end_time });
+        }
+        Some(Switch::WhenUniform { .. }) if method == Method::HardSphere && !scene.surfaces.is_empty() => {
+            return Err(PlanError::SwitchOfRigidSpheres);
+        }
         Some(Switch::WhenUniform { .. }) if scene.probes.is_empty() && scene.surfaces.is_empty() => {
             return Err(PlanError::SwitchUnseen);
         }

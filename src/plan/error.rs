@@ -66,14 +66,19 @@ pub enum PlanError {
     #[error("an accuracy or a budget together with `switch`: what a switch saves is not predicted yet")]
     #[diagnostic(help("leave out the wish, or `switch` in [model]"))]
     WishOfSwitch,
-    #[error("`switch` at {} s, which is not before the end of the run, {} s", significant(*at), significant(*end))]
-    #[diagnostic(help("set an earlier time in [model], or leave `switch` out"))]
+    #[error("`switch` at, or `uniform_for`, {} s, which is not before the end of the run, {} s", significant(*at), significant(*end))]
+    #[diagnostic(help("set a shorter time in [model], or leave `switch` out"))]
     SwitchTime { at: f64, end: f64 },
     #[error(
         "`switch = \"when-uniform\"` in a scene without probes and surfaces: nothing shows whether pressures are uniform"
     )]
     #[diagnostic(help("add a [[probe]] or a [[surface]], or give a time as `switch` in [model]"))]
     SwitchUnseen,
+    #[error(
+        "`switch = \"when-uniform\"` with surfaces and the method `hard-sphere`, whose spheres press a wall harder than a gas"
+    )]
+    #[diagnostic(help("choose another `method`, or give a time as `switch` in [model]"))]
+    SwitchOfRigidSpheres,
     #[error("no method can run this scene with {particles} particles or more")]
     #[diagnostic(help(
         "leave out `diameter`, `rounds` or `particles` in [model]: one of them does not fit the vessel"

@@ -203,7 +203,7 @@ fn cells_hold_a_few_particles() {
     assert_eq!((plan.rounds, plan.collision_limit), (0, 2.0));
     let speed = 4.4 * kinetics::thermal_square(980.0, 0.0280134).sqrt();
     assert!(speed * plan.time_step <= plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
-    assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
+    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("at most 0.03"), "{:?}", plan.warnings);
     let of_cell = plan.reasons.iter().find(|reason| reason.quantity == "collisions per cell").unwrap();
     let closest = planned(|_, _| ()).unwrap();
     assert!(plan.time_step > 2.0 * closest.time_step && plan.diameter == closest.diameter);
@@ -296,6 +296,14 @@ fn what_cannot_be_planned_is_refused() {
         s.model.switch = Some(Switch::WhenUniform { lasting: 1e-3 });
     };
     assert_eq!(refused(&unseen), SwitchUnseen);
+    let long = |s: &mut Scene, _: &mut Measured| s.model.switch = Some(Switch::WhenUniform { lasting: s.end_time });
+    assert!(matches!(refused(&long), SwitchTime { .. }));
+    let rigid = |s: &mut Scene, _: &mut Measured| {
+        s.model.method = Some(Method::HardSphere);
+        s.surfaces = vec![Surface { name: "wall".into(), wall: 0, face: None }];
+        s.model.switch = Some(Switch::WhenUniform { lasting: 1e-3 });
+    };
+    assert_eq!(refused(&rigid), SwitchOfRigidSpheres);
 }
 
 /// A switch is told with when.

@@ -259,7 +259,7 @@ mod tests {
             vec![BlockSum { number, energy: 0 }, BlockSum::default(), BlockSum::default(), BlockSum::default()]
         };
         let mut calm = tallies(20, 1980, filled(0.29));
-        calm.counters.bounces = 100;
+        calm.counters.bounces = 75;
         let full_vents = vec![[1000, 9]; model.scene.vents.len()];
         let mut guards = Guards::new(&model.scene, plan, volumes.to_vec());
         let within = Shown { step, drift: 9e-6, clipped: &full_vents, ..shown(&calm) };
@@ -269,7 +269,7 @@ mod tests {
         type Change<'a> = (Shown<'a>, Quantity, usize);
         let (many, dense) = (tallies(100, 1900, filled(0.29)), tallies(0, 0, filled(0.4)));
         let mut busy = tallies(0, 0, Vec::new());
-        busy.counters.bounces = 101;
+        busy.counters.bounces = 76;
         let cases: [Change<'_>; 6] = [
             (Shown { step, ..shown(&busy) }, Quantity::WallHits, 1),
             (Shown { step, ..shown(&many) }, Quantity::LostCollisions, 1),

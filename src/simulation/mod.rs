@@ -51,7 +51,7 @@ pub use run_state::{RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};
 pub use step::Sampling;
-pub use switch::{Deviations, SwitchState};
+pub use switch::{Decided, Deviations, SwitchState};
 pub use tuning::HaloOptions;
 pub use uniform::run_uniform;
 

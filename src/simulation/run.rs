@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
+use crate::output::Audit;
 use crate::ranks::{Communicator, Solo};
 use crate::subdomain::{GpuFlight, GpuParticle, Place, Subdomain, Tallies};
 
@@ -40,6 +41,9 @@ use reading::all_tallies;
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
+
+/// What of mass and energy may be lost to rounding where a control volume takes over.
+const HANDED_OVER: f64 = 1e-9;
 
 /// The ranks of a run.
 enum Ranks<'a> {
@@ -81,8 +85,8 @@ pub struct Simulation<'a> {
     /// With how many particles had left by then.
     seen: VecDeque<(Seen, u64)>,
     switching: Switching<'a>,
-    /// Whether they say that a control volume does from there on.
-    uniform: VecDeque<bool>,
+    /// Of the states read that no interval has followed yet: whether a control volume takes over from there.
+    switches: VecDeque<bool>,
     /// No particles from here on.
     switched: bool,
     submitted: usize,
@@ -176,7 +180,7 @@ impl<'a> Simulation<'a> {
             conditions: Conditions::new(model),
             seen: VecDeque::new(),
             switching: Switching::new(model)?,
-            uniform: VecDeque::new(),
+            switches: VecDeque::new(),
             switched: false,
             submitted: 0,
             spare: Vec::new(),
@@ -218,8 +222,12 @@ impl<'a> Simulation<'a> {
         simulation.conditions.restore(&state.conditions)?;
         simulation.guards.restore(&state.guards);
         simulation.seen = state.seen.iter().cloned().collect();
-        simulation.uniform = state.uniform.iter().copied().collect();
-        simulation.switching.restore(&state.switch);
+        if state.switches.len() != state.demands.len() {
+            let (found, expected) = (state.switches.len() as u64, state.demands.len() as u64);
+            return Err(RunStateError::differs("states that say whether to switch", found, expected).into());
+        }
+        simulation.switches = state.switches.iter().copied().collect();
+        simulation.switching.restore(&state.switch)?;
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
         simulation.next_snapshot = state.next_snapshot;
@@ -240,8 +248,8 @@ impl<'a> Simulation<'a> {
             conditions: self.conditions.state().clone(),
             guards: self.guards.state().clone(),
             seen: self.seen.iter().cloned().collect(),
-            uniform: self.uniform.iter().copied().collect(),
-            switch: self.switching.state(),
+            switches: self.switches.iter().copied().collect(),
+            switch: self.switching.state().clone(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
             next_snapshot: self.next_snapshot,
@@ -302,7 +310,7 @@ impl<'a> Simulation<'a> {
         }
         // By what was read until here: as many intervals before the end of the particles as for the step size.
         self.switched =
-            self.clock.time() >= self.switching.time() || self.uniform.front() == Some(&true) && self.follows();
+            self.clock.time() >= self.switching.time() || (self.follows() && self.switches.front() == Some(&true));
         if self.switched {
             return Ok(false);
         }
@@ -324,10 +332,11 @@ impl<'a> Simulation<'a> {
             self.checkpoint(observer)?;
         }
         let stepping_seconds = self.began.elapsed().as_secs_f64();
-        let last = match self.averages.ready() {
-            true => self.emit_row(observer)?,
+        let last = if self.averages.ready() {
+            Some(self.emit_row(observer)?)
+        } else {
             // Its totals go on in a control volume.
-            false => self.averages.row(self.read_until, self.account.state().particles),
+            self.switched.then(|| self.averages.row(self.read_until, self.account.state().particles))
         };
         let at_end = self.measure()?;
         let own = self.subdomain.particles(self.device)?;
@@ -335,7 +344,7 @@ impl<'a> Simulation<'a> {
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
-        let continued = self.go_on_without_particles(&at_end, &last, observer)?;
+        let continued = self.go_on_without_particles(&at_end, &audit, last.as_ref(), observer)?;
         let (particles, owners) = self.gather(own)?.unwrap_or_default();
         Ok(Outcome {
             particles,
@@ -361,7 +370,8 @@ impl<'a> Simulation<'a> {
     fn go_on_without_particles(
         &self,
         at_end: &Tallies,
-        last: &Row,
+        account: &Audit,
+        last: Option<&Row>,
         observer: &mut dyn Observer,
     ) -> Result<Option<Continued>, SimulationError> {
         let Some(known) = self.switching.known().filter(|_| self.switched) else { return Ok(None) };
@@ -371,8 +381,16 @@ impl<'a> Simulation<'a> {
             (1..=rows).map(|row| until * f64::from(row) / f64::from(rows)).filter(|&end| end > time * (1.0 + 1e-9));
         let beginning = beginning(self.model, at_end, time, self.conditions.open_vents());
         let ends: Vec<f64> = ends.collect();
-        let audit = continue_uniform(self.model, known, &beginning, &ends, Some(last), observer)?;
-        Ok(Some(Continued { until, why: self.switching.why(time), audit }))
+        let audit = continue_uniform(self.model, known, &beginning, &ends, last, observer)?;
+        for (what, had, has) in
+            [("mass", account.mass_end, audit.mass_start), ("energy", account.energy_end, audit.energy_start)]
+        {
+            if (has - had).abs() > HANDED_OVER * had.abs() {
+                let what = format!("the particles left a {what} of {had:.9e}, the control volume took over {has:.9e}");
+                return Err(SimulationError::Lost { time, what });
+            }
+        }
+        Ok(Some(Continued { until, why: self.switching.why(), audit }))
     }
 
     /// A checkpoint, with nothing under way.
@@ -423,7 +441,7 @@ impl<'a> Simulation<'a> {
     fn submit_next(&mut self) -> Result<(), SimulationError> {
         let plan = &self.model.plan;
         if self.follows() {
-            self.uniform.pop_front();
+            self.switches.pop_front();
         }
         if self.follows()
             && let Some(demand) = self.demands.pop_front()

@@ -40,8 +40,8 @@ pub struct RunState {
     pub demands: Vec<Demand>,
     pub conditions: ConditionsState,
     pub guards: GuardState,
-    /// Whether the same states are those from which on a control volume does, and what is remembered of the rows.
-    pub uniform: Vec<bool>,
+    /// Of the same states: whether a control volume takes over from there; and what is remembered of the rows.
+    pub switches: Vec<bool>,
     pub switch: SwitchState,
     /// What the walls have seen of the same states, and how many particles had left by then.
     pub seen: Vec<(Seen, u64)>,
@@ -84,7 +84,7 @@ mod tests {
     use crate::simulation::conditions::Wanted;
     use crate::simulation::ladder::Ladder;
     use crate::simulation::model::Model;
-    use crate::simulation::switch::Deviations;
+    use crate::simulation::switch::{Decided, Deviations};
     use crate::subdomain::{CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 
     fn plan() -> Plan {
@@ -211,8 +211,11 @@ mod tests {
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
-            uniform: vec![true, false],
-            switch: vec![Deviations { window: [0.1, 0.1 + 0.2], of_places: vec![[-1e-3, 1e-300]] }],
+            switches: vec![true],
+            switch: SwitchState {
+                recent: [Deviations { window: [0.1, 0.1 + 0.2], of_places: vec![[-1e-3, 1e-300]] }].into(),
+                decided: Some(Decided { window: [0.1, 0.3], noise: 1.0 / 3.0 }),
+            },
             conditions: ConditionsState::default(),
             guards: GuardState::default(),
             seen: vec![(Seen::default(), 7)],

@@ -1,4 +1,4 @@
-//! The method `control-volume`: a run without particles (specification, section 6: right where pressures are uniform).
+//! The method `control-volume`: a run, or the rest of one (`switch`), without particles (specification, section 6: right where pressures are uniform).
 //!
 //! Each chamber is uniform; `reference` has its equations. A row has the state in the middle of its window, and what
 //! surfaces received in it by Simpson's rule. A probe shows the chamber that its middle lies in; a surface is pressed
@@ -91,13 +91,12 @@ fn stretch(
     let states = solved(&times);
     let heated = heated_walls(model);
     let Known { probes, surfaces } = known;
-    let before = |pick: &dyn Fn(&Row) -> Vec<f64>| last.map_or_else(Vec::new, pick);
     let mut received: Vec<[f64; 3]> = match last {
         Some(row) => row.surfaces.iter().map(|surface| surface.impulse).collect(),
         None => vec![[0.0; 3]; surfaces.len()],
     };
     let works = works(model, solved, bounds);
-    let mut worked = before(&|row| row.motions.iter().map(|motion| motion.work).collect());
+    let mut worked: Vec<f64> = last.map_or_else(Vec::new, |row| row.motions.iter().map(|motion| motion.work).collect());
     worked.resize(model.moving.count(), 0.0);
     let worked_before: f64 = worked.iter().sum();
     for row in 0..rows {

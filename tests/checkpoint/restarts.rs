@@ -68,6 +68,11 @@ fn a_run_that_switches_goes_on_from_any_step() {
     scene.model.switch = Some(corpuscle::scene::Switch::WhenUniform { lasting: 2.5e-3 });
     scene.output.rows = 100;
     let case = restarts(&scene, 11, [1, 3, 2, 1]);
+    // Where it has decided, and one interval of particles is to come.
+    let decided = (case.steps - 32).to_string();
+    case.run(&Program::sharing(2), "decided", &["--checkpoint-every", "1000000", "--steps", &decided]).finish();
+    case.resume(&Program::sharing(1), "decided", &[]).finish();
+    case.assert_same("decided");
     assert!(case.said.contains(" as a control volume: the pressures of all probes"), "{}", case.said);
     scene.model.switch = Some(corpuscle::scene::Switch::At(0.003));
     let case = restarts(&scene, 12, [2, 1, 1, 3]);

@@ -125,7 +125,11 @@ impl<'a> Recorder<'a> {
     /// checkpoint has its state there.
     pub fn finish(&mut self, outcome: &Outcome) -> Result<(), OutputError> {
         if let Some(progress) = &mut self.progress {
-            progress.finish(outcome.time, outcome.steps, outcome.particle_steps);
+            progress.finish(
+                outcome.continued.as_ref().map_or(outcome.time, |continued| continued.until),
+                outcome.steps,
+                outcome.particle_steps,
+            );
         }
         if self.stopped_at().is_some() {
             return Ok(());

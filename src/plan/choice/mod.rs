@@ -24,8 +24,8 @@ use families::{Family, families};
 
 pub use report::{Alternative, Choice, Forecast};
 
-/// The largest error that a forecast was found to be short of the true one (.18 of .31, `tests/verification/planner.rs`):
-/// the plan aims at this part of the wished error.
+/// About the smallest share of the true error that a forecast was (.18 of .31, `tests/verification/planner.rs`): the plan aims
+/// at this part of the wished error.
 const AIM: f64 = 0.6;
 /// The fewest particles that the plan chooses.
 const FEWEST: f64 = 1000.0;

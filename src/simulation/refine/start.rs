@@ -15,6 +15,7 @@ use crate::simulation::ladder::{Ladder, LadderError};
 use crate::simulation::model::Model;
 use crate::simulation::run_state::RunState;
 use crate::simulation::setup::patches;
+use crate::simulation::switch::SwitchState;
 use crate::subdomain::{BlockSum, GpuParticle, Scales};
 
 /// `clock` and `inflow` are the refined run's at that moment, `parent` is the state of the parent.
@@ -42,8 +43,8 @@ pub fn state(
         account: account.state().clone(),
         inflow: inflow.state(),
         demands: Vec::new(),
-        uniform: Vec::new(),
-        switch: Vec::new(),
+        switches: Vec::new(),
+        switch: SwitchState::default(),
         conditions: parent.conditions.clone(),
         guards: GuardState::default(),
         seen: Vec::new(),

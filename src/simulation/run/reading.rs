@@ -108,12 +108,12 @@ impl Simulation<'_> {
             }
         }
         self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
-        let mut uniform = false;
+        let mut switches = false;
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             let row = self.emit_row(observer)?;
-            uniform = self.switching.row(&row);
+            switches = self.switching.row(&row);
         }
-        self.uniform.push_back(uniform);
+        self.switches.push_back(switches);
         observer.progress(
             self.read_until,
             interval.first_step + u64::from(interval.steps),

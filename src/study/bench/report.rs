@@ -65,8 +65,8 @@ pub fn line(measured: &Measured, device: &Device) -> String {
     )
 }
 
-/// All of it.
-pub fn json(all: &[Measured], ceilings: &Ceilings, device: &Device) -> Value {
+/// All of it; `missing`: runs that could not be measured, and why.
+pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings, device: &Device) -> Value {
     let runs = all.iter().map(|measured| {
         let phases = measured.phases.rows.iter().map(|(name, seconds, dispatches)| {
             json!({
@@ -106,5 +106,6 @@ pub fn json(all: &[Measured], ceilings: &Ceilings, device: &Device) -> Value {
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,
         "runs": runs.collect::<Vec<_>>(),
+        "not_measured": missing.iter().map(|(run, why)| json!({ "run": run, "why": why })).collect::<Vec<_>>(),
     })
 }

@@ -146,7 +146,7 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
          farthest off, and how many times its allowance. Allowances, fixed beforehand: energy 1e-5 of all (with inflow 1e-4 \
          of U0 and the enthalpy that came in); pressure 1 % of n k T; equipartition 2 %; collision rate 3 % of n pi sigma^2 \
          gbar; lost collisions 3 %; wall tightness: no particle outside, none beyond a wall by more than the audit lets \
-         pass, no flight cut short; flow 7 % of a continuum's; density profile of a shock tube the .024 of 160,000 particles \
+         pass, no flight cut short; flow 7 % of a continuum's; pressure on a piston 5 %, and a fifth of its rise; density profile of a shock tube the .024 of 160,000 particles \
          as N^-.26.\n\n`corpuscle plan` and `corpuscle run` warn beyond the guards below, and refuse with `--strict` \
          ([errors](errors.md#warnings)).\n\n## Guards\n\n| quantity | method | limit | beyond it |\n|---|---|---|---|\n"
     );
