@@ -34,6 +34,22 @@ pub enum Extent {
     Full,
 }
 
+impl Extent {
+    /// Of the quick, the normal and the full one.
+    pub fn pick<T>(self, [quick, normal, full]: [T; 3]) -> T {
+        match self {
+            Extent::Quick => quick,
+            Extent::Normal => normal,
+            Extent::Full => full,
+        }
+    }
+
+    /// The settings of the ranges for it.
+    pub fn settings(self, ranges: [&[Range<'_>]; 3]) -> Vec<Setting> {
+        self.pick(ranges).iter().flat_map(Range::settings).collect()
+    }
+}
+
 /// A problem with a known answer.
 pub struct Case {
     pub name: &'static str,

@@ -36,12 +36,7 @@ const FULL: &[Range<'static>] = &[
 ];
 
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
-    let ranges: &[Range] = match extent {
-        Extent::Quick => QUICK,
-        Extent::Normal => NORMAL,
-        Extent::Full => FULL,
-    };
-    let settings: Vec<_> = ranges.iter().flat_map(Range::settings).collect();
+    let settings = extent.settings([QUICK, NORMAL, FULL]);
     let scene = emptying_scene()?;
     Ok(Trials {
         about: format!(

@@ -32,12 +32,7 @@ const FULL: &[Range<'static>] = &[
 ];
 
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
-    let ranges: &[Range] = match extent {
-        Extent::Quick => QUICK,
-        Extent::Normal => NORMAL,
-        Extent::Full => FULL,
-    };
-    let settings: Vec<_> = ranges.iter().flat_map(Range::settings).collect();
+    let settings = extent.settings([QUICK, NORMAL, FULL]);
     let of = |particles: u64| Piston::shock(particles, SPEED);
     let scene = of(2000).scene()?;
     Ok(Trials {

@@ -36,12 +36,7 @@ const FULL: &[Range<'static>] = &[
 ];
 
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
-    let ranges: &[Range] = match extent {
-        Extent::Quick => QUICK,
-        Extent::Normal => NORMAL,
-        Extent::Full => FULL,
-    };
-    let settings: Vec<_> = ranges.iter().flat_map(Range::settings).collect();
+    let settings = extent.settings([QUICK, NORMAL, FULL]);
     Ok(Trials {
         about: "Sod's shock tube, gamma 1.4, at t = 0.2 (in units of the tube's length and sqrt(p/rho) of the left). The error \
                 is the mean over 50 slices of |density - exact|, the exact Riemann solution averaged over the slice, over \

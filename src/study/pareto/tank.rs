@@ -39,12 +39,8 @@ const FULL: &[Range<'static>] = &[
 
 pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
     // s.
-    let (end, ranges): (f64, &[Range]) = match extent {
-        Extent::Quick => (0.003, QUICK),
-        Extent::Normal => (0.02, NORMAL),
-        Extent::Full => (0.1, FULL),
-    };
-    let mut settings: Vec<Setting> = ranges.iter().flat_map(Range::settings).collect();
+    let end = extent.pick([0.003, 0.02, 0.1]);
+    let mut settings = extent.settings([QUICK, NORMAL, FULL]);
     let most_particles = settings.iter().filter_map(|setting| setting.particles).max().unwrap_or(0);
     settings.push(Setting { method: Some(Method::ControlVolume), ..Setting::default() });
     let mut scene = scene_of("tank", include_str!("../../../scenes/tank.toml"))?;
