@@ -33,7 +33,7 @@ use super::StudyError;
 /// How much a case takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// All cases together under five minutes on two cores.
+    /// All cases together in minutes on two cores.
     Quick,
     /// The figures of the documentation.
     Full,
