@@ -3,6 +3,7 @@
 //! Every rank takes the same decisions, since they follow from tallies summed over all ranks, and runs the same
 //! host code on the inflow. Rank 0 tells the observer.
 
+mod handover;
 mod meter;
 mod reading;
 mod snapshots;
@@ -12,13 +13,12 @@ use std::time::Instant;
 
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
-use crate::output::Audit;
 use crate::ranks::{Communicator, Solo};
 use crate::subdomain::{GpuFlight, GpuParticle, Place, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::audit::{Account, count_outside};
-use super::averages::{Averages, Row};
+use super::averages::Averages;
 use super::balance::Balance;
 use super::clock::Clock;
 use super::conditions::{Conditions, Seen};
@@ -29,21 +29,17 @@ use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine};
 use super::ladder::{Demand, Ladder};
 use super::model::Model;
-use super::observer::{Continued, Moment, Observer, Options, Outcome};
+use super::observer::{Moment, Observer, Options, Outcome};
 use super::run_state::{RunState, StateError as RunStateError};
 use super::setup::Setup;
-use super::switch::{Switching, beginning};
+use super::switch::Switching;
 use super::tuning::Tuner;
-use super::uniform::continue_uniform;
 
 use reading::all_tallies;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
 const AHEAD: usize = 2;
-
-/// What of mass and energy may be lost to rounding where a control volume takes over.
-const HANDED_OVER: f64 = 1e-9;
 
 /// The ranks of a run.
 enum Ranks<'a> {
@@ -364,33 +360,6 @@ impl<'a> Simulation<'a> {
             step_range: self.account.state().step_range,
             stepping_seconds,
         })
-    }
-
-    /// What a control volume does after the particles, whose state is `at_end`; `last` is the last row of theirs.
-    fn go_on_without_particles(
-        &self,
-        at_end: &Tallies,
-        account: &Audit,
-        last: Option<&Row>,
-        observer: &mut dyn Observer,
-    ) -> Result<Option<Continued>, SimulationError> {
-        let Some(known) = self.switching.known().filter(|_| self.switched) else { return Ok(None) };
-        let (time, until) = (self.clock.time(), self.model.plan.end_time);
-        let rows = self.model.scene.output.rows.max(1);
-        let ends =
-            (1..=rows).map(|row| until * f64::from(row) / f64::from(rows)).filter(|&end| end > time * (1.0 + 1e-9));
-        let beginning = beginning(self.model, at_end, time, self.conditions.open_vents());
-        let ends: Vec<f64> = ends.collect();
-        let audit = continue_uniform(self.model, known, &beginning, &ends, last, observer)?;
-        for (what, had, has) in
-            [("mass", account.mass_end, audit.mass_start), ("energy", account.energy_end, audit.energy_start)]
-        {
-            if (has - had).abs() > HANDED_OVER * had.abs() {
-                let what = format!("the particles left a {what} of {had:.9e}, the control volume took over {has:.9e}");
-                return Err(SimulationError::Lost { time, what });
-            }
-        }
-        Ok(Some(Continued { until, why: self.switching.why(), audit }))
     }
 
     /// A checkpoint, with nothing under way.

@@ -1,4 +1,5 @@
-//! The method `control-volume`: a run, or the rest of one (`switch`), without particles (specification, section 6: right where pressures are uniform).
+//! The method `control-volume`: a run, or the rest of one (`switch`), without particles (specification, section 6: right
+//! where pressures are uniform).
 //!
 //! Each chamber is uniform; `reference` has its equations. A row has the state in the middle of its window, and what
 //! surfaces received in it by Simpson's rule. A probe shows the chamber that its middle lies in; a surface is pressed
@@ -249,7 +250,7 @@ pub(super) struct Face {
     /// m2.
     pub area: f64,
     /// Area times the unit normal away from the gas.
-    pub outward: DVec3,
+    outward: DVec3,
 }
 
 /// # Errors

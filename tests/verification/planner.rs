@@ -232,7 +232,6 @@ fn a_closed_vessel_is_filled() {
 }
 
 #[test]
-#[ignore = "half a minute: scripts/test.sh --long"]
 fn a_vessel_vents() {
     check("vent", VENTED, "closest-approach", 0.06, 20, 6);
 }

@@ -169,7 +169,7 @@ pub fn shock_tube(device: &Device, tube: &Tube) -> Result<([f64; 2], f64), Study
 /// At 160,000 particles and f = .1 the mean |difference| of the density is at most .024 (specification, section 8); it
 /// falls as N^-.26.
 fn sod_at(device: &Device, effort: Effort, gamma: f64, name: &'static str) -> Result<Findings, StudyError> {
-    let particles = if effort == Effort::Quick { 20_000 } else { 160_000 };
+    let particles = if effort == Effort::Quick { 40_000 } else { 160_000 };
     let tube = Tube { particles, gamma, ..SOD };
     let limit = 0.024 * (particles as f64 / 160_000.0).powf(-0.26);
     let model = tube.model()?;
