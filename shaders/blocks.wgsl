@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl coarse.wgsl
 // The local state that sets the step size: number and kinetic energy in coarse blocks of cells, and how
 // many particles would cross more than a cell at each step of the ladder.
 //
@@ -6,10 +6,7 @@
 // words), then the LEVELS counts of fast particles. One thread per particle. Sums of integers do not
 // depend on order.
 
-// Cells per block and axis, log2; blocks per axis.
-override BLOCK_BITS: u32;
-override BLOCKS_X: u32;
-override BLOCKS_Y: u32;
+// Blocks in all.
 override BLOCKS: u32;
 // The ladder's largest step, s, and its number of levels.
 override TIME_STEP: f32;
@@ -34,8 +31,7 @@ fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     let cell = nearest_cell(particle.position);
-    let b = cell >> vec3<u32>(BLOCK_BITS);
-    let slot = ((b.z * BLOCKS_Y + b.y) * BLOCKS_X + b.x) * 4u;
+    let slot = block_of(cell) * 4u;
     let speed2 = dot(particle.velocity, particle.velocity);
     let energy = 0.5 * gases[gas_of(particle.tag)].mass * speed2 * BLOCK_ENERGY_SCALE;
     if (energy >= 4.29e9) {

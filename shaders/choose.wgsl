@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
@@ -9,8 +9,6 @@
 // the order of the candidates; both particles of a pair evaluate it with the lower id first, in the one
 // place below, so that they agree to the last bit.
 
-// Collision diameter, m.
-override DIAMETER: f32;
 // Rigid spheres, the method `hard-sphere`.
 override RIGID: bool = false;
 
@@ -62,7 +60,7 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             continue;
         }
         let miss = r + g * time;
-        let inside = DIAMETER * DIAMETER - dot(miss, miss);
+        let inside = diameter2(own_flight, other_flight) - dot(miss, miss);
         if (inside <= 0.0) {
             continue;
         }

@@ -1,17 +1,21 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than the cell edge (which the plan makes at least
-// sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more.
+// sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more; nearer by what the own diameter lacks
+// where gas is dense.
 //
-// Reads `middles`, `cells`, `cell_start`; writes `neighbours` (the k-th of particle s at k * stride + s)
+// Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours` (the k-th of particle s at k * stride + s)
 // and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per
 // particle, or per ghost that was asked (asked.wgsl), which writes its own list. Where a list is too short, the longest one wanted is kept, and the
 // host runs the interval again with longer lists.
 
 override VENTS: bool = true;
+// The square of the largest diameter, in 1/128 cells, rounded down.
+override DIAMETER_REACH2: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
@@ -40,6 +44,10 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     let middle = middles[s];
     let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
     let stride = arrayLength(&neighbour_count);
+    var reach2 = PACKED_REACH2;
+    if (CAPPED) {
+        reach2 -= i32((DIAMETER_REACH2 * (FULL_SHARE - share_of(flights[s]))) / FULL_SHARE);
+    }
     var found = 0u;
     var flags = middle;
     for (var row = 0u; row < 9u; row++) {
@@ -48,7 +56,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         let end = cell_start[first + 3u];
         for (var j = cell_start[first]; j < end; j++) {
             let other = middles[j];
-            if (packed_distance2(middle, other) < PACKED_REACH2 && j != s) {
+            if (packed_distance2(middle, other) < reach2 && j != s) {
                 flags |= other;
                 if (found < step.list) {
                     neighbours[found * stride + s] = j;

@@ -1,8 +1,8 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl
 // Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
 // the step.
 //
-// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns` and the classes of the cells; writes
+// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares` and the classes of the cells; writes
 // `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), `layers`, `origins` (the place in
 // `particles`), clears what the
 // search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
@@ -21,6 +21,9 @@
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(44) var<storage, read_write> origins: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
+
+// What is left of the cross-section in each coarse block.
+@group(0) @binding(53) var<storage, read> shares: array<u32>;
 
 override ORIFICES: bool = true;
 override VENTS: bool = true;
@@ -69,7 +72,11 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let flag = select(0u, NEAR_WALL, may_part(place_in_grid));
     middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
     touched[place] = 0u;
-    flights[place] = Flight(start, NEVER, NOBODY, 0u);
+    var share = 0u;
+    if (CAPPED) {
+        share = shares[block_of(place_in_grid)];
+    }
+    flights[place] = Flight(start, NEVER, NOBODY, share << SHARE_AT);
     if (may_hit(particle.position, particle.velocity, start, step.dt)) {
         near_walls[append(LIST_NEAR_WALLS)] = place;
         mark |= NEAR;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
@@ -10,7 +10,6 @@
 // devices must be told of to `changed`. One thread per pair. Pairs are
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 
-override DIAMETER: f32;
 // Rigid spheres, the method `hard-sphere`.
 override RIGID: bool = false;
 
@@ -43,12 +42,12 @@ fn thrown_back(r: vec3<f32>, g: vec3<f32>, speed: f32) -> vec3<f32> {
     return (speed / old_speed) * back;
 }
 
-// The new relative velocity of a pair with miss vector `miss` (r at the closest approach) and relative velocity
-// `g`, at the relative speed `speed`; a bit of `side` says on which side they pass.
-fn turned(miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> vec3<f32> {
+// The new relative velocity of a pair with the square `sigma2` of its diameter, miss vector `miss` (r at the closest
+// approach) and relative velocity `g`, at the relative speed `speed`; a bit of `side` says on which side they pass.
+fn turned(sigma2: f32, miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> vec3<f32> {
     let along = g / length(g);
     let across = miss - along * dot(miss, along);
-    let b2 = clamp(dot(across, across) / (DIAMETER * DIAMETER), 0.0, 1.0);
+    let b2 = clamp(dot(across, across) / sigma2, 0.0, 1.0);
     var turn = perpendicular(along);
     if (b2 > 1e-12) {
         turn = normalize(cross(across, along));
@@ -133,7 +132,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (RIGID) {
         relative = thrown_back(miss, g, exchange.speed);
     } else {
-        relative = turned(miss, g, exchange.speed, draw2.z);
+        relative = turned(diameter2(flights[pair.x], flights[pair.y]), miss, g, exchange.speed, draw2.z);
     }
     let old_i = i.velocity;
     let old_j = j.velocity;

@@ -17,6 +17,7 @@ struct Flight {
     wall: f32,
     // Tag of the last partner in this step, or NOBODY.
     partner: u32,
+    // Collisions in this step in the lower half; in the upper half see cap.wgsl.
     collisions: u32,
 }
 

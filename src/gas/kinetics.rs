@@ -61,6 +61,14 @@ pub fn mean_spacing(number_density: f64) -> f64 {
     1.0 / libm::cbrt(number_density)
 }
 
+/// A collision diameter, m, in gas of this density: at most `cap` of its mean spacings.
+pub fn capped_diameter(diameter: f64, cap: Option<f64>, number_density: f64) -> f64 {
+    match cap {
+        Some(cap) if number_density > 0.0 => diameter.min(cap * mean_spacing(number_density)),
+        _ => diameter,
+    }
+}
+
 /// The mean free path that belongs to the measured viscosity of closest-approach, in units of the mean
 /// spacing d (specification, section 2): .83, .79, .69, .66 at f = .1, .12, .2, .4. Below f = .1 the
 /// kinetic lambda/d scaled to meet the table; constant above .4.

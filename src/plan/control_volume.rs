@@ -68,6 +68,7 @@ pub fn plan(
         injected_particles: 0,
         moles_per_particle: unit,
         diameter: 0.0,
+        diameter_cap: None,
         occupancy: 0.0,
         mean_free_path: 0.0,
         collision_number: 0.0,

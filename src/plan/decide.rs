@@ -1,6 +1,7 @@
 //! The decisions in order: amounts, particles, diameter, rounds, step, grid.
 
 use super::amounts::{Amounts, highest_temperature};
+use super::cap::diameter_cap;
 use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
@@ -53,6 +54,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let states = mean_states(scene, measured, &amounts, [initial_particles as f64, particles as f64]);
     let number_density = states[1].number_density;
     let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
+    let diameter_cap = diameter_cap(scene, method, resolution.diameter, number_density, &mut reasons)?;
     let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
 
     let grid = Grid::around(measured.bounds_min, measured.bounds_max, resolution.cell)?;
@@ -77,6 +79,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         particles,
         number_density,
         resolution: &resolution,
+        diameter_cap,
         chambers: &chambers,
         openings: &openings,
     };
@@ -91,6 +94,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         injected_particles,
         moles_per_particle: population.moles_per_particle,
         diameter: resolution.diameter,
+        diameter_cap,
         occupancy,
         mean_free_path,
         collision_number,
@@ -108,7 +112,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         estimated_steps: resolution.steps as f64,
         grid,
         chambers,
-        left_out: left_out(scene, method, &gases, injected_particles),
+        left_out: left_out(scene, method, &gases, injected_particles, diameter_cap.is_some()),
         gases,
         openings,
         vents,
@@ -154,11 +158,12 @@ fn switch(scene: &Scene, method: Method, reasons: &mut Vec<Reason>) -> Result<()
 }
 
 /// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them.
-fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64) -> Vec<&'static str> {
+fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
     let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some());
     let has = [
         ("collisions", method != Method::None),
+        ("a diameter that follows the local density", capped || method != Method::ClosestApproach),
         ("spin energy", present().any(|gas| gas.species.has_spin())),
         ("heat capacities that depend on the temperature", present().any(|gas| !gas.species.is_constant())),
         ("a second gas", present().count() > 1),

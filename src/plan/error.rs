@@ -66,6 +66,9 @@ pub enum PlanError {
     #[error("an accuracy or a budget together with `switch`: what a switch saves is not predicted yet")]
     #[diagnostic(help("leave out the wish, or `switch` in [model]"))]
     WishOfSwitch,
+    #[error("`diameter_cap` with the method `{method}`; only `closest-approach` has one")]
+    #[diagnostic(help("leave out `diameter_cap` in [model], or choose another `method`"))]
+    CapOf { method: &'static str },
     #[error("`switch` at, or `uniform_for`, {} s, which is not before the end of the run, {} s", significant(*at), significant(*end))]
     #[diagnostic(help("set a shorter time in [model], or leave `switch` out"))]
     SwitchTime { at: f64, end: f64 },

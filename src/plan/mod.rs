@@ -14,6 +14,7 @@
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;
+mod cap;
 mod choice;
 mod control_volume;
 mod decide;
@@ -28,7 +29,7 @@ mod resolution;
 mod vents;
 mod warnings;
 
-use crate::gas::Species;
+use crate::gas::{Species, kinetics};
 use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
@@ -97,6 +98,9 @@ pub struct Plan {
     pub moles_per_particle: f64,
     /// m; 0 without collisions, as are `occupancy`, `rounds` and `collision_limit`.
     pub diameter: f64,
+    /// Where gas is dense, the diameter is at most so many of its mean spacings; only of `closest-approach`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diameter_cap: Option<f64>,
     /// n pi sigma^3 / 6 at the mean density at the end.
     pub occupancy: f64,
     /// m, at the mean density at the end; infinite without collisions.
@@ -167,6 +171,11 @@ pub struct GasPlan {
 }
 
 impl Plan {
+    /// The collision diameter, m, in gas of this density, 1/m3.
+    pub fn diameter_in(&self, number_density: f64) -> f64 {
+        kinetics::capped_diameter(self.diameter, self.diameter_cap, number_density)
+    }
+
     /// The gases as they are modelled, by index.
     pub fn species(&self) -> Vec<Species> {
         self.gases.iter().map(|gas| gas.species.clone()).collect()

@@ -244,7 +244,10 @@ fn warnings_fire() {
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
     warns("wall hits", &|_, measured| measured.wall_area = 1e4);
-    warns("chamber `inner box` at the start: occupancy 0.", &|scene, _| scene.chambers[0].pressure = 1e6);
+    warns("chamber `inner box` at the start: occupancy 0.", &|scene, _| {
+        scene.chambers[0].pressure = 1e6;
+        scene.model.diameter_cap = Some(DiameterCap::Off);
+    });
     warns("lost", &|scene, _| {
         scene.model.rounds = Some(1);
         scene.model.time_step = Some(3e-7);
@@ -381,4 +384,43 @@ fn heat_capacities_cover_the_walls() {
     let reasons = curved.unwrap().reasons;
     let reason = reasons.iter().find(|reason| reason.quantity == "cp(T) of nitrogen").unwrap();
     assert!(reason.why.contains("from 160 to"), "{}", reason.why);
+}
+
+/// The diameter is that of the mean density, and falls where gas is denser: from 1.5 times on, unless the scene says where.
+#[test]
+fn the_diameter_is_capped_where_gas_is_dense() {
+    let cap = |change: &dyn Fn(&mut Scene)| planned(|scene, _| change(scene));
+    let plan = cap(&|_| {}).unwrap();
+    let mean = 6.0 * plan.occupancy / (std::f64::consts::PI * plan.diameter.powi(3));
+    assert_eq!(plan.diameter_cap, Some(0.7));
+    assert_eq!(plan.diameter_in(1.49 * mean), plan.diameter);
+    assert!(near(plan.diameter_in(8.0 * 1.5 * mean), 0.5 * plan.diameter, 1e-3));
+    assert!(near(kinetics::occupancy(20.0 * mean, plan.diameter_in(20.0 * mean)), 0.18, 3e-3));
+    assert!(plan.reasons.iter().any(|reason| reason.quantity == "diameter at most"));
+    assert!(!plan.left_out.iter().any(|what| what.contains("local density")));
+    // What is asked for is kept at the mean density.
+    let large = cap(&|scene| scene.model.occupancy = Some(0.3)).unwrap();
+    let mean = 6.0 * large.occupancy / (std::f64::consts::PI * large.diameter.powi(3));
+    assert!(near(large.diameter_in(1.4 * mean) / large.diameter, 1.0, 1e-12), "{:?}", large.diameter_cap);
+    let asked = cap(&|scene| scene.model.diameter_cap = Some(DiameterCap::Spacings(0.5))).unwrap();
+    assert!(asked.diameter_cap == Some(0.5) && asked.diameter_in(mean) < asked.diameter);
+    // None where it is not wanted, of no use, or the method has none.
+    for none in [
+        cap(&|scene| scene.model.diameter_cap = Some(DiameterCap::Off)),
+        cap(&|scene| scene.model.method = Some(Method::Cell)),
+        planned(|scene, measured| {
+            scene.orifices.clear();
+            scene.openings.clear();
+            measured.openings.clear();
+            scene.chambers.truncate(1);
+            measured.chamber_volumes.truncate(1);
+        }),
+    ] {
+        assert_eq!(none.unwrap().diameter_cap, None);
+    }
+    let rigid = cap(&|scene| {
+        scene.model.method = Some(Method::HardSphere);
+        scene.model.diameter_cap = Some(DiameterCap::Spacings(0.5));
+    });
+    assert!(matches!(rigid, Err(PlanError::CapOf { method: "hard-sphere" })));
 }

@@ -40,6 +40,8 @@ pub struct Decided<'a> {
     /// Particles per m3 at the end.
     pub number_density: f64,
     pub resolution: &'a Resolution,
+    /// In local mean spacings.
+    pub diameter_cap: Option<f64>,
     pub chambers: &'a [ChamberPlan],
     pub openings: &'a [OpeningPlan],
 }
@@ -79,7 +81,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
 
 /// The densest state that is known: the mean at the end, or a chamber at the start.
 fn dense(decided: &Decided<'_>) -> Option<Warning> {
-    let Decided { method, resolution, .. } = *decided;
+    let Decided { method, resolution, diameter_cap, .. } = *decided;
     let of_chamber = |chamber: &ChamberPlan| {
         let density = chamber.particles.iter().sum::<u64>() as f64 / chamber.volume;
         (density, format!("chamber `{}` at the start", chamber.name))
@@ -87,14 +89,15 @@ fn dense(decided: &Decided<'_>) -> Option<Warning> {
     let at_end = (decided.number_density, "the gas at the end".to_string());
     let (density, subject) =
         decided.chambers.iter().map(of_chamber).fold(at_end, |most, next| if next.0 > most.0 { next } else { most });
-    let occupancy = kinetics::occupancy(density, resolution.diameter);
+    let diameter = kinetics::capped_diameter(resolution.diameter, diameter_cap, density);
+    let occupancy = kinetics::occupancy(density, diameter);
     let remedy = match method {
         // Carnahan and Starling's formula has a pole at 1.
         Method::HardSphere if occupancy < 0.7 => format!(
             "they press {:.1} % harder (Carnahan-Starling); `hard-sphere` is for comparison with legacy results only",
             100.0 * (kinetics::rigid_compressibility(occupancy) - 1.0)
         ),
-        _ => "a smaller `occupancy` or `diameter`".to_string(),
+        _ => "a smaller `occupancy`, `diameter` or `diameter_cap`".to_string(),
     };
     Warning::by_table(Quantity::Occupancy, method, &subject, occupancy, &remedy)
 }

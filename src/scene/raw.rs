@@ -381,6 +381,8 @@ pub struct RawModel {
     pub diameter: Option<At<f64>>,
     /// Fraction of space that spheres of the collision diameter fill at the end of the run, above 0 and at most 0.5.
     pub occupancy: Option<At<f64>>,
+    /// Where gas is dense, the collision diameter is at most so many local mean spacings; or `"off"`.
+    pub diameter_cap: Option<At<RawCap>>,
     /// Largest time step.
     pub time_step: Option<At<f64>>,
     /// Pairing rounds per step, 1 to 8.
@@ -401,6 +403,20 @@ pub struct RawModel {
     /// Million particle-steps per second that the device does (`cargo bench --bench step` prints it), for the predicted
     /// time; 3 unless given, that of lavapipe on two cores.
     pub device_rate: Option<At<f64>>,
+}
+
+/// In local mean spacings, or none.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number of mean spacings, or \"off\"")]
+pub enum RawCap {
+    Spacings(f64),
+    Off(Off),
+}
+
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub enum Off {
+    #[serde(rename = "off")]
+    Off,
 }
 
 /// A time, or what is waited for.

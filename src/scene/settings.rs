@@ -3,9 +3,11 @@
 use super::errors::Problem;
 use super::gases::least_collision_number;
 use super::numbers::{bounded, positive, show, small_count};
-use super::raw::{RawGas, RawModel, RawOutput, RawSwitch, When};
+use super::raw::{RawCap, RawGas, RawModel, RawOutput, RawSwitch, When};
 use super::raw_values::At;
-use super::types::{GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, Switch, UnitSystem, Wish};
+use super::types::{
+    DiameterCap, GAS_CONSTANT, Gas, HeatCapacity, Method, ModelRequest, OutputRequest, Switch, UnitSystem, Wish,
+};
 use super::units::Quantity;
 
 /// Particle ids share a word with flags.
@@ -46,12 +48,32 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
             .as_ref()
             .map(|f| bounded(f, Quantity::Pure, units, "a number above 0 and at most 0.5", |f| f > 0.0 && f <= 0.5))
             .transpose()?,
+        diameter_cap: raw.diameter_cap.as_ref().map(|at| diameter_cap(at, raw, units)).transpose()?,
         time_step: raw.time_step.as_ref().map(|t| positive(t, Quantity::Time, units)).transpose()?,
         rounds: raw.rounds.as_ref().map(|n| small_count(n, 1..=8)).transpose()?,
         collision_number: raw.collision_number.as_ref().map(|z| positive(z, Quantity::Pure, units)).transpose()?,
         switch: switch(raw, units)?,
         wish: wish(raw, units)?,
     })
+}
+
+fn diameter_cap(asked: &At<RawCap>, raw: &RawModel, units: UnitSystem) -> Result<DiameterCap, Problem> {
+    if let Some(method) = raw.method.filter(|&method| method != Method::ClosestApproach) {
+        let found = format!("`diameter_cap` with the method `{}`", method.name());
+        let allowed = "it only beside `closest-approach`, whose pressure does not depend on the diameter";
+        return Err(Problem::value(&asked.span, found, allowed));
+    }
+    match asked.value {
+        RawCap::Off(_) => Ok(DiameterCap::Off),
+        RawCap::Spacings(value) => {
+            let at = At { value, span: asked.span.clone() };
+            Ok(DiameterCap::Spacings(positive(&at, Quantity::Pure, units)?))
+        }
+    }
+}
+
+fn wishes(raw: &RawModel) -> bool {
+    raw.accuracy.is_some() || raw.time_budget.is_some() || raw.particle_budget.is_some()
 }
 
 fn switch(raw: &RawModel, units: UnitSystem) -> Result<Option<Switch>, Problem> {
@@ -62,7 +84,7 @@ fn switch(raw: &RawModel, units: UnitSystem) -> Result<Option<Switch>, Problem> 
             None => Ok(None),
         };
     };
-    if raw.accuracy.is_some() || raw.time_budget.is_some() || raw.particle_budget.is_some() {
+    if wishes(raw) {
         let allowed =
             "no `switch` beside `accuracy`, `time_budget` or `particle_budget`: what it saves is not predicted yet";
         return Err(Problem::value(&asked.span, "`switch` with a wish", allowed));
@@ -99,8 +121,7 @@ fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
             "at most one of them: the first says how many, the second how many at most",
         ));
     }
-    let wished = raw.accuracy.is_some() || raw.time_budget.is_some() || raw.particle_budget.is_some();
-    if let Some(rate) = raw.device_rate.as_ref().filter(|_| !wished) {
+    if let Some(rate) = raw.device_rate.as_ref().filter(|_| !wishes(raw)) {
         let allowed = "only beside `accuracy`, `time_budget` or `particle_budget`, whose predicted cost it scales";
         return Err(Problem::value(&rate.span, "`device_rate` without a wish", allowed));
     }

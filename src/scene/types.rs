@@ -354,6 +354,7 @@ pub struct ModelRequest {
     pub diameter: Option<f64>,
     /// Occupancy n pi sigma^3 / 6 at the mean number density at the end of the run.
     pub occupancy: Option<f64>,
+    pub diameter_cap: Option<DiameterCap>,
     /// Largest time step, s.
     pub time_step: Option<f64>,
     pub rounds: Option<u32>,
@@ -361,6 +362,14 @@ pub struct ModelRequest {
     pub collision_number: Option<f64>,
     pub switch: Option<Switch>,
     pub wish: Wish,
+}
+
+/// What holds the collision diameter down where gas is dense.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DiameterCap {
+    Off,
+    /// Mean spacings n^(-1/3) of the local gas.
+    Spacings(f64),
 }
 
 /// When a run of particles goes on as a control volume.

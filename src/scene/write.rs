@@ -206,6 +206,11 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
             out.number(key, value);
         }
     }
+    match model.diameter_cap {
+        Some(DiameterCap::Off) => out.text("diameter_cap", "off"),
+        Some(DiameterCap::Spacings(spacings)) => out.number("diameter_cap", spacings),
+        None => {}
+    }
     if let Some(rounds) = model.rounds {
         out.count("rounds", u64::from(rounds));
     }

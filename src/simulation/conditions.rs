@@ -12,7 +12,7 @@ use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer};
-use crate::subdomain::{Coating, GpuCoat, GpuVent, Scales, Tallies, ZoneSum};
+use crate::subdomain::{GpuCoat, GpuVent, Scales, Tables, Tallies, ZoneSum};
 
 use super::model::Model;
 use super::run_state::StateError;
@@ -201,21 +201,21 @@ impl<'a> Conditions<'a> {
     }
 
     /// What the walls do from `start` to `end`, s.
-    pub fn coating(&mut self, start: f64, end: f64) -> Coating {
-        let mut coating = Coating::default();
+    pub fn tables(&mut self, start: f64, end: f64) -> Tables {
+        let mut tables = Tables::default();
         if self.mirrors() {
-            return coating;
+            return tables;
         }
         let model = self.model;
         let betas: Vec<f64> =
             (0..model.scene.vents.len()).map(|index| self.flow(&self.state.current, index, start, end).1).collect();
         let heaviest = self.scales.reference_mass / model.plan.moles_per_particle;
         for (index, coat) in model.coats.coats.iter().enumerate() {
-            let first_vent = coating.vents.len() as u32;
+            let first_vent = tables.vents.len() as u32;
             for &vent in &coat.vents {
                 let (center, radius2) = self.disc(vent);
                 let (beta, index) = (betas[vent] as f32, vent as u32);
-                coating.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
+                tables.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
             }
             let (mut thermal, mut share) = (0.0, 0.0);
             if let Some(heat) = &model.scene.walls[coat.wall].heat {
@@ -229,14 +229,14 @@ impl<'a> Conditions<'a> {
                     self.state.most_asked[index] = self.state.most_asked[index].max(share);
                 }
             }
-            coating.coats.push(GpuCoat {
+            tables.coats.push(GpuCoat {
                 thermal: thermal as f32,
                 accommodation: share.min(1.0) as f32,
                 first_vent,
-                end_vent: coating.vents.len() as u32,
+                end_vent: tables.vents.len() as u32,
             });
         }
-        coating
+        tables
     }
 
     /// Centre in quanta and the square of the radius, m2, of a vent's place.

@@ -152,13 +152,13 @@ impl<'a> Guards<'a> {
     /// Blocks that are surely denser than the limit, if more than a few particles are in them.
     fn dense(&self, blocks: &[BlockSum]) -> Option<Warning> {
         let bound = limit(Quantity::Occupancy, self.plan.method)?.bound;
-        let per_density = kinetics::occupancy(1.0, self.plan.diameter);
+        let occupancy = |density: f64| kinetics::occupancy(density, self.plan.diameter_in(density));
         let full = self.block_volumes.iter().copied().fold(0.0, f64::max);
         let (mut total, mut within, mut volume) = (0, 0, 0.0);
         for (block, &room) in blocks.iter().zip(&self.block_volumes) {
             total += block.number;
             let number = block.number as f64;
-            let surely = (number - SURE * number.sqrt()) / room * per_density;
+            let surely = occupancy((number - SURE * number.sqrt()) / room);
             if room > LEAST_VOLUME * full && !bound.holds(surely) {
                 within += block.number;
                 volume += room;
@@ -169,8 +169,8 @@ impl<'a> Guards<'a> {
         }
         let share = 100.0 * within as f64 / total as f64;
         let subject = format!("where {share:.0} % of the gas is");
-        let remedy = "a smaller `diameter`, or more `particles`";
-        self.table(Quantity::Occupancy, &subject, within as f64 / volume * per_density, remedy)
+        let remedy = "a smaller `diameter` or `diameter_cap`";
+        self.table(Quantity::Occupancy, &subject, occupancy(within as f64 / volume), remedy)
     }
 
     fn busy_walls(&self, shown: &Shown<'_>) -> Option<Warning> {
@@ -249,7 +249,10 @@ mod tests {
     /// Each guard is silent within its limit, tells beyond it, with the time, and tells once.
     #[test]
     fn guards_tell_once_beyond_their_limits() {
-        let model = model();
+        let mut model = model();
+        // Where the diameter is capped, dense gas has no larger occupancy.
+        let capped = Plan { diameter_cap: Some(0.7), ..model.plan.clone() };
+        model.plan.diameter_cap = None;
         let plan = &model.plan;
         let volumes = [1e-3; 4];
         let step = plan.time_step;
@@ -278,6 +281,8 @@ mod tests {
             (Shown { step, drift: -1.1e-5, ..shown(&calm) }, Quantity::EnergyDrift, 1),
             (Shown { step, clipped: &clipped, ..shown(&calm) }, Quantity::ClippedHits, model.scene.vents.len()),
         ];
+        let mut of_capped = Guards::new(&model.scene, &capped, volumes.to_vec());
+        assert_eq!(of_capped.interval(&Shown { step, ..shown(&dense) }), Vec::new());
         let mut all = 0;
         for (shown, quantity, times) in &cases {
             let told = guards.interval(shown);

@@ -7,7 +7,7 @@ use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{Coating, GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tallies};
+use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tables, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -33,7 +33,7 @@ pub struct Interval {
     /// Particles that have entered by its end, on all ranks, the initial ones with them.
     pub particles: u64,
     /// What the walls that are no mirrors do in it.
-    pub coating: Coating,
+    pub tables: Tables,
     /// The mean volumes of its tallied steps where walls move, m3: of the chambers, then the probes.
     pub volumes: Vec<f64>,
 }
@@ -92,7 +92,7 @@ impl Interval {
             stride: 1,
             momentum: [0.0; 3],
             energy: vec![0.0; steps as usize],
-            coating: Coating::default(),
+            tables: Tables::default(),
             volumes: Vec::new(),
             particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
         };
@@ -187,7 +187,7 @@ impl Machine<'_, '_> {
             stride: interval.stride,
         };
         let slots =
-            self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns, &interval.coating)?;
+            self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns, &interval.tables)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;

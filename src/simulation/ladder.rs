@@ -4,10 +4,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::local_gas::LocalGas;
 use super::run_state::StateError;
 use crate::plan::Plan;
-use crate::scene::Method;
-use crate::subdomain::{BlockSum, Scales};
+use crate::subdomain::BlockSum;
 
 /// Share of the particles that may be in blocks beyond the collision limit: local peaks of a few noisy
 /// blocks do not set the step of all.
@@ -16,21 +16,14 @@ const TAIL: f64 = 0.02;
 const FAST_TAIL: f64 = 1e-3;
 /// A longer step is taken only with this much room, so that the level does not flutter.
 const ROOM: f64 = 0.9;
-/// The volume of a block with less gas volume than this share of a full one is too uncertain for a density of
-/// its own: all such blocks count as one, so that the gas of a vessel thinner than a block counts too.
-const LEAST_VOLUME: f64 = 0.05;
-
 pub struct Ladder {
     level: u32,
     levels: u32,
-    /// sigma^2 pi sqrt(16 / (pi m_lightest / m_ref)): rate = this x n x sqrt(kT/m_ref).
-    rate: f64,
     limit: f64,
     top: f64,
-    energy_unit: f64,
-    /// Gas volume of each block, m3.
-    volumes: Vec<f64>,
-    full: f64,
+    local: LocalGas,
+    /// What is left of the cross-section in each block; empty without a cap.
+    shares: Vec<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -43,42 +36,34 @@ pub struct LadderError {
     pub ratio: f64,
 }
 
-/// What the state asks of the step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// What the state asks of the step and of the diameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Demand {
     /// x at the top of the ladder, for the densest and hottest but the tail.
     pub collision: f64,
     /// Coarsest level at which few enough particles cross more than a cell.
     pub fast_level: u32,
+    /// What is to be left of the cross-section in each block, in `FULL_SHARE`ths; empty without a cap.
+    pub shares: Vec<u32>,
 }
 
 /// Where on its ladder the step is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LadderState {
     pub level: u32,
     levels: u32,
+    shares: Vec<u32>,
 }
 
 impl Ladder {
     pub fn new(plan: &Plan, volumes: Vec<f64>) -> Ladder {
-        let scales = Scales::new(plan);
-        let lightest = plan.gases.iter().map(|gas| gas.molar_mass).fold(f64::INFINITY, f64::min);
-        let heaviest = scales.reference_mass / plan.moles_per_particle;
-        let pi = std::f64::consts::PI;
-        let block_edge = plan.grid.cell * f64::from(1u32 << plan.block_cells_log2);
         Ladder {
             level: 0,
             levels: plan.ladder_levels,
-            rate: if plan.method == Method::None {
-                0.0
-            } else {
-                plan.diameter * plan.diameter * pi * (16.0 / pi * heaviest / lightest).sqrt()
-            },
             limit: plan.collision_limit,
             top: plan.time_step,
-            energy_unit: scales.block_energy,
-            volumes,
-            full: block_edge.powi(3),
+            local: LocalGas::new(plan, volumes),
+            shares: Vec::new(),
         }
     }
 
@@ -86,8 +71,13 @@ impl Ladder {
         self.level
     }
 
+    /// What is left of the cross-section in each block, in `FULL_SHARE`ths; empty without a cap.
+    pub fn shares(&self) -> &[u32] {
+        &self.shares
+    }
+
     pub fn state(&self) -> LadderState {
-        LadderState { level: self.level, levels: self.levels }
+        LadderState { level: self.level, levels: self.levels, shares: self.shares.clone() }
     }
 
     /// # Errors
@@ -99,61 +89,46 @@ impl Ladder {
         if state.level > 0 && state.level >= state.levels {
             return Err(StateError::Impossible { what: "the step is below the ladder" });
         }
+        if state.shares.len() != self.local.entries() {
+            let (found, expected) = (state.shares.len() as u64, self.local.entries() as u64);
+            return Err(StateError::differs("blocks with a diameter", found, expected));
+        }
         self.level = state.level;
+        self.shares.clone_from(&state.shares);
         Ok(())
-    }
-
-    /// Collisions per particle and second in gas of this volume, m3.
-    fn collision_rate(&self, gas: &BlockSum, volume: f64) -> f64 {
-        let number = gas.number as f64;
-        let kt = 2.0 / 3.0 * gas.energy as f64 / self.energy_unit / number;
-        // Less one standard error: the noise of small blocks is no peak.
-        self.rate * (number - number.sqrt()) / volume * kt.sqrt()
     }
 
     /// What a measured state asks for.
     pub fn demand(&self, blocks: &[BlockSum], fast: &[u32]) -> Demand {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
-        let mut rates = Vec::with_capacity(blocks.len());
-        let (mut slivers, mut slivers_volume) = (BlockSum { number: 0, energy: 0 }, 0.0);
-        for (block, &volume) in blocks.iter().zip(&self.volumes) {
-            if volume > LEAST_VOLUME * self.full {
-                if block.number > 0 {
-                    rates.push((self.collision_rate(block, volume), block.number));
-                }
-            } else {
-                // Empty ones too: with the few particles of a sliver, those that chance filled are too dense.
-                slivers.number += block.number;
-                slivers.energy += block.energy;
-                slivers_volume += volume;
-            }
-        }
-        if slivers.number > 0 && slivers_volume > 0.0 {
-            rates.push((self.collision_rate(&slivers, slivers_volume), slivers.number));
-        }
-        rates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let shares = self.local.shares(blocks);
+        let mut parts = self.local.parts(blocks, &shares);
+        parts.sort_by(|a, b| b.rate.total_cmp(&a.rate));
         let mut beyond = 0;
         let mut rate = 0.0;
-        for (candidate, number) in rates {
-            rate = candidate;
-            beyond += number;
+        for part in parts {
+            rate = part.rate;
+            beyond += part.number;
             if beyond as f64 > TAIL * total as f64 {
                 break;
             }
         }
         let allowed = FAST_TAIL * total as f64;
         let fast_level = fast.iter().position(|&count| f64::from(count) <= allowed).unwrap_or(fast.len());
-        Demand { collision: rate * self.top, fast_level: fast_level as u32 }
+        Demand { collision: rate * self.top, fast_level: fast_level as u32, shares }
     }
 
-    /// Takes the level that the demand asks for: finer at once, coarser by one level and with room.
+    /// Takes the diameters that the demand asks for, and the level too: finer at once, coarser by one level and with
+    /// room.
     ///
     /// # Errors
     /// If it is below the ladder.
     pub fn follow(&mut self, demand: Demand) -> Result<u32, LadderError> {
+        let Demand { collision, fast_level, shares } = demand;
+        self.shares = shares;
         let level_for = |limit: f64| {
             // Halving is exact; a logarithm would depend on the system's library.
-            let mut collision = demand.collision;
+            let mut collision = collision;
             let mut level = 0;
             while collision > limit && level < 64 {
                 collision *= 0.5;
@@ -161,21 +136,26 @@ impl Ladder {
             }
             level
         };
-        let needed = level_for(self.limit).max(demand.fast_level);
+        let needed = level_for(self.limit).max(fast_level);
         if needed >= self.levels {
             let smallest = self.top / f64::from(1u32 << (self.levels - 1));
-            let ratio = demand.collision / self.limit / f64::from(1u32 << (self.levels - 1));
+            let ratio = collision / self.limit / f64::from(1u32 << (self.levels - 1));
             return Err(LadderError { needed: self.top / 2f64.powi(needed as i32), smallest, ratio: ratio.max(1.0) });
         }
         if needed > self.level {
             self.level = needed;
         } else {
-            let roomy = level_for(self.limit * ROOM).max(demand.fast_level);
+            let roomy = level_for(self.limit * ROOM).max(fast_level);
             if roomy < self.level {
                 self.level -= 1;
             }
         }
         Ok(self.level)
+    }
+
+    /// Takes the diameters alone.
+    pub fn hold(&mut self, demand: Demand) {
+        self.shares = demand.shares;
     }
 
     /// The level of the start of a run: that of the demand, without hysteresis.
@@ -191,42 +171,37 @@ impl Ladder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::local_gas::tests::{block, local_gas};
 
     fn ladder(volumes: Vec<f64>) -> Ladder {
-        Ladder { level: 0, levels: 12, rate: 1.0, limit: 0.3, top: 1.0, energy_unit: 1.0, volumes, full: 1.0 }
+        Ladder { level: 0, levels: 12, limit: 0.3, top: 1.0, local: local_gas(volumes), shares: Vec::new() }
     }
 
-    /// kT = 1.
-    fn block(number: u64) -> BlockSum {
-        BlockSum { number, energy: 3 * number / 2 }
+    fn demand(collision: f64) -> Demand {
+        Demand { collision, fast_level: 0, shares: Vec::new() }
     }
 
     #[test]
     fn a_restored_ladder_is_at_its_level() {
         let mut cut = ladder(vec![1.0]);
-        cut.follow(Demand { collision: 1.0, fast_level: 0 }).unwrap();
+        cut.follow(demand(1.0)).unwrap();
         let mut restored = ladder(vec![1.0]);
         assert_ne!(restored.level(), cut.level());
         restored.restore(&cut.state()).unwrap();
         assert_eq!(restored.level(), cut.level());
-        assert!(restored.restore(&LadderState { level: 12, levels: 12 }).is_err());
-        assert!(restored.restore(&LadderState { level: 1, levels: 3 }).is_err());
+        assert!(restored.restore(&LadderState { level: 12, ..cut.state() }).is_err());
+        assert!(restored.restore(&LadderState { levels: 3, ..cut.state() }).is_err());
         assert_eq!(restored.level(), cut.level());
     }
 
+    /// A few particles in a sliver do not set the step of all, nor does what is empty.
     #[test]
-    fn gas_in_slivers_counts_as_a_whole() {
-        let demand = |volumes: &[f64], numbers: &[u64]| {
-            let blocks: Vec<BlockSum> = numbers.iter().map(|&number| block(number)).collect();
-            ladder(volumes.to_vec()).demand(&blocks, &[0]).collision
+    fn the_tail_does_not_count() {
+        let collision = |numbers: [u64; 2]| {
+            let blocks = numbers.map(block);
+            ladder(vec![1.0, 1e-6]).demand(&blocks, &[0]).collision
         };
-        // A vessel thinner than a block: its density is that of all its blocks, however they share the volume.
-        let surely = |number: f64| number - number.sqrt();
-        assert_eq!(demand(&[0.01, 0.03], &[60, 20]), surely(80.0) / 0.04);
-        assert_eq!(demand(&[0.0, 0.04], &[60, 20]), surely(80.0) / 0.04);
-        assert_eq!(demand(&[0.01, 0.03], &[80, 0]), surely(80.0) / 0.04);
-        // A few particles in a sliver do not set the step of all.
-        assert_eq!(demand(&[1.0, 1e-6], &[1000, 2]), surely(1000.0));
-        assert_eq!(demand(&[1.0, 1e-6], &[0, 0]), 0.0);
+        assert_eq!(collision([1000, 2]), 1000.0 - 1000f64.sqrt());
+        assert_eq!(collision([0, 0]), 0.0);
     }
 }

@@ -21,16 +21,16 @@ use super::audit::{Account, count_outside};
 use super::averages::Averages;
 use super::balance::Balance;
 use super::clock::Clock;
-use super::conditions::{Conditions, Seen};
+use super::conditions::Conditions;
 use super::decomposition::Decomposition;
 use super::exchange::Exchange;
 use super::guards::Guards;
 use super::interrupt::Request;
 use super::interval::{Deal, InFlight, Interval, Machine};
-use super::ladder::{Demand, Ladder};
+use super::ladder::Ladder;
 use super::model::Model;
 use super::observer::{Moment, Observer, Options, Outcome};
-use super::run_state::{RunState, StateError as RunStateError};
+use super::run_state::{Asked, RunState, StateError as RunStateError};
 use super::setup::Setup;
 use super::switch::Switching;
 use super::tuning::Tuner;
@@ -74,15 +74,10 @@ pub struct Simulation<'a> {
     guards: Guards<'a>,
     timer: Option<PhaseTimer>,
     flying: VecDeque<InFlight>,
-    /// What the states read so far ask of the step and no interval has followed yet, oldest first.
-    demands: VecDeque<Demand>,
-    /// And what the walls have seen of them.
+    /// What the states read so far ask and no interval has followed yet, oldest first.
+    asked: VecDeque<Asked>,
     conditions: Conditions<'a>,
-    /// With how many particles had left by then.
-    seen: VecDeque<(Seen, u64)>,
     switching: Switching<'a>,
-    /// Of the states read that no interval has followed yet: whether a control volume takes over from there.
-    switches: VecDeque<bool>,
     /// No particles from here on.
     switched: bool,
     submitted: usize,
@@ -172,11 +167,9 @@ impl<'a> Simulation<'a> {
             guards: Guards::new(&model.scene, plan, setup.volumes.to_vec()),
             timer: PhaseTimer::new(device)?,
             flying: VecDeque::new(),
-            demands: VecDeque::new(),
+            asked: VecDeque::new(),
             conditions: Conditions::new(model),
-            seen: VecDeque::new(),
             switching: Switching::new(model)?,
-            switches: VecDeque::new(),
             switched: false,
             submitted: 0,
             spare: Vec::new(),
@@ -214,15 +207,9 @@ impl<'a> Simulation<'a> {
         simulation.averages.restore(&state.averages)?;
         simulation.account.restore(&model.plan, &state.account)?;
         simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
-        simulation.demands = state.demands.iter().copied().collect();
+        simulation.asked = state.asked.iter().cloned().collect();
         simulation.conditions.restore(&state.conditions)?;
         simulation.guards.restore(&state.guards);
-        simulation.seen = state.seen.iter().cloned().collect();
-        if state.switches.len() != state.demands.len() {
-            let (found, expected) = (state.switches.len() as u64, state.demands.len() as u64);
-            return Err(RunStateError::differs("states that say whether to switch", found, expected).into());
-        }
-        simulation.switches = state.switches.iter().copied().collect();
         simulation.switching.restore(&state.switch)?;
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
@@ -240,11 +227,9 @@ impl<'a> Simulation<'a> {
             averages: self.averages.state(),
             account: self.account.state().clone(),
             inflow: self.inflow.state(),
-            demands: self.demands.iter().copied().collect(),
+            asked: self.asked.iter().cloned().collect(),
             conditions: self.conditions.state().clone(),
             guards: self.guards.state().clone(),
-            seen: self.seen.iter().cloned().collect(),
-            switches: self.switches.iter().copied().collect(),
             switch: self.switching.state().clone(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
@@ -277,7 +262,9 @@ impl<'a> Simulation<'a> {
         self.account.start(&at_start);
         self.conditions.start(&at_start);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
-        if !self.options.hold_step {
+        if self.options.hold_step {
+            self.ladder.hold(demand);
+        } else {
             self.ladder.start(demand).map_err(|source| SimulationError::Ladder { time: 0.0, source })?;
         }
         self.snapshot(observer)?;
@@ -305,8 +292,8 @@ impl<'a> Simulation<'a> {
             }
         }
         // By what was read until here: as many intervals before the end of the particles as for the step size.
-        self.switched =
-            self.clock.time() >= self.switching.time() || (self.follows() && self.switches.front() == Some(&true));
+        self.switched = self.clock.time() >= self.switching.time()
+            || (self.follows() && self.asked.front().is_some_and(|asked| asked.switches));
         if self.switched {
             return Ok(false);
         }
@@ -409,21 +396,18 @@ impl<'a> Simulation<'a> {
 
     fn submit_next(&mut self) -> Result<(), SimulationError> {
         let plan = &self.model.plan;
-        if self.follows() {
-            self.switches.pop_front();
-        }
         if self.follows()
-            && let Some(demand) = self.demands.pop_front()
+            && let Some(asked) = self.asked.pop_front()
         {
             let time = self.clock.time();
-            if !self.options.hold_step {
-                self.ladder.follow(demand).map_err(|source| SimulationError::Ladder { time, source })?;
+            if self.options.hold_step {
+                self.ladder.hold(asked.demand);
+            } else {
+                self.ladder.follow(asked.demand).map_err(|source| SimulationError::Ladder { time, source })?;
             }
-            if let Some((seen, left)) = self.seen.pop_front() {
-                self.conditions.follow(seen);
-                let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
-                self.subdomain.shrink(plan.initial_particles + entered - left);
-            }
+            self.conditions.follow(asked.seen);
+            let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
+            self.subdomain.shrink(plan.initial_particles + entered - asked.left);
         }
         if let Some(decomposition) = &mut self.decomposition {
             let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
@@ -443,10 +427,11 @@ impl<'a> Simulation<'a> {
             Some(_) => Deal::All,
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
-        interval.coating = self.conditions.coating(start, end);
+        interval.tables = self.conditions.tables(start, end);
+        interval.tables.shares = self.ladder.shares().to_vec();
         let moving = &self.model.moving;
         if !moving.is_empty() {
-            interval.coating.motions = moving.steps(&plan.grid, start, interval.dt, steps);
+            interval.tables.motions = moving.steps(&plan.grid, start, interval.dt, steps);
             interval.volumes = moving.mean_volumes(self.averages.drawn(), interval.tallied_at(plan, start));
         }
         self.submit(interval)

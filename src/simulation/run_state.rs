@@ -36,15 +36,11 @@ pub struct RunState {
     pub averages: AveragesState,
     pub account: AccountState,
     pub inflow: InflowState,
-    /// What states read so far ask of the step and no interval has followed yet, oldest first.
-    pub demands: Vec<Demand>,
+    /// What states read so far ask and no interval has followed yet, oldest first.
+    pub asked: Vec<Asked>,
     pub conditions: ConditionsState,
     pub guards: GuardState,
-    /// Of the same states: whether a control volume takes over from there; and what is remembered of the rows.
-    pub switches: Vec<bool>,
     pub switch: SwitchState,
-    /// What the walls have seen of the same states, and how many particles had left by then.
-    pub seen: Vec<(Seen, u64)>,
     /// Intervals so far.
     pub submitted: u64,
     /// s.
@@ -54,6 +50,19 @@ pub struct RunState {
     pub read_until: f64,
     /// Intervals that were run again.
     pub repeated: u32,
+}
+
+/// What the state at the end of an interval asks of one to come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Of the step and the diameters.
+    pub demand: Demand,
+    /// Of the walls, by what they have seen.
+    pub seen: Seen,
+    /// Particles that had left.
+    pub left: u64,
+    /// Whether a control volume takes over.
+    pub switches: bool,
 }
 
 /// Why a state cannot be taken up.
@@ -210,15 +219,18 @@ mod tests {
             averages: averages(&plan).state(),
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
-            demands: vec![Demand { collision: 0.1 + 0.2, fast_level: 3 }],
-            switches: vec![true],
+            asked: vec![Asked {
+                demand: Demand { collision: 0.1 + 0.2, fast_level: 3, shares: vec![1, 32768] },
+                seen: Seen::default(),
+                left: 7,
+                switches: true,
+            }],
             switch: SwitchState {
                 recent: [Deviations { window: [0.1, 0.1 + 0.2], of_places: vec![[-1e-3, 1e-300]] }].into(),
                 decided: Some(Decided { window: [0.1, 0.3], noise: 1.0 / 3.0 }),
             },
             conditions: ConditionsState::default(),
             guards: GuardState::default(),
-            seen: vec![(Seen::default(), 7)],
             submitted: 5,
             next_row: 1.0 / 3.0,
             next_snapshot: 2,

@@ -98,6 +98,8 @@ pub struct FixedBuffers {
     pub vents: wgpu::Buffer,
     /// Where the walls that move are in its steps.
     pub motions: wgpu::Buffer,
+    /// What is left of the cross-section in each coarse block.
+    pub shares: wgpu::Buffer,
     /// The cells whose gas walls part, of a step.
     pub parted: wgpu::Buffer,
 }
@@ -107,7 +109,7 @@ impl FixedBuffers {
         device: &Device,
         words: TallyWords,
         step_slots: u64,
-        [coats, vents, parted]: [u64; 3],
+        [coats, vents, parted, shares]: [u64; 4],
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
@@ -123,6 +125,7 @@ impl FixedBuffers {
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
             motions: device.uniform("motions", (MOTION_ENTRIES * size_of::<GpuMotion>()) as u64)?,
             parted: device.storage::<u32>("parted", parted)?,
+            shares: device.storage::<u32>("shares", shares.max(1))?,
         })
     }
 }
@@ -357,6 +360,7 @@ impl<'a> Buffers<'a> {
             (_, "zones") => &domain.zones,
             (_, "cell_volume") => &domain.cell_volume,
             (_, "cell_parts") => &domain.cell_parts,
+            (_, "shares") => &fixed.shares,
             (_, "parted") => &fixed.parted,
             (_, "particles") => &particle.particles,
             (_, "newborns") => &particle.newborns,

@@ -26,6 +26,8 @@ pub struct Features {
     pub collisions: bool,
     /// Pairs are chosen from neighbour lists, in rounds; without it they collide within their cells.
     pub rounds: bool,
+    /// The collision diameter follows the local density where gas is dense.
+    pub capped: bool,
     /// Walls part the gas of some cell.
     pub parted: bool,
     pub spin: bool,
@@ -70,6 +72,7 @@ impl Features {
         Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
+            capped: plan.diameter_cap.is_some(),
             parted,
             spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
             curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
@@ -107,6 +110,8 @@ pub fn constants(
         ("CHUNK", CHUNK as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
+        ("CAPPED", flag(features.capped)),
+        ("DIAMETER_REACH2", (16384.0 * (plan.diameter / grid.cell).powi(2)).floor()),
         ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
         ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),

@@ -31,11 +31,16 @@ pub struct StepSlot {
 /// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
 /// of its steps, `MOST_MOTIONS` entries for each, empty where none does.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Coating {
+pub struct Tables {
     pub coats: Vec<GpuCoat>,
     pub vents: Vec<GpuVent>,
     pub motions: Vec<GpuMotion>,
+    /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
+    pub shares: Vec<u32>,
 }
+
+/// The share of a block whose gas has the largest diameter (`shaders/shared/cap.wgsl`).
+pub const FULL_SHARE: u32 = 1 << 15;
 
 /// Who enters in an interval.
 #[derive(Debug, Clone, Copy)]
@@ -100,12 +105,13 @@ impl Subdomain {
         first_step: u64,
         dt: f64,
         newborns: &Newborns<'_>,
-        coating: &Coating,
+        tables: &Tables,
     ) -> Result<Vec<StepSlot>, GpuError> {
         // Work that was submitted before has seen the tables of its own interval.
-        device.write(&self.fixed.coats, 0, &coating.coats);
-        device.write(&self.fixed.vents, 0, &coating.vents);
-        device.write(&self.fixed.motions, 0, &coating.motions);
+        device.write(&self.fixed.coats, 0, &tables.coats);
+        device.write(&self.fixed.vents, 0, &tables.vents);
+        device.write(&self.fixed.motions, 0, &tables.motions);
+        device.write(&self.fixed.shares, 0, &tables.shares);
         let tally_every = u64::from(self.domain.plan.tally_every);
         let tallies = |steps: usize| (first_step + steps as u64) / tally_every;
         let Newborns { of_step, list, first_id, stride } = *newborns;

@@ -30,7 +30,7 @@ pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{Counters, WORDS as COUNTER_WORDS};
 pub use domain::{Domain, DomainInput};
-pub use encode::{Coating, Newborns, StepSlot};
+pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
@@ -84,7 +84,8 @@ impl Subdomain {
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
-        let tables = [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells];
+        let shares = if features.capped { block_counts(plan).iter().map(|&n| u64::from(n)).product() } else { 1 };
+        let tables = [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells, shares];
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);

@@ -1,6 +1,6 @@
 //! `choose` against the f64 rule 3 (specification, section 2).
 
-use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep};
+use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 
 use crate::oracle::collision::{Body, closest_approach, meeting};
 use crate::oracle::random::Stream;
@@ -17,6 +17,8 @@ pub struct Cloud {
     pub particles: Vec<GpuParticle>,
     pub flights: Vec<GpuFlight>,
     pub lists: Vec<Vec<u32>>,
+    /// The diameter of each is that of the share in its flight.
+    pub capped: bool,
 }
 
 impl Cloud {
@@ -34,7 +36,7 @@ impl Cloud {
         let lists: Vec<Vec<u32>> =
             (0..count).map(|i| (0..count).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect();
         assert!(lists.iter().all(|list| list.len() <= LIST), "room for all neighbours");
-        Cloud { world, flights: free_flights(count), particles, lists }
+        Cloud { world, flights: free_flights(count), particles, lists, capped: false }
     }
 
     pub fn rig(&self) -> Rig {
@@ -47,6 +49,7 @@ impl Cloud {
         }
         let mut rig = Rig::new(&self.world);
         rig.constant("DIAMETER", DIAMETER);
+        rig.constant("CAPPED", f64::from(u8::from(self.capped)));
         rig.put("sorted", &self.particles);
         rig.put("flights", &self.flights);
         rig.put("neighbours", &flat);
@@ -58,6 +61,23 @@ impl Cloud {
 
     pub fn step(&self, round: u32) -> GpuStep {
         GpuStep { count: self.particles.len() as u32, index: 77, dt: DT, round, ..GpuStep::default() }
+    }
+
+    /// Gives every particle a share of the cross-section, from a fiftieth to all.
+    pub fn cap(&mut self, stream: &mut Stream) {
+        self.capped = true;
+        for flight in &mut self.flights {
+            flight.collisions |= (1 + FULL_SHARE - stream.below(FULL_SHARE - FULL_SHARE / 50)).min(FULL_SHARE) << 16;
+        }
+    }
+
+    /// The smaller of the two diameters, m.
+    pub fn diameter(&self, s: usize, j: usize) -> f64 {
+        if !self.capped {
+            return DIAMETER;
+        }
+        let share = |s: usize| f64::from(self.flights[s].collisions >> 16) / f64::from(FULL_SHARE);
+        DIAMETER * share(s).min(share(j)).sqrt()
     }
 
     pub fn body(&self, s: usize) -> Body {
@@ -103,11 +123,12 @@ fn verdict(cloud: &Cloud, s: usize, partner: usize) -> Verdict {
     let latest = f64::from(DT).min(i.wall).min(j.wall);
     let room = (time - i.start.max(j.start)).min(latest - time);
     // Pairs that have just collided are told apart exactly.
+    let diameter = cloud.diameter(s, partner);
     let barred = i.partner == Some(j.id) && j.partner == Some(i.id);
-    if barred || room < -error || norm(miss) - DIAMETER > miss_error {
+    if barred || room < -error || norm(miss) - diameter > miss_error {
         Verdict::Never
-    } else if room > error && DIAMETER - norm(miss) > miss_error {
-        assert_eq!(meeting(&i, &j, [0.0; 3], DIAMETER, f64::from(DT)), Some(time));
+    } else if room > error && diameter - norm(miss) > miss_error {
+        assert_eq!(meeting(&i, &j, [0.0; 3], diameter, f64::from(DT)), Some(time));
         Verdict::Surely(time)
     } else {
         Verdict::Perhaps(time)
@@ -195,4 +216,36 @@ fn choices_are_those_of_the_rule() {
             assert!(wrong(&cloud, &choices, &some).0 > chosen / 50);
         }
     }
+}
+
+/// Where the diameter is capped that of a pair is the smaller of its two.
+#[test]
+fn choices_follow_the_smaller_diameter() {
+    let mut cloud = busy_cloud(31);
+    let count = cloud.particles.len();
+    let all: Vec<u32> = (0..count as u32).collect();
+    let choices = |cloud: &Cloud| -> Vec<[u32; 2]> {
+        let mut rig = cloud.rig();
+        rig.put("choices", &vec![[7u32, 7]; count]);
+        rig.step(cloud.step(0));
+        rig.run("choose", count);
+        rig.get("choices", count)
+    };
+    let uncapped = choices(&cloud);
+    for flight in &mut cloud.flights {
+        flight.collisions = FULL_SHARE << 16;
+    }
+    cloud.capped = true;
+    assert_eq!(choices(&cloud), uncapped, "all of the cross-section is all of it to the bit");
+    for flight in &mut cloud.flights {
+        flight.collisions = 0;
+    }
+    cloud.cap(&mut Stream::new(41));
+    let capped = choices(&cloud);
+    let (off, clear) = wrong(&cloud, &capped, &all);
+    let chosen = capped.iter().filter(|choice| choice[0] != NOBODY).count();
+    assert_eq!(off, 0);
+    assert!(clear > chosen / 2 && chosen > count / 8, "{clear} clear, {chosen} chosen of {count}");
+    // The check can fail: without shares they are others.
+    assert!(wrong(&cloud, &uncapped, &all).0 > chosen / 10);
 }

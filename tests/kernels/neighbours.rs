@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::subdomain::GpuStep;
+use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuStep};
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -143,4 +143,43 @@ fn the_outermost_ghosts_have_no_neighbours() {
             assert_eq!(counts[s] as usize, if outermost { 0 } else { expected.len() }, "{s}, depth {depth}");
         }
     }
+}
+
+/// Where the diameter is capped lists are shorter by what it lacks, and miss nobody whom a pair of that diameter can meet.
+#[test]
+fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
+    let mut crowd = crowd(15);
+    let mut stream = Stream::new(16);
+    // The diameter is .9 of a cell's edge.
+    let whole = (16384.0 * 0.9f64 * 0.9).floor();
+    let shares: Vec<u32> =
+        (0..COUNT).map(|s| if s % 3 == 0 { FULL_SHARE } else { 1 + stream.below(FULL_SHARE) }).collect();
+    let flights: Vec<GpuFlight> =
+        shares.iter().map(|&share| GpuFlight { collisions: share << 16, ..free_flights(1)[0] }).collect();
+    crowd.rig.put("flights", &flights);
+    crowd.rig.constant("CAPPED", 1.0);
+    crowd.rig.constant("DIAMETER_REACH2", whole);
+    let lists = crowd.run(64);
+    let uncapped = crowd.all_pairs();
+    let edge = crowd.world.grid.cell;
+    let (mut near, mut shorter) = (0, 0);
+    for (s, list) in lists.iter().enumerate() {
+        let set: BTreeSet<u32> = list.iter().copied().collect();
+        assert!(set.is_subset(&uncapped[s]));
+        if shares[s] == FULL_SHARE {
+            assert_eq!(set, uncapped[s]);
+        }
+        shorter += usize::from(set.len() < uncapped[s].len());
+        // sigma^2 + (g dt/2)^2, of which the second is what the edge leaves to the largest diameter.
+        let reach2 = edge * edge * (1.0 - whole / 16384.0 * (1.0 - f64::from(shares[s]) / f64::from(FULL_SHARE)));
+        for &j in &uncapped[s] {
+            let place = |k: usize| crowd.world.metres(crowd.middles[k]);
+            let (p, q) = (place(s), place(j as usize));
+            let distance2: f64 = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum();
+            assert!(distance2 >= reach2 || set.contains(&j), "{s} misses {j}");
+            near += usize::from(distance2 < reach2);
+        }
+    }
+    let total: usize = lists.iter().map(Vec::len).sum();
+    assert!(shorter > COUNT / 3 && near > 9 * total / 10, "{shorter} shorter, {near} of {total} near");
 }

@@ -187,6 +187,12 @@ impl Rig {
             // Mirrors, unless a test gives the walls coats.
             ("COATS", 0.0),
             ("VENTS", 0.0),
+            // One block, and one diameter, which no kernel needs but where a test says so.
+            ("BLOCK_BITS", 15.0),
+            ("BLOCKS_X", 1.0),
+            ("BLOCKS_Y", 1.0),
+            ("DIAMETER", 0.0),
+            ("DIAMETER_REACH2", 0.0),
             ("SEED_LOW", 0.0),
             ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),
@@ -211,6 +217,8 @@ impl Rig {
         rig.put("vents", &[0u32; 8]);
         rig.put("asked", &[0u32; 4]);
         rig.put("asked_dispatches", &[0u32; 3 * LISTS]);
+        rig.put("flights", &[0u32; 8]);
+        rig.put("shares", &[0u32; 4]);
         rig.put("origins", &[0u32; 4]);
         rig.put("particles", &[0u32; 8]);
         rig

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use corpuscle::scene::{GasSide, Shape};
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle};
+use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuGas, GpuParticle};
 
-use crate::choose::{Cloud, DIAMETER, DT};
+use crate::choose::{Cloud, DT};
 use crate::oracle::collision::{Draws, Gas, closest_approach, collide, meeting};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, dot, minus, norm, scaled};
@@ -41,7 +41,7 @@ fn meetings(cloud: &Cloud) -> Vec<(usize, usize, f32)> {
             let other = j as usize;
             let (i, j) = cloud.pair(s, other);
             let inside = |x: Vector| (0..3).all(|k| x[k] > cloud.world.low[k] && x[k] < cloud.world.high[k]);
-            if let Some(time) = meeting(&i, &j, [0.0; 3], DIAMETER, f64::from(DT))
+            if let Some(time) = meeting(&i, &j, [0.0; 3], cloud.diameter(s, other), f64::from(DT))
                 && inside(along(i.x0, i.v, time))
                 && inside(along(j.x0, j.v, time))
                 && !taken.contains(&s)
@@ -135,12 +135,13 @@ fn deviation_of(
     let reduced = gases[i.gas].mass * gases[j.gas].mass / (gases[i.gas].mass + gases[j.gas].mass);
     let energy = 0.5 * reduced * dot(g, g) + i.spin + j.spin;
     let places = [along(i.x0, i.v, f64::from(time)), along(j.x0, j.v, f64::from(time))];
+    let diameter = cloud.diameter(s, t);
     let draws = Draws::of(77, ROUND, [i.id, j.id], key);
-    collide(&mut i, &mut j, [0.0; 3], f64::from(time), DIAMETER, &gases, &draws);
+    collide(&mut i, &mut j, [0.0; 3], f64::from(time), diameter, &gases, &draws);
     // The miss vector errs by 16 u |r|. It turns g' by that over sigma, and by more near b = sigma, where
     // sin chi = 2 sqrt(b2 (1 - b2)) is steep; powers of f32 cost up to 64 u of the energy.
-    let b = (norm(miss) / DIAMETER).min(1.0);
-    let error = 16.0 * U * norm(r) / DIAMETER;
+    let b = (norm(miss) / diameter).min(1.0);
+    let error = 16.0 * U * norm(r) / diameter;
     let steep = (1.0 - b * b).max(error).sqrt();
     let speed = (2.0 * energy / reduced).sqrt();
     let mut worst = 0.0f64;
@@ -165,11 +166,14 @@ fn deviation_of(
 /// energy are kept to the rounding of the state; the virial is zero to 1e-6.
 #[test]
 fn collisions_are_those_of_f64_and_conserve() {
-    for spin in [true, false] {
+    for (spin, capped) in [(true, false), (false, false), (true, true)] {
         let mut stream = Stream::new(32);
-        let cloud = Cloud::new(&mut stream, World::plain(), 1600, 0.9);
+        let mut cloud = Cloud::new(&mut stream, World::plain(), 1600, 0.9);
+        if capped {
+            cloud.cap(&mut stream);
+        }
         let pairs = meetings(&cloud);
-        assert!(pairs.len() > 200, "{} pairs", pairs.len());
+        assert!(pairs.len() > if capped { 100 } else { 200 }, "{} pairs", pairs.len());
         let rig = settle(&cloud, &pairs, spin);
         let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
         let blocked = rig.counter(BLOCKED);
@@ -178,7 +182,7 @@ fn collisions_are_those_of_f64_and_conserve() {
         let (mut sum, mut scale, mut other_key) = (0.0, 0.0, 0);
         for pair in &pairs {
             let off = deviation(&cloud, pair, &after, SEED, spin);
-            assert!(off < 1.0, "spin {spin}: {off} of the bound");
+            assert!(off < 1.0, "spin {spin}, capped {capped}: {off} of the bound");
             other_key += usize::from(deviation(&cloud, pair, &after, [SEED[0] + 1, SEED[1]], spin) > 1.0);
             let (s, t, _) = *pair;
             let mass = |k: usize| gases()[usize::from(cloud.particles[k].gas())].mass;
@@ -236,7 +240,7 @@ fn those_near_a_collision_choose_again() {
     let mut cloud = Cloud::new(&mut stream, World::plain(), 1600, 0.9);
     let pairs: Vec<_> = meetings(&cloud).into_iter().take(20).collect();
     for flight in &mut cloud.flights {
-        flight.collisions = 3;
+        flight.collisions = 3 | FULL_SHARE << 16;
     }
     let rig = settle(&cloud, &pairs, true);
     let flights: Vec<GpuFlight> = rig.get("flights", cloud.particles.len());
@@ -246,7 +250,10 @@ fn those_near_a_collision_choose_again() {
     for &(i, j, time) in &pairs {
         for (own, other) in [(i, j), (j, i)] {
             let flight = flights[own];
-            assert_eq!((flight.start, flight.partner, flight.collisions), (time, cloud.particles[other].tag, 4));
+            assert_eq!(
+                (flight.start, flight.partner, flight.collisions),
+                (time, cloud.particles[other].tag, 4 | FULL_SHARE << 16)
+            );
             again.extend(cloud.lists[own].iter().copied());
             collided.insert(own);
         }

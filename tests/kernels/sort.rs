@@ -122,6 +122,14 @@ fn order_is_canonical() {
             world.class(at) != CLEAR || reach >= (1u32 << cells.bits) as f32
         })
         .collect();
+    // Blocks of two cells a side, each with its own share of the cross-section.
+    let blocks = world.grid.blocks(1);
+    let shares: Vec<u32> = (0..blocks.iter().product()).map(|b: u32| 100 + b).collect();
+    let share_of = |cell: u32| {
+        let [nx, ny, _] = world.grid.cells;
+        let b = [cell % nx, cell / nx % ny, cell / (nx * ny)].map(|k| k >> 1);
+        shares[((b[2] * blocks[1] + b[1]) * blocks[0] + b[0]) as usize]
+    };
     for shuffle in 0..2 {
         let mut slots: Vec<[u32; 2]> = canonical.iter().map(|&k| [k as u32, particles[k].id()]).collect();
         for pair in start.windows(2) {
@@ -146,11 +154,22 @@ fn order_is_canonical() {
             dt: DT,
             ..GpuStep::default()
         });
+        let capped = shuffle == 1;
+        rig.constant("CAPPED", f64::from(u8::from(capped)));
+        rig.constant("BLOCK_BITS", 1.0);
+        rig.constant("BLOCKS_X", f64::from(blocks[0]));
+        rig.constant("BLOCKS_Y", f64::from(blocks[1]));
+        rig.put("shares", &shares);
         rig.run("order", COUNT);
         assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "shuffle {shuffle}");
         let flights = rig.get::<GpuFlight>("flights", COUNT);
-        let new = |p: &GpuParticle| GpuFlight { start: begin(p), wall: NEVER, partner: NOBODY, collisions: 0 };
-        assert_eq!(flights, expected.iter().map(new).collect::<Vec<_>>());
+        let new = |(p, &k): (&GpuParticle, &usize)| GpuFlight {
+            start: begin(p),
+            wall: NEVER,
+            partner: NOBODY,
+            collisions: if capped { share_of(cell[k]) << 16 } else { 0 },
+        };
+        assert_eq!(flights, expected.iter().zip(&canonical).map(new).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("touched", COUNT), vec![0; COUNT]);
         let middles: Vec<u32> = rig.get("middles", COUNT);

@@ -3,6 +3,7 @@
 //! Each case states its law, takes its tolerance from the statistics of the run (a fixed seed makes the
 //! outcome of each the same every time), and shows that the check fails where the law does not hold.
 
+mod capped;
 mod cell;
 mod collision_rate;
 mod effusion;

@@ -65,6 +65,9 @@ fn methods(
     if let Some(method) = scene.model.method {
         return (vec![method], "asked for in the scene".into());
     }
+    if scene.model.diameter_cap.is_some() {
+        return (vec![Method::ClosestApproach], "the only one that has a `diameter_cap`".into());
+    }
     let path = kinetics::molecular_mean_free_path(amounts.total() / measured.gas_volume);
     let knudsen = path / libm::cbrt(measured.gas_volume);
     if knudsen >= FREE_KNUDSEN {

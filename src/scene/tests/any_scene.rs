@@ -27,6 +27,7 @@ prop_compose! {
         flow in prop::collection::vec((1e-6..1.0f64, 0.0..10.0f64), 2..9),
         jet in prop::option::of((1e-3..20.0f64, 0.0..89.9f64)),
         model in (prop::option::of(1u64..1 << 28), prop::option::of(1e-9..1.0f64), prop::option::of(1u32..9)),
+        cap in prop::option::of(prop::option::of(1e-3..10.0f64)),
         output in (1u32..1_000_000, 0u32..100_000),
     ) -> String {
         let mut text = format!(
@@ -70,6 +71,11 @@ prop_compose! {
         text += "[[surface]]\nname = 's'\nwall = 'box'\nface = '-z'\n[model]\ncollision_number = 20\n";
         if let Some(n) = model.0 { text += &format!("particles = {n}\n"); }
         if let Some(f) = model.1 { text += &format!("time_step = {f:?}\n"); }
+        match cap {
+            Some(Some(spacings)) => text += &format!("diameter_cap = {spacings:?}\n"),
+            Some(None) => text += "diameter_cap = 'off'\n",
+            None => {}
+        }
         if let Some(r) = model.2 { text += &format!("rounds = {r}\n"); }
         text + &format!("[output]\nrows = {}\nsnapshots = {}\n", output.0, output.1)
     }

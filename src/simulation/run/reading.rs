@@ -9,6 +9,7 @@ use crate::simulation::guards::{Shown, Told};
 use crate::simulation::interrupt::Request;
 use crate::simulation::interval::{InFlight, Interval, Pending};
 use crate::simulation::observer::Observer;
+use crate::simulation::run_state::Asked;
 use crate::simulation::step::PAIR_PHASES;
 use crate::subdomain::{Remembered, Tallies};
 
@@ -94,7 +95,6 @@ impl Simulation<'_> {
         self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];
         let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes);
-        self.seen.push_back((seen, self.account.state().left()));
         self.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
         self.averages.add_room(interval.dt, samples, &interval.volumes);
         if self.decomposition.is_some() {
@@ -107,13 +107,14 @@ impl Simulation<'_> {
                 observer.balance(record)?;
             }
         }
-        self.demands.push_back(self.ladder.demand(&tallies.blocks, &tallies.fast));
+        let demand = self.ladder.demand(&tallies.blocks, &tallies.fast);
+        let left = self.account.state().left();
         let mut switches = false;
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {
             let row = self.emit_row(observer)?;
             switches = self.switching.row(&row);
         }
-        self.switches.push_back(switches);
+        self.asked.push_back(Asked { demand, seen, left, switches });
         observer.progress(
             self.read_until,
             interval.first_step + u64::from(interval.steps),

@@ -1,0 +1,44 @@
+//! Laws: where the diameter is capped, block by block from noisy densities, the gas still presses with n k T
+//! (specification, section 2: sigma may depend on position; section 8: within .5 %), and collides by the cross-section
+//! that is left: (cap/sigma)^2 n^(-2/3).
+//!
+//! Statistics: the pressure as in `wall_pressure`. A block's density counts less one standard error, an eighth for the
+//! plan's 64 particles, so the cross-section is up to (1 - 1/8)^(-2/3) = 1.09 times as large; and blocks scatter.
+
+use corpuscle::scene::DiameterCap;
+use corpuscle::simulation::{Model, Options, Outcome};
+use corpuscle::study::verify::collisions::{PressureRatio, pressure_in};
+use corpuscle::study::verify::run;
+
+use crate::equilibrium_box::EquilibriumBox;
+use crate::whole_run::device;
+
+/// In mean spacings; at f = .3 the diameter is .83 of one.
+const CAP: f64 = 0.5;
+
+fn dense(cap: Option<f64>) -> (PressureRatio, Outcome) {
+    let gas =
+        EquilibriumBox { occupancy: 0.3, step_over_tau: 0.3, steps: 1500, rounds: 4, ..EquilibriumBox::default() };
+    let mut scene = gas.model().expect("a plan").scene;
+    scene.model.diameter_cap = cap.map(DiameterCap::Spacings);
+    let mut model = Model::new(scene).expect("a plan");
+    assert_eq!(model.plan.diameter_cap, cap);
+    model.plan.tally_every = 1;
+    let run = run(&device(), &model, Options::default()).expect("a run");
+    (pressure_in(&model, &gas, &run.rows[0]), run.outcome)
+}
+
+#[test]
+fn capped_diameters_keep_the_pressure_and_collide_less() {
+    let ((pressure, capped), (_, whole)) = (dense(Some(CAP)), dense(None));
+    println!("p/nkT {:.5} +- {:.5}", pressure.ratio, pressure.error);
+    assert!(pressure.error <= 0.005 / 4.0);
+    assert!((pressure.ratio - 1.0).abs() < 0.005, "{:.5} +- {:.5}", pressure.ratio, pressure.error);
+    let spacings = (6.0 * 0.3 / std::f64::consts::PI).cbrt();
+    let share = (CAP / spacings).powi(2);
+    let found = capped.collisions as f64 / whole.collisions as f64;
+    println!("{:.4} of the collisions, {share:.4} of the cross-section", found);
+    assert!(found > 0.98 * share && found < 1.12 * share, "{found:.4} for {share:.4}");
+    // The check can fail: the whole diameter has nearly three times as many.
+    assert!(share < 0.4);
+}
