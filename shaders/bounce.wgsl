@@ -1,6 +1,6 @@
 //! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
-// as the wall's coat has it, diffusely with the temperature of the wall, or out through a vent. A wall that moves does
+// as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the walls,
@@ -156,9 +156,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         // In the frame of the wall.
         let relative = old - carried;
         var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
-        turned *= sqrt(dot(relative, relative) / dot(turned, turned));
-        turned += carried;
-        var mirrored = true;
+        var kept = true;
         if (COATS && triangle.coat != NOBODY) {
             let coat = coats[triangle.coat];
             let draw = wall_draw(particle.tag, bounces, 0u);
@@ -172,10 +170,11 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                     break;
                 }
             }
-            if (unit_interval(draw.y) < coat.accommodation) {
-                mirrored = false;
+            let chance = unit_interval(draw.y);
+            if (chance < coat.accommodation) {
+                kept = false;
                 let away = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
-                turned = away + carried;
+                turned = away;
                 var spin = 0.0;
                 if (SPIN && gas.exchange > 0.0) {
                     let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, coat.thermal, draw.w);
@@ -184,14 +183,21 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
                 tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));
                 particle.spin = spin;
+            } else if (chance - coat.accommodation < coat.friction * (1.0 - coat.accommodation)) {
+                turned = scattered(triangle.normal, particle.tag, bounces, draw.z);
             }
         }
+        if (kept) {
+            // Its speed, in the frame of the wall.
+            turned *= sqrt(dot(relative, relative) / dot(turned, turned));
+        }
+        turned += carried;
         var work = 0.0;
         if (MOVING && triangle.motion != NOBODY) {
             work = gas.mass * dot(carried, turned - old);
             tally_energy(WORKS_AT + triangle.motion * COAT_WORDS, -work);
         }
-        if (SPIN && mirrored && gas.exchange > 0.0) {
+        if (SPIN && kept && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
             particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);
         }

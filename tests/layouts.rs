@@ -63,7 +63,7 @@ fn twins() -> Vec<Twin> {
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, motion),
         twin!("Motion", GpuMotion, moved, first, velocity, end, low, pad, high, pad2),
-        twin!("Coat", GpuCoat, thermal, accommodation, first_vent, end_vent),
+        twin!("Coat", GpuCoat, thermal, accommodation, friction, first_vent, end_vent),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),

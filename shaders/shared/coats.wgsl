@@ -5,6 +5,8 @@ struct Coat {
     thermal: f32,
     // Share of the hits that leave with the temperature of the wall.
     accommodation: f32,
+    // Share of the others that leave in a random direction with the speed they had.
+    friction: f32,
     // Its entries of `vents`.
     first_vent: u32,
     end_vent: u32,
@@ -63,6 +65,15 @@ fn emitted(normal: vec3<f32>, thermal: f32, tag: u32, hit: u32, word: u32) -> ve
     let any = vec3<f32>(normals(draw.x, draw.y), normals(draw.z, draw.w).x);
     let across = any - dot(any, normal) * normal;
     return sqrt(thermal) * (across + sqrt(-2.0 * log(unit_interval(word))) * normal);
+}
+
+// A direction into the gas by the cosine law, P(cos < c) = c^2: that of a gas at rest, whatever the speed.
+fn scattered(normal: vec3<f32>, tag: u32, hit: u32, word: u32) -> vec3<f32> {
+    let draw = wall_draw(tag, hit, 1u);
+    let any = vec3<f32>(normals(draw.x, draw.y), normals(draw.z, draw.w).x);
+    let across = any - dot(any, normal) * normal;
+    let cosine2 = unit_interval(word);
+    return sqrt(cosine2) * normal + (sqrt(max(1.0 - cosine2, 0.0)) / max(length(across), 1e-30)) * across;
 }
 
 // A gamma variate of unit scale (Marsaglia and Tsang 2000, with their boost for shapes below one).

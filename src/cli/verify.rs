@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::gpu::Device;
 use crate::output::{OutputError, line_chart};
-use crate::study::verify::{CASES, Case, Check, Effort, Findings, Verdict, report};
+use crate::study::verify::{CASES, Case, Check, Effort, Findings, Verdict, report, run_cases};
 
 use super::CliError;
 use super::arguments::VerifyArguments;
@@ -25,11 +25,12 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     let device = Device::open(raw.gpu.as_deref())?;
     say(&report::head())?;
     let mut outcomes: Vec<(&Case, Findings)> = Vec::new();
-    for case in cases {
-        let found = case.run(&device, effort)?;
+    let open = || Device::open(raw.gpu.as_deref());
+    run_cases(&cases, effort, raw.jobs as usize, open, |case, found| -> Result<(), CliError> {
         say(&report::lines(case, &found.checks))?;
         outcomes.push((case, found));
-    }
+        Ok(())
+    })?;
     let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, found)| &found.checks).collect();
     let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
     if let Some(path) = &raw.markdown {

@@ -143,7 +143,7 @@ mod tests {
             thickness,
             holes: vec![],
         };
-        let plate = Wall { name: "plate".into(), shape, gas: GasSide::Both, heat: None };
+        let plate = Wall { name: "plate".into(), shape, gas: GasSide::Both, heat: None, friction: 0.0 };
         let vessel = Vessel::build(&[tank([0.4, 0.3, 0.3]), plate]).unwrap();
         let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.05).unwrap();
         let triangles = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();

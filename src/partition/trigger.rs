@@ -1,9 +1,10 @@
 //! When it pays to cut anew.
 //!
-//! Observations of the ranks' seconds per step are averaged, and a check compares the averages. Imbalance is the longest over the mean, where the mean is what all
+//! Observations of the ranks' seconds per step are averaged, the newest counting the more the less noise they have (from a
+//! quarter to all), and a check compares the averages. Imbalance is the longest over the mean, where the mean is what all
 //! would take if each had its share of the work: sum of share x seconds over sum of shares. A rebalance is due if
 //!
-//! 1. the averaged imbalance is above the threshold,
+//! 1. the averaged imbalance is above the threshold, by two of its standard errors if they are small,
 //! 2. the longest is above the mean by more than four standard errors of the averaged loads and what the largest of n
 //!    ranks' noise is expected to be, sqrt(2 ln n) (the noise is learnt from the observations and kept over rebalances),
 //! 3. (longest - mean) x steps until the next check is above the averaged seconds of a rebalance.
@@ -16,14 +17,17 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// What a new check counts in the averages.
+/// What a new observation counts in the averages at least.
 const NEW: f64 = 0.25;
 /// Relative noise of a load, before any is learnt.
 const NOISE: f64 = 0.15;
-/// Loads that it counts as, and loads over which the noise is averaged.
+/// Loads that it counts as, loads from which on it counts no more, and loads over which the noise is averaged.
 const NOISE_PRIOR: f64 = 3.0;
+const NOISE_LEARNT: f64 = 8.0;
 const NOISE_MEMORY: f64 = 20.0;
 const STANDARD_ERRORS: f64 = 4.0;
+/// Added twice to the threshold at most; larger noise is judged by itself.
+const MOST_ERROR: f64 = 0.01;
 const MOST_DEMAND: f64 = 64.0;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -34,13 +38,14 @@ pub struct Trigger {
     measured: bool,
     /// The averaged load of each rank over the mean, the averaged mean, and the sum of squared weights of an average.
     loads: Vec<f64>,
-    /// Those of the observation before.
-    before_loads: Vec<f64>,
+    /// Those of the two observations before, the newer first.
+    before_loads: [Vec<f64>; 2],
     mean: f64,
     spread: f64,
     /// Since the last rebalance.
     observations: u32,
-    /// Half the averaged square of the difference of two successive loads, and how many it is the mean of.
+    /// A sixth of the averaged square of the second difference of successive loads, in which a drift is no noise, and how
+    /// many it is the mean of.
     noise: f64,
     noise_of: f64,
     /// What is asked more after rebalances in vain: a power of two.
@@ -113,12 +118,12 @@ impl Trigger {
             cost: estimate,
             measured: false,
             loads: Vec::new(),
-            before_loads: Vec::new(),
+            before_loads: Default::default(),
             mean: 0.0,
             spread: 0.0,
             observations: 0,
-            noise: NOISE * NOISE,
-            noise_of: NOISE_PRIOR,
+            noise: 0.0,
+            noise_of: 0.0,
             demand: 1.0,
             before: None,
         }
@@ -144,13 +149,19 @@ impl Trigger {
         }
         let imbalance = self.imbalance();
         self.judge_last(imbalance);
+        let error = (self.variance() * self.spread).sqrt();
         let threshold = 1.0 + (self.threshold - 1.0) * self.demand;
         if imbalance <= threshold {
             return Decision::Balanced { imbalance, threshold };
         }
+        // Every observation is another chance to be above the threshold by noise.
+        let surely = threshold + 2.0 * error.min(MOST_ERROR);
+        if imbalance <= surely {
+            return Decision::Unsure { imbalance, needed: surely - 1.0 };
+        }
         let excess = imbalance - 1.0;
         let largest = (2.0 * libm::log(self.loads.len() as f64)).sqrt();
-        let needed = (STANDARD_ERRORS + largest) * (self.noise * self.spread).sqrt();
+        let needed = (STANDARD_ERRORS + largest) * error;
         if excess <= needed {
             return Decision::Unsure { imbalance, needed };
         }
@@ -188,22 +199,38 @@ impl Trigger {
             self.observations = 0;
         }
         self.observations = self.observations.saturating_add(1);
-        let part = (1.0 / f64::from(self.observations)).max(NEW);
+        let part = (1.0 / f64::from(self.observations)).max(self.newest());
         let loads: Vec<f64> = seconds.iter().map(|seconds| seconds / mean).collect();
         for (average, load) in self.loads.iter_mut().zip(&loads) {
             *average += part * (load - *average);
         }
-        let before = std::mem::replace(&mut self.before_loads, loads);
-        if self.observations > 1 {
-            // Of two observations, so that a drift is no noise; both have their own.
-            let pairs = self.before_loads.iter().zip(&before);
-            let off_square = pairs.map(|(now, then)| (now - then).powi(2)).sum::<f64>() / (2 * seconds.len()) as f64;
+        if self.observations > 2 {
+            let [last, earlier] = &self.before_loads;
+            let triples = loads.iter().zip(last).zip(earlier);
+            let bends = triples.map(|((now, last), earlier)| (now - 2.0 * last + earlier).powi(2));
+            let off_square = bends.sum::<f64>() / (6 * seconds.len()) as f64;
             let freedoms = (seconds.len() - 1) as f64;
             self.noise_of = (self.noise_of + freedoms).min(NOISE_MEMORY.max(freedoms));
             self.noise += freedoms / self.noise_of * (off_square - self.noise);
         }
+        self.before_loads.swap(0, 1);
+        self.before_loads[0] = loads;
         self.mean += part * (mean - self.mean);
         self.spread = if self.observations == 1 { 1.0 } else { (1.0 - part).powi(2) * self.spread + part * part };
+    }
+
+    /// Of a load over the mean, by its noise.
+    fn variance(&self) -> f64 {
+        let prior = if self.noise_of < NOISE_LEARNT { NOISE_PRIOR } else { 0.0 };
+        (prior * NOISE * NOISE + self.noise_of * self.noise) / (prior + self.noise_of)
+    }
+
+    /// What a new observation counts: as much as leaves the standard errors that are asked for within a quarter of what
+    /// the threshold allows, so that loads that grow are seen as soon as noise lets them.
+    fn newest(&self) -> f64 {
+        let allowed = 0.25 * (self.threshold - 1.0) / STANDARD_ERRORS;
+        let ratio = allowed * allowed / self.variance().max(1e-12);
+        (2.0 * ratio / (1.0 + ratio)).clamp(NEW, 1.0)
     }
 
     /// Whether the last rebalance was in vain.

@@ -160,7 +160,7 @@ fn switch(scene: &Scene, method: Method, reasons: &mut Vec<Reason>) -> Result<()
 /// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them.
 fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
-    let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some());
+    let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
     let has = [
         ("collisions", method != Method::None),
         ("a diameter that follows the local density", capped || method != Method::ClosestApproach),

@@ -374,7 +374,7 @@ fn heat_capacities_cover_the_walls() {
     let cold = |scene: &mut Scene| {
         let heat = WallHeat { temperature: 293.0, transfer: HeatTransfer::Accommodation(1.0) };
         let shape = Shape::Box { min: [0.0; 3], max: [0.4; 3], thickness: None, holes: vec![] };
-        scene.walls = vec![Wall { name: "tank".into(), shape, gas: GasSide::Inside, heat: Some(heat) }];
+        scene.walls = vec![Wall { name: "tank".into(), shape, gas: GasSide::Inside, heat: Some(heat), friction: 0.0 }];
     };
     let curved = planned(|scene, _| {
         cold(scene);

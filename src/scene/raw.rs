@@ -137,6 +137,9 @@ pub struct RawWall {
     pub accommodation: Option<At<f64>>,
     /// Heat-transfer coefficient (SI: W/(m2 K)), instead of `accommodation`.
     pub heat_transfer: Option<At<f64>>,
+    /// Share of the hits that leave in a random direction with the speed they had, 0 to 1, of those that do not take the
+    /// wall's temperature; 0 unless given.
+    pub friction: Option<At<f64>>,
     /// box with `thickness`, plane: holes through the wall.
     #[serde(default)]
     pub hole: Vec<At<RawHole>>,

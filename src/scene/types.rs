@@ -80,6 +80,8 @@ pub struct Wall {
     pub gas: GasSide,
     /// `None`: smooth and adiabatic, a mirror.
     pub heat: Option<WallHeat>,
+    /// Share of the other hits that leave in a random direction with the speed they had: a rough wall, without heat.
+    pub friction: f64,
 }
 
 /// A wall that keeps its temperature and takes heat from the gas, or gives it (specification, section 4 "Rigid wall").

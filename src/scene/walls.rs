@@ -27,7 +27,18 @@ pub(super) fn wall(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Res
         RawShape::Plane => plane(raw, units)?,
         RawShape::Mesh => mesh(raw, units, base_dir)?,
     };
-    Ok(Wall { name: raw.value.name.value.clone(), shape, gas, heat: heat(raw, units)? })
+    Ok(Wall {
+        name: raw.value.name.value.clone(),
+        shape,
+        gas,
+        heat: heat(raw, units)?,
+        friction: friction(raw, units)?,
+    })
+}
+
+fn friction(raw: &At<RawWall>, units: UnitSystem) -> Result<f64, Problem> {
+    let share = |at| bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
+    raw.value.friction.as_ref().map_or(Ok(0.0), share)
 }
 
 fn heat(raw: &At<RawWall>, units: UnitSystem) -> Result<Option<WallHeat>, Problem> {
@@ -115,7 +126,7 @@ fn refuse_foreign_keys(raw: &At<RawWall>) -> Result<(), Problem> {
                 "of a {}: {}",
                 name_of(shape),
                 list(
-                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer"]
+                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer", "friction"]
                         .iter()
                         .chain(keys_of(shape))
                         .copied()

@@ -136,6 +136,9 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
             HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
         }
     }
+    if wall.friction > 0.0 {
+        out.number("friction", wall.friction);
+    }
     for hole in holes {
         out.header("[[wall.hole]]");
         out.text("name", &hole.name);

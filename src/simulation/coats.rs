@@ -46,7 +46,8 @@ impl Coats {
     /// # Errors
     /// If a vent has no place, or none can say which chamber it empties.
     pub fn new(scene: &Scene, vessel: &Vessel) -> Result<Coats, ModelError> {
-        let coated = |wall: usize| scene.walls[wall].heat.is_some() || scene.vents.iter().any(|vent| vent.wall == wall);
+        let mirrors = |wall: usize| scene.walls[wall].heat.is_none() && scene.walls[wall].friction == 0.0;
+        let coated = |wall: usize| !mirrors(wall) || scene.vents.iter().any(|vent| vent.wall == wall);
         if !(0..scene.walls.len()).any(coated) {
             return Ok(Coats::default());
         }
@@ -70,7 +71,7 @@ impl Coats {
             let vents: Vec<usize> = (0..scene.vents.len())
                 .filter(|&index| places[index].chamber == chamber && on_face(&scene.vents[index], wall, triangle.face))
                 .collect();
-            if scene.walls[wall].heat.is_none() && vents.is_empty() {
+            if mirrors(wall) && vents.is_empty() {
                 of_triangle.push(NOBODY);
                 continue;
             }

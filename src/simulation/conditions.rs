@@ -232,6 +232,7 @@ impl<'a> Conditions<'a> {
             tables.coats.push(GpuCoat {
                 thermal: thermal as f32,
                 accommodation: share.min(1.0) as f32,
+                friction: model.scene.walls[coat.wall].friction as f32,
                 first_vent,
                 end_vent: tables.vents.len() as u32,
             });

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::local_gas::LocalGas;
+use super::block_gas::BlockGas;
 use super::run_state::StateError;
 use crate::plan::Plan;
 use crate::subdomain::BlockSum;
@@ -21,7 +21,7 @@ pub struct Ladder {
     levels: u32,
     limit: f64,
     top: f64,
-    local: LocalGas,
+    gas: BlockGas,
     /// What is left of the cross-section in each block; empty without a cap.
     shares: Vec<u32>,
 }
@@ -62,7 +62,7 @@ impl Ladder {
             levels: plan.ladder_levels,
             limit: plan.collision_limit,
             top: plan.time_step,
-            local: LocalGas::new(plan, volumes),
+            gas: BlockGas::new(plan, volumes),
             shares: Vec::new(),
         }
     }
@@ -89,8 +89,8 @@ impl Ladder {
         if state.level > 0 && state.level >= state.levels {
             return Err(StateError::Impossible { what: "the step is below the ladder" });
         }
-        if state.shares.len() != self.local.entries() {
-            let (found, expected) = (state.shares.len() as u64, self.local.entries() as u64);
+        if state.shares.len() != self.gas.entries() {
+            let (found, expected) = (state.shares.len() as u64, self.gas.entries() as u64);
             return Err(StateError::differs("blocks with a diameter", found, expected));
         }
         self.level = state.level;
@@ -101,8 +101,8 @@ impl Ladder {
     /// What a measured state asks for.
     pub fn demand(&self, blocks: &[BlockSum], fast: &[u32]) -> Demand {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
-        let shares = self.local.shares(blocks);
-        let mut parts = self.local.parts(blocks, &shares);
+        let shares = self.gas.shares(blocks);
+        let mut parts = self.gas.parts(blocks, &shares);
         parts.sort_by(|a, b| b.rate.total_cmp(&a.rate));
         let mut beyond = 0;
         let mut rate = 0.0;
@@ -171,10 +171,10 @@ impl Ladder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::local_gas::tests::{block, local_gas};
+    use crate::simulation::block_gas::tests::{block, block_gas};
 
     fn ladder(volumes: Vec<f64>) -> Ladder {
-        Ladder { level: 0, levels: 12, limit: 0.3, top: 1.0, local: local_gas(volumes), shares: Vec::new() }
+        Ladder { level: 0, levels: 12, limit: 0.3, top: 1.0, gas: block_gas(volumes), shares: Vec::new() }
     }
 
     fn demand(collision: f64) -> Demand {

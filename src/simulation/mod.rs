@@ -7,6 +7,7 @@
 mod audit;
 mod averages;
 mod balance;
+mod block_gas;
 mod clock;
 mod coats;
 mod conditions;
@@ -16,7 +17,6 @@ mod guards;
 mod interrupt;
 mod interval;
 mod ladder;
-mod local_gas;
 mod model;
 mod moving;
 mod observer;

@@ -133,6 +133,7 @@ pub struct GpuMotion {
 pub struct GpuCoat {
     pub thermal: f32,
     pub accommodation: f32,
+    pub friction: f32,
     pub first_vent: u32,
     pub end_vent: u32,
 }

@@ -73,7 +73,7 @@ pub struct World {
 }
 
 pub fn wall(shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: "wall".into(), shape, gas, heat: None }
+    Wall { name: "wall".into(), shape, gas, heat: None, friction: 0.0 }
 }
 
 /// A box of gas from the origin.
@@ -213,7 +213,7 @@ impl Rig {
         rig.put("layers", &[0u32; MOST_PARTICLES]);
         rig.put("border", &[[0u32; 2]; 2]);
         rig.put("changed", &[0u32; 4]);
-        rig.put("coats", &[0u32; 4]);
+        rig.put("coats", &[0u32; 8]);
         rig.put("vents", &[0u32; 8]);
         rig.put("asked", &[0u32; 4]);
         rig.put("asked_dispatches", &[0u32; 3 * LISTS]);

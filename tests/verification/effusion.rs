@@ -9,7 +9,7 @@
 
 use std::f64::consts::PI;
 
-use corpuscle::study::verify::holes::{self, DIAMETER, staying};
+use corpuscle::study::verify::holes::{self, CLAUSING, DIAMETER, staying};
 
 use crate::whole_run::device;
 
@@ -34,4 +34,17 @@ fn a_thin_gas_leaves_through_a_hole_at_n_cbar_a_over_4() {
 fn the_share_that_stays() {
     assert!((staying(0.0) - 1.0).abs() < 1e-9);
     assert!(((1.0 - staying(1e-4)) / 1e-4 - (8.0 / PI).sqrt()).abs() < 1e-3);
+}
+
+/// Law: of what enters a tube of rough walls twice as long as its radius .5142 come out at the other end, whatever their
+/// speeds (Clausing 1932); through a smooth one all do. Half as rough walls let more through than rough ones.
+#[test]
+fn a_rough_tube_passes_what_clausing_says() {
+    let transmission = |friction| holes::transmission(&device(), 100_000, friction).expect("a run");
+    let [rough, half, smooth] = [1.0, 0.5, 0.0].map(transmission);
+    println!("rough {rough:.4?}, half {half:.4?}, smooth {smooth:.4?}");
+    assert!(rough.1 <= 0.03 * CLAUSING / 2.0);
+    assert!((rough.0 - CLAUSING).abs() < 0.03 * CLAUSING, "{rough:.4?}");
+    assert!((smooth.0 - 1.0).abs() < 0.03, "{smooth:.4?}");
+    assert!(half.0 > rough.0 + 4.0 * rough.1 && half.0 < smooth.0 - 4.0 * smooth.1, "{half:.4?}");
 }

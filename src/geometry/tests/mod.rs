@@ -11,7 +11,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 
 pub(super) fn wall(name: &str, shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: name.into(), shape, gas, heat: None }
+    Wall { name: name.into(), shape, gas, heat: None, friction: 0.0 }
 }
 
 /// A box of gas from the origin.

@@ -23,6 +23,7 @@ prop_compose! {
         thickness in prop::option::of(1e-5..1.0f64),
         axis in unit_vector(),
         heat in prop::option::of((1.0..1e4f64, prop::bool::ANY, 0.0..=1.0f64)),
+        friction in prop::option::of(0.0..=1.0f64),
         state in (1e-3..1e9f64, 1.0..1e4f64),
         flow in prop::collection::vec((1e-6..1.0f64, 0.0..10.0f64), 2..9),
         jet in prop::option::of((1e-3..20.0f64, 0.0..89.9f64)),
@@ -48,6 +49,9 @@ prop_compose! {
         if let Some((temperature, share, value)) = heat {
             let key = if share { "accommodation" } else { "heat_transfer" };
             text += &format!("temperature = {temperature:?}\n{key} = {value:?}\n");
+        }
+        if let Some(share) = friction {
+            text += &format!("friction = {share:?}\n");
         }
         let axis = if axis.iter().all(|&c| c == 0.0) { [1.0, 0.0, 0.0] } else { axis };
         text += &format!(

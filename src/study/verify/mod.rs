@@ -7,6 +7,7 @@
 //!
 //! The same functions serve the tests, which also show that each check can fail.
 
+mod at_once;
 pub mod collisions;
 pub mod curve;
 pub mod equilibrium;
@@ -25,6 +26,7 @@ mod witness;
 use crate::gpu::Device;
 use crate::output::{PALETTE, Series};
 
+pub use at_once::run_cases;
 pub(crate) use witness::model_from;
 pub use witness::{Run, Witness, run, scene_of};
 
@@ -192,6 +194,11 @@ pub const CASES: &[Case] = &[
         run: filling::balances,
     },
     Case { name: "effusion", law: "free flight through a hole over n cbar A/4 (kinetic theory)", run: holes::effusion },
+    Case {
+        name: "rough-tube",
+        law: "free flight through a tube of rough walls over n cbar A/4 (Clausing 1932)",
+        run: holes::rough_tube,
+    },
     Case {
         name: "orifice",
         law: "discharge into near-vacuum over choked isentropic flow, by Knudsen number of the hole's radius",

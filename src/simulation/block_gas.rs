@@ -9,7 +9,7 @@ use crate::subdomain::{BlockSum, FULL_SHARE, Scales};
 /// its own: all such blocks count as one, so that the gas of a vessel thinner than a block counts too.
 const LEAST_VOLUME: f64 = 0.05;
 
-pub struct LocalGas {
+pub struct BlockGas {
     /// Gas volume of each block, m3.
     volumes: Vec<f64>,
     full: f64,
@@ -33,14 +33,14 @@ pub struct Part {
     pub number: u64,
 }
 
-impl LocalGas {
-    pub fn new(plan: &Plan, volumes: Vec<f64>) -> LocalGas {
+impl BlockGas {
+    pub fn new(plan: &Plan, volumes: Vec<f64>) -> BlockGas {
         let scales = Scales::new(plan);
         let lightest = plan.gases.iter().map(|gas| gas.molar_mass).fold(f64::INFINITY, f64::min);
         let heaviest = scales.reference_mass / plan.moles_per_particle;
         let pi = std::f64::consts::PI;
         let block_edge = plan.grid.cell * f64::from(1u32 << plan.block_cells_log2);
-        LocalGas {
+        BlockGas {
             rate: if plan.method == Method::None {
                 0.0
             } else {
@@ -64,7 +64,7 @@ impl LocalGas {
         blocks.iter().zip(&self.volumes).map(of_block).collect()
     }
 
-    /// Entries of [`LocalGas::shares`].
+    /// Entries of [`BlockGas::shares`].
     pub fn entries(&self) -> usize {
         if self.cap.is_some() { self.volumes.len() } else { 0 }
     }
@@ -133,8 +133,8 @@ pub mod tests {
     use super::*;
 
     /// A rate of n sqrt(kT) in blocks of 1 m3.
-    pub fn local_gas(volumes: Vec<f64>) -> LocalGas {
-        LocalGas { rate: 1.0, energy_unit: 1.0, volumes, full: 1.0, cap: None }
+    pub fn block_gas(volumes: Vec<f64>) -> BlockGas {
+        BlockGas { rate: 1.0, energy_unit: 1.0, volumes, full: 1.0, cap: None }
     }
 
     /// kT = 1.
@@ -150,7 +150,7 @@ pub mod tests {
     fn gas_in_slivers_counts_as_a_whole() {
         let rates = |volumes: &[f64], numbers: &[u64]| -> Vec<f64> {
             let blocks: Vec<BlockSum> = numbers.iter().map(|&number| block(number)).collect();
-            local_gas(volumes.to_vec()).parts(&blocks, &[]).iter().map(|part| part.rate).collect()
+            block_gas(volumes.to_vec()).parts(&blocks, &[]).iter().map(|part| part.rate).collect()
         };
         // A vessel thinner than a block: its density is that of all its blocks, however they share the volume.
         assert_eq!(rates(&[0.01, 0.03], &[60, 20]), [surely(80.0) / 0.04]);
@@ -165,7 +165,7 @@ pub mod tests {
     fn the_cross_section_falls_where_gas_is_dense() {
         let volumes = vec![1.0, 1.0, 1.0, 0.01, 0.03];
         let cap = Some(Cap { from: surely(1000.0) });
-        let gas = LocalGas { cap, ..local_gas(volumes) };
+        let gas = BlockGas { cap, ..block_gas(volumes) };
         let blocks = [block(1000), block(8000), block(0), block(100), block(220)];
         let shares = gas.shares(&blocks);
         let expected = |density: f64| (surely(1000.0) / density).powf(2.0 / 3.0);
@@ -177,7 +177,7 @@ pub mod tests {
         assert_eq!(parts.iter().map(|part| part.number).collect::<Vec<_>>(), [1000, 8000, 320]);
         let growth = parts[1].rate / parts[0].rate;
         assert!((growth - (surely(8000.0) / surely(1000.0)).cbrt()).abs() < 1e-3, "{growth}");
-        assert_eq!(local_gas(vec![1.0]).shares(&[block(1_000_000)]), Vec::<u32>::new());
+        assert_eq!(block_gas(vec![1.0]).shares(&[block(1_000_000)]), Vec::<u32>::new());
         assert_eq!(Cap { from: 1e-30 }.share(1e30), 1);
     }
 }

@@ -1,0 +1,111 @@
+//! Several cases at a time, each worker with its own device: most are so small that host and device wait for each other.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+use crate::gpu::{Device, GpuError};
+use crate::study::StudyError;
+
+use super::{Case, Effort, Findings};
+
+/// Runs the cases on `workers` devices, and hands what they find to `done` in the order of the cases.
+///
+/// # Errors
+/// Of the first case, in their order, that fails, or of `done`; no other case is started then.
+pub fn run_cases<'a, E: From<StudyError>>(
+    cases: &[&'a Case],
+    effort: Effort,
+    workers: usize,
+    open: impl Fn() -> Result<Device, GpuError> + Sync,
+    mut done: impl FnMut(&'a Case, Findings) -> Result<(), E>,
+) -> Result<(), E> {
+    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let work = |sender: mpsc::Sender<(usize, Result<Findings, StudyError>)>| {
+        let mut device = None;
+        while !stop.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(index) else { return };
+            let found = match device.take().map_or_else(&open, Ok) {
+                Ok(opened) => case.run(device.insert(opened), effort),
+                Err(error) => Err(error.into()),
+            };
+            if sender.send((index, found)).is_err() {
+                return;
+            }
+        }
+    };
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..workers.clamp(1, cases.len().max(1)) {
+            let sender = sender.clone();
+            scope.spawn(|| work(sender));
+        }
+        drop(sender);
+        let mut found = BTreeMap::new();
+        let mut expected = 0;
+        for (index, findings) in receiver {
+            found.insert(index, findings);
+            while let Some(findings) = found.remove(&expected) {
+                let handed = findings.map_err(E::from).and_then(|findings| done(cases[expected], findings));
+                if handed.is_err() {
+                    stop.store(true, Ordering::Relaxed);
+                    return handed;
+                }
+                expected += 1;
+            }
+        }
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::verify::Check;
+    use std::time::Duration;
+
+    fn slow(_: &Device, _: Effort) -> Result<Findings, StudyError> {
+        thread::sleep(Duration::from_millis(20));
+        Ok(vec![Check::of("slow", 1.0, (1.0, 0.0), 0.1)].into())
+    }
+
+    fn fast(_: &Device, _: Effort) -> Result<Findings, StudyError> {
+        Ok(vec![Check::of("fast", 1.0, (1.0, 0.0), 0.1)].into())
+    }
+
+    fn failing(_: &Device, _: Effort) -> Result<Findings, StudyError> {
+        Err(StudyError::TooShort { state: "case".into() })
+    }
+
+    fn order(cases: &[&Case], workers: usize) -> (Vec<String>, Result<(), StudyError>) {
+        let mut seen = Vec::new();
+        let outcome = run_cases(
+            cases,
+            Effort::Quick,
+            workers,
+            || Device::open(None),
+            |case, findings| {
+                assert_eq!(findings.checks[0].quantity, if case.name == "a" { "slow" } else { "fast" });
+                seen.push(case.name.to_owned());
+                Ok::<(), StudyError>(())
+            },
+        );
+        (seen, outcome)
+    }
+
+    #[test]
+    fn findings_come_in_the_order_of_the_cases() {
+        let case = |name, run| Case { name, law: "", run };
+        let cases = [case("a", slow), case("b", fast), case("c", fast), case("d", failing), case("e", fast)];
+        let [a, b, c, d, e] = &cases;
+        for workers in [1, 2, 9] {
+            let (seen, outcome) = order(&[a, b, c, e], workers);
+            assert!(outcome.is_ok() && seen == ["a", "b", "c", "e"], "{seen:?}");
+            let (seen, outcome) = order(&[a, b, d, c, e], workers);
+            assert!(matches!(outcome, Err(StudyError::TooShort { .. })) && seen == ["a", "b"], "{seen:?}");
+        }
+        assert!(order(&[], 2).1.is_ok());
+    }
+}
