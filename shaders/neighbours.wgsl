@@ -1,8 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than the cell edge (which the plan makes at least
-// sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more; nearer by what the own diameter lacks
-// where gas is dense.
+// sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more; nearer by what the smaller diameter
+// lacks where gas is dense.
 //
 // Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours` (the k-th of particle s at k * stride + s)
 // and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per
@@ -22,6 +22,11 @@ override DIAMETER_REACH2: u32;
 @group(0) @binding(25) var<storage, read_write> screened: array<u32>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+
+// The square of the distance, in 1/128 cells, up to which a particle with this share of the cross-section may collide.
+fn reach2(share: u32) -> i32 {
+    return PACKED_REACH2 - i32((DIAMETER_REACH2 * (FULL_SHARE - share)) / FULL_SHARE);
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -44,10 +49,11 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     let middle = middles[s];
     let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
     let stride = arrayLength(&neighbour_count);
-    var reach2 = PACKED_REACH2;
+    var share = FULL_SHARE;
     if (CAPPED) {
-        reach2 -= i32((DIAMETER_REACH2 * (FULL_SHARE - share_of(flights[s]))) / FULL_SHARE);
+        share = share_of(flights[s]);
     }
+    let own_reach2 = reach2(share);
     var found = 0u;
     var flags = middle;
     for (var row = 0u; row < 9u; row++) {
@@ -56,7 +62,9 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         let end = cell_start[first + 3u];
         for (var j = cell_start[first]; j < end; j++) {
             let other = middles[j];
-            if (packed_distance2(middle, other) < reach2 && j != s) {
+            let distance2 = packed_distance2(middle, other);
+            // Of the pair's diameter, so that either is in the other's list.
+            if (distance2 < own_reach2 && j != s && (!CAPPED || distance2 < reach2(share_of(flights[j])))) {
                 flags |= other;
                 if (found < step.list) {
                     neighbours[found * stride + s] = j;

@@ -22,7 +22,8 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
         return say(&lines);
     }
     let effort = if raw.full { Effort::Full } else { Effort::Quick };
-    let device = Device::open(raw.gpu.as_deref())?;
+    // A device that is not there is told before any case; each worker opens its own.
+    let info = Device::open(raw.gpu.as_deref())?.adapter().info.clone();
     say(&report::head())?;
     let mut outcomes: Vec<(&Case, Findings)> = Vec::new();
     let open = || Device::open(raw.gpu.as_deref());
@@ -34,7 +35,6 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, found)| &found.checks).collect();
     let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
     if let Some(path) = &raw.markdown {
-        let info = &device.adapter().info;
         let driver = format!("{} {}", info.driver, info.driver_info);
         let device = format!("{} ({})", info.name, driver.trim());
         let page = report::page(&outcomes, &command(&raw), &device, FIGURES);

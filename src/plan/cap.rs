@@ -14,7 +14,7 @@ const ROOM: f64 = 1.14;
 /// The cap in mean spacings of the local gas, if there is one.
 ///
 /// # Errors
-/// If one is asked of a method that has none.
+/// If one is asked of a method that has none, or is below the diameter at the mean density.
 pub fn diameter_cap(
     scene: &Scene,
     method: Method,
@@ -24,11 +24,15 @@ pub fn diameter_cap(
 ) -> Result<Option<f64>, PlanError> {
     let asked = scene.model.diameter_cap;
     if method != Method::ClosestApproach {
-        return if asked.is_some() { Err(PlanError::CapOf { method: method.name() }) } else { Ok(None) };
+        let wanted = matches!(asked, Some(DiameterCap::Spacings(_)));
+        return if wanted { Err(PlanError::CapOf { method: method.name() }) } else { Ok(None) };
     }
     let in_spacings = diameter / kinetics::mean_spacing(number_density);
     let (cap, why) = match asked {
         Some(DiameterCap::Off) => return Ok(None),
+        Some(DiameterCap::Spacings(asked)) if asked < in_spacings * (1.0 - 1e-9) => {
+            return Err(PlanError::CapOfAll { asked, spacings: in_spacings });
+        }
         Some(DiameterCap::Spacings(asked)) => (asked, "asked for".to_string()),
         None if stays_uniform(scene) => return Ok(None),
         None => {
@@ -43,7 +47,9 @@ pub fn diameter_cap(
     Ok(Some(cap))
 }
 
-/// Nothing in the scene can make gas denser in one place than in another.
+/// Nothing in the scene makes gas denser in one place than in another.
 fn stays_uniform(scene: &Scene) -> bool {
-    scene.chambers.len() == 1 && scene.orifices.is_empty() && scene.motions.is_empty()
+    let one = scene.chambers.len() == 1 && scene.chambers[0].region.is_none();
+    let still = scene.orifices.is_empty() && scene.motions.is_empty();
+    one && still && scene.walls.iter().all(|wall| wall.heat.is_none())
 }

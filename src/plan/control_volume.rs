@@ -96,18 +96,23 @@ pub fn plan(
     })
 }
 
-/// Chambers that gas cannot leave, beside others.
+/// Chambers that gas cannot leave, beside others; and what a control volume does not know.
 fn warnings(scene: &Scene, openings: &[OpeningPlan]) -> Vec<String> {
     let alone = |index: usize| openings.iter().all(|opening| !opening.between.contains(&index));
     let several = scene.chambers.len() > 1;
     let chambers = scene.chambers.iter().enumerate().filter(|(index, _)| several && alone(*index));
-    chambers
-        .map(|(_, chamber)| {
-            format!(
-                "no opening is known of chamber `{}`: its gas stays in it, though nothing but its region may part it from \
-                 another chamber; declare an [[opening]], or make it one with its neighbour",
-                chamber.name
-            )
-        })
-        .collect()
+    let closed = chambers.map(|(_, chamber)| {
+        format!(
+            "no opening is known of chamber `{}`: its gas stays in it, though nothing but its region may part it from \
+             another chamber; declare an [[opening]], or make it one with its neighbour",
+            chamber.name
+        )
+    });
+    let rough = scene.walls.iter().filter(|wall| wall.friction > 0.0).map(|wall| {
+        format!(
+            "wall `{}` has a friction, which a control volume does not know: holes flow as if walls were smooth",
+            wall.name
+        )
+    });
+    closed.chain(rough).collect()
 }

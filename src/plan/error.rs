@@ -69,6 +69,12 @@ pub enum PlanError {
     #[error("`diameter_cap` with the method `{method}`; only `closest-approach` has one")]
     #[diagnostic(help("leave out `diameter_cap` in [model], or choose another `method`"))]
     CapOf { method: &'static str },
+    #[error(
+        "`diameter_cap` of {} mean spacings, which is less than the diameter at the mean density, {} spacings",
+        significant(*asked), significant(*spacings)
+    )]
+    #[diagnostic(help("set a smaller `occupancy` or `diameter` in [model], or a larger cap"))]
+    CapOfAll { asked: f64, spacings: f64 },
     #[error("`switch` at, or `uniform_for`, {} s, which is not before the end of the run, {} s", significant(*at), significant(*end))]
     #[diagnostic(help("set a shorter time in [model], or leave `switch` out"))]
     SwitchTime { at: f64, end: f64 },

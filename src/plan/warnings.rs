@@ -97,7 +97,8 @@ fn dense(decided: &Decided<'_>) -> Option<Warning> {
             "they press {:.1} % harder (Carnahan-Starling); `hard-sphere` is for comparison with legacy results only",
             100.0 * (kinetics::rigid_compressibility(occupancy) - 1.0)
         ),
-        _ => "a smaller `occupancy`, `diameter` or `diameter_cap`".to_string(),
+        Method::ClosestApproach => "a smaller `occupancy`, `diameter` or `diameter_cap`".to_string(),
+        _ => "a smaller `occupancy` or `diameter`".to_string(),
     };
     Warning::by_table(Quantity::Occupancy, method, &subject, occupancy, &remedy)
 }

@@ -58,18 +58,14 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
 }
 
 fn diameter_cap(asked: &At<RawCap>, raw: &RawModel, units: UnitSystem) -> Result<DiameterCap, Problem> {
+    let RawCap::Spacings(value) = asked.value else { return Ok(DiameterCap::Off) };
     if let Some(method) = raw.method.filter(|&method| method != Method::ClosestApproach) {
         let found = format!("`diameter_cap` with the method `{}`", method.name());
         let allowed = "it only beside `closest-approach`, whose pressure does not depend on the diameter";
         return Err(Problem::value(&asked.span, found, allowed));
     }
-    match asked.value {
-        RawCap::Off(_) => Ok(DiameterCap::Off),
-        RawCap::Spacings(value) => {
-            let at = At { value, span: asked.span.clone() };
-            Ok(DiameterCap::Spacings(positive(&at, Quantity::Pure, units)?))
-        }
-    }
+    let at = At { value, span: asked.span.clone() };
+    Ok(DiameterCap::Spacings(positive(&at, Quantity::Pure, units)?))
 }
 
 fn wishes(raw: &RawModel) -> bool {

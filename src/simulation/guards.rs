@@ -10,7 +10,7 @@ use super::averages::Row;
 use crate::gas::kinetics;
 use crate::plan::{Bound, Plan, Quantity, Warning, limit};
 use crate::scene::{Method, Scene};
-use crate::subdomain::{BlockSum, Tallies};
+use crate::subdomain::{BlockSum, FULL_SHARE, Tallies};
 
 /// Collisions after which the share of lost ones is judged: known to .4 % at 3 %.
 const EVENTS: u64 = 2000;
@@ -64,6 +64,8 @@ pub struct Shown<'a> {
     pub time: f64,
     pub step: f64,
     pub tallies: &'a Tallies,
+    /// What was left of the cross-section in each block, in `FULL_SHARE`ths; empty if all.
+    pub shares: &'a [u32],
     /// Of all particles in the interval, together.
     pub particle_steps: u64,
     /// Energy found over that which should be there, less 1.
@@ -111,7 +113,7 @@ impl<'a> Guards<'a> {
     pub fn interval(&mut self, shown: &Shown<'_>) -> Vec<Told> {
         let mut found = vec![
             (0, self.lost_events(shown.tallies)),
-            (0, self.dense(&shown.tallies.blocks)),
+            (0, self.dense(&shown.tallies.blocks, shown.shares)),
             (0, self.last_step(shown.step)),
             (0, self.busy_walls(shown)),
             (0, self.table(Quantity::EnergyDrift, "the gas", shown.drift.abs(), "report it with the scene")),
@@ -149,19 +151,21 @@ impl<'a> Guards<'a> {
         self.table(Quantity::LostCollisions, "the gas", share, "a smaller `time_step`, or more `rounds`")
     }
 
-    /// Blocks that are surely denser than the limit, if more than a few particles are in them.
-    fn dense(&self, blocks: &[BlockSum]) -> Option<Warning> {
+    /// Blocks that are surely denser than the limit, with the diameters that they had, if more than a few particles are in
+    /// them.
+    fn dense(&self, blocks: &[BlockSum], shares: &[u32]) -> Option<Warning> {
         let bound = limit(Quantity::Occupancy, self.plan.method)?.bound;
-        let occupancy = |density: f64| kinetics::occupancy(density, self.plan.diameter_in(density));
+        let per_density = kinetics::occupancy(1.0, self.plan.diameter);
         let full = self.block_volumes.iter().copied().fold(0.0, f64::max);
-        let (mut total, mut within, mut volume) = (0, 0, 0.0);
-        for (block, &room) in blocks.iter().zip(&self.block_volumes) {
+        let (mut total, mut within, mut sum) = (0, 0, 0.0);
+        for (index, (block, &room)) in blocks.iter().zip(&self.block_volumes).enumerate() {
             total += block.number;
             let number = block.number as f64;
-            let surely = occupancy((number - SURE * number.sqrt()) / room);
-            if room > LEAST_VOLUME * full && !bound.holds(surely) {
+            let share = shares.get(index).map_or(1.0, |&share| f64::from(share) / f64::from(FULL_SHARE));
+            let occupancy = |number: f64| number / room * per_density * share * share.sqrt();
+            if room > LEAST_VOLUME * full && !bound.holds(occupancy(number - SURE * number.sqrt())) {
                 within += block.number;
-                volume += room;
+                sum += number * occupancy(number);
             }
         }
         if within as f64 <= TAIL * total as f64 {
@@ -169,8 +173,11 @@ impl<'a> Guards<'a> {
         }
         let share = 100.0 * within as f64 / total as f64;
         let subject = format!("where {share:.0} % of the gas is");
-        let remedy = "a smaller `diameter` or `diameter_cap`";
-        self.table(Quantity::Occupancy, &subject, occupancy(within as f64 / volume), remedy)
+        let remedy = match self.plan.method {
+            Method::ClosestApproach => "a smaller `diameter` or `diameter_cap`",
+            _ => "a smaller `diameter`, or more `particles`",
+        };
+        self.table(Quantity::Occupancy, &subject, sum / within as f64, remedy)
     }
 
     fn busy_walls(&self, shown: &Shown<'_>) -> Option<Warning> {
@@ -239,7 +246,7 @@ mod tests {
     }
 
     fn shown(tallies: &Tallies) -> Shown<'_> {
-        Shown { time: 1e-3, step: 0.0, tallies, particle_steps: 1000, drift: 0.0, clipped: &[] }
+        Shown { time: 1e-3, step: 0.0, tallies, shares: &[], particle_steps: 1000, drift: 0.0, clipped: &[] }
     }
 
     fn quantities(told: &[Told]) -> Vec<Quantity> {
@@ -249,10 +256,7 @@ mod tests {
     /// Each guard is silent within its limit, tells beyond it, with the time, and tells once.
     #[test]
     fn guards_tell_once_beyond_their_limits() {
-        let mut model = model();
-        // Where the diameter is capped, dense gas has no larger occupancy.
-        let capped = Plan { diameter_cap: Some(0.7), ..model.plan.clone() };
-        model.plan.diameter_cap = None;
+        let model = model();
         let plan = &model.plan;
         let volumes = [1e-3; 4];
         let step = plan.time_step;
@@ -281,8 +285,9 @@ mod tests {
             (Shown { step, drift: -1.1e-5, ..shown(&calm) }, Quantity::EnergyDrift, 1),
             (Shown { step, clipped: &clipped, ..shown(&calm) }, Quantity::ClippedHits, model.scene.vents.len()),
         ];
-        let mut of_capped = Guards::new(&model.scene, &capped, volumes.to_vec());
-        assert_eq!(of_capped.interval(&Shown { step, ..shown(&dense) }), Vec::new());
+        // With half of its cross-section the densest gas has .14 of .4.
+        let shares = [FULL_SHARE / 2, FULL_SHARE, FULL_SHARE, FULL_SHARE];
+        assert_eq!(guards.interval(&Shown { step, shares: &shares, ..shown(&dense) }), Vec::new());
         let mut all = 0;
         for (shown, quantity, times) in &cases {
             let told = guards.interval(shown);

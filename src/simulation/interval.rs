@@ -32,7 +32,7 @@ pub struct Interval {
     pub energy: Vec<f64>,
     /// Particles that have entered by its end, on all ranks, the initial ones with them.
     pub particles: u64,
-    /// What the walls that are no mirrors do in it.
+    /// What the host tells the device of it.
     pub tables: Tables,
     /// The mean volumes of its tallied steps where walls move, m3: of the chambers, then the probes.
     pub volumes: Vec<f64>,

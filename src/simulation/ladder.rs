@@ -1,4 +1,4 @@
-//! The step size follows the state (specification, section 9): a ladder of powers of two, changed only
+//! Step size and collision diameters follow the state. The step (specification, section 9): a ladder of powers of two, changed only
 //! between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 
@@ -89,13 +89,17 @@ impl Ladder {
         if state.level > 0 && state.level >= state.levels {
             return Err(StateError::Impossible { what: "the step is below the ladder" });
         }
-        if state.shares.len() != self.gas.entries() {
-            let (found, expected) = (state.shares.len() as u64, self.gas.entries() as u64);
-            return Err(StateError::differs("blocks with a diameter", found, expected));
-        }
+        self.check(&state.shares)?;
         self.level = state.level;
         self.shares.clone_from(&state.shares);
         Ok(())
+    }
+
+    /// # Errors
+    /// If these are the shares of another plan's blocks.
+    pub fn check(&self, shares: &[u32]) -> Result<(), StateError> {
+        let (found, expected) = (shares.len() as u64, self.gas.entries() as u64);
+        if found == expected { Ok(()) } else { Err(StateError::differs("blocks with a diameter", found, expected)) }
     }
 
     /// What a measured state asks for.
@@ -191,6 +195,8 @@ mod tests {
         assert_eq!(restored.level(), cut.level());
         assert!(restored.restore(&LadderState { level: 12, ..cut.state() }).is_err());
         assert!(restored.restore(&LadderState { levels: 3, ..cut.state() }).is_err());
+        assert!(restored.restore(&LadderState { shares: vec![1], ..cut.state() }).is_err());
+        assert!(restored.check(&[1]).is_err() && restored.check(&[]).is_ok());
         assert_eq!(restored.level(), cut.level());
     }
 

@@ -46,7 +46,11 @@ fn volume(model: &Model) -> ControlVolume {
         collisions: match plan.method {
             Method::None => Collisions::None,
             Method::ControlVolume => Collisions::Continuum,
-            _ => Collisions::Particles { diameter: plan.diameter, moles_per_particle: plan.moles_per_particle },
+            _ => Collisions::Particles {
+                diameter: plan.diameter,
+                cap: plan.diameter_cap,
+                moles_per_particle: plan.moles_per_particle,
+            },
         },
     }
 }

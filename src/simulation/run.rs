@@ -207,6 +207,9 @@ impl<'a> Simulation<'a> {
         simulation.averages.restore(&state.averages)?;
         simulation.account.restore(&model.plan, &state.account)?;
         simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
+        for asked in &state.asked {
+            simulation.ladder.check(&asked.demand.shares)?;
+        }
         simulation.asked = state.asked.iter().cloned().collect();
         simulation.conditions.restore(&state.conditions)?;
         simulation.guards.restore(&state.guards);

@@ -95,7 +95,15 @@ pub struct GpuFlight {
     pub start: f32,
     pub wall: f32,
     pub partner: u32,
+    /// Those of this step in the lower half; in the upper half `shaders/shared/cap.wgsl`.
     pub collisions: u32,
+}
+
+impl GpuFlight {
+    /// Collisions in this step.
+    pub fn collided(&self) -> u32 {
+        self.collisions & 0xffff
+    }
 }
 
 /// `Triangle` of `shaders/shared/walls.wgsl`.

@@ -1,7 +1,7 @@
 //! On one device.
 
 use corpuscle::output::AuditLimits;
-use corpuscle::scene::Method;
+use corpuscle::scene::{DiameterCap, Method, Scene};
 use corpuscle::simulation::{Model, Options, Shuffle};
 use corpuscle::subdomain::GpuParticle;
 
@@ -53,6 +53,22 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
     let room = initial + (initial / 8).max(1024);
     assert!(model.plan.particles > room + 1000, "the buffers for {room} must grow for {}", model.plan.particles);
     every_way(&model);
+}
+
+/// What the suite's scene of a dense and a thin side shows of capped diameters and rough walls: both change its bits.
+#[test]
+fn dense_gas_and_a_rough_wall_have_the_same_bits_in_every_way() {
+    let model = plate();
+    let bits = every_way(&model);
+    let other = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = model.scene.clone();
+        change(&mut scene);
+        Bits::of(&run(&Model::new(scene).expect("a model"), Options::default()))
+    };
+    let uncapped = other(&|scene| scene.model.diameter_cap = Some(DiameterCap::Off));
+    assert!(difference(&bits, &uncapped).is_some(), "no diameter was capped");
+    let smooth = other(&|scene| scene.walls[1].friction = 0.0);
+    assert!(difference(&bits, &smooth).is_some(), "no wall was rough");
 }
 
 #[test]

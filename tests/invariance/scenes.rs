@@ -48,17 +48,17 @@ pub fn curves() -> Model {
     )
 }
 
-/// A box, cold and thin on one side of a plate with a hole and dense on the other.
+/// A box, cold and thin on one side of a rough plate with a hole and so dense on the other that diameters are capped.
 pub fn plate() -> Model {
     model(
         "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.12, 0.08, 0.08]\ngas = \"inside\"\n\
          [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.05, 0.04, 0.04]\nnormal = [0.8, 0.6, 0.0]\n\
-         u = [-0.6, 0.8, 0.0]\nsize = [0.05, 0.06]\nthickness = 0.001\n\
+         u = [-0.6, 0.8, 0.0]\nsize = [0.05, 0.06]\nthickness = 0.001\nfriction = 0.5\n\
          [[wall.hole]]\nname = \"hole\"\ncenter = [0.005, 0.0]\nsize = [0.02, 0.03]\n\
          [[chamber]]\nname = \"dense\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.04, 0.08, 0.08] } }\n\
          pressure = 3e5\ntemperature = 500.0\ngas = \"air\"\n\
-         [[chamber]]\nname = \"thin\"\npressure = 5e4\ntemperature = 250.0\ngas = \"air\"\n\
+         [[chamber]]\nname = \"thin\"\npressure = 2e4\ntemperature = 250.0\ngas = \"air\"\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n[[surface]]\nname = \"plate\"\nwall = \"plate\"\n\
          [model]\nparticles = 2500\noccupancy = 0.1\n[output]\nrows = 10\nsnapshots = 0\n",
     )
@@ -156,9 +156,9 @@ pub fn pistons() -> Model {
          [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.06, 0.06]\ngas = \"inside\"\n\
          [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.03, 0.03, 0.03]\nnormal = [1.0, 0.0, 0.0]\n\
-         u = [0.0, 1.0, 0.0]\nsize = [0.064, 0.06]\nthickness = 0.002\ntemperature = 400.0\naccommodation = 0.5\n\
+         u = [0.0, 1.0, 0.0]\nsize = [0.064, 0.06]\nthickness = 0.002\ntemperature = 400.0\naccommodation = 0.5\nfriction = 0.6\n\
          [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.09, 0.015, 0.03]\nradius = 0.008\nsubdivisions = 1\n\
-         gas = \"outside\"\n\
+         gas = \"outside\"\nfriction = 1.0\n\
          [[motion]]\nwall = \"plate\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = [[0.0, 0.0], [2e-4, 150.0]]\n\
          [[motion]]\nwall = \"ball\"\ndirection = [0.0, 1.0, 0.0]\ndisplacement = [[0.0, 0.0], [2e-4, 0.02], [3e-4, 0.0]]\n\
          [[chamber]]\nname = \"behind\"\nregion = { box = { min = [0.0, 0.0, 0.0], max = [0.03, 0.06, 0.06] } }\n\

@@ -145,7 +145,8 @@ fn the_outermost_ghosts_have_no_neighbours() {
     }
 }
 
-/// Where the diameter is capped lists are shorter by what it lacks, and miss nobody whom a pair of that diameter can meet.
+/// Where the diameter is capped lists are shorter by what the smaller diameter of a pair lacks, hold either of a pair or
+/// neither, and miss nobody whom a pair of that diameter can meet.
 #[test]
 fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
     let mut crowd = crowd(15);
@@ -159,27 +160,29 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
     crowd.rig.put("flights", &flights);
     crowd.rig.constant("CAPPED", 1.0);
     crowd.rig.constant("DIAMETER_REACH2", whole);
-    let lists = crowd.run(64);
+    let lists: Vec<BTreeSet<u32>> = crowd.run(64).into_iter().map(|list| list.into_iter().collect()).collect();
     let uncapped = crowd.all_pairs();
     let edge = crowd.world.grid.cell;
     let (mut near, mut shorter) = (0, 0);
     for (s, list) in lists.iter().enumerate() {
-        let set: BTreeSet<u32> = list.iter().copied().collect();
-        assert!(set.is_subset(&uncapped[s]));
-        if shares[s] == FULL_SHARE {
-            assert_eq!(set, uncapped[s]);
-        }
-        shorter += usize::from(set.len() < uncapped[s].len());
-        // sigma^2 + (g dt/2)^2, of which the second is what the edge leaves to the largest diameter.
-        let reach2 = edge * edge * (1.0 - whole / 16384.0 * (1.0 - f64::from(shares[s]) / f64::from(FULL_SHARE)));
+        assert!(list.is_subset(&uncapped[s]));
+        shorter += usize::from(list.len() < uncapped[s].len());
         for &j in &uncapped[s] {
+            let other = j as usize;
+            assert_eq!(list.contains(&j), lists[other].contains(&(s as u32)), "{s} and {j}");
+            if shares[s] == FULL_SHARE && shares[other] == FULL_SHARE {
+                assert!(list.contains(&j));
+            }
+            // sigma^2 + (g dt/2)^2, of which the second is what the edge leaves to the largest diameter.
+            let share = f64::from(shares[s].min(shares[other])) / f64::from(FULL_SHARE);
+            let reach2 = edge * edge * (1.0 - whole / 16384.0 * (1.0 - share));
             let place = |k: usize| crowd.world.metres(crowd.middles[k]);
-            let (p, q) = (place(s), place(j as usize));
+            let (p, q) = (place(s), place(other));
             let distance2: f64 = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum();
-            assert!(distance2 >= reach2 || set.contains(&j), "{s} misses {j}");
+            assert!(distance2 >= reach2 || list.contains(&j), "{s} misses {j}");
             near += usize::from(distance2 < reach2);
         }
     }
-    let total: usize = lists.iter().map(Vec::len).sum();
+    let total: usize = lists.iter().map(BTreeSet::len).sum();
     assert!(shorter > COUNT / 3 && near > 9 * total / 10, "{shorter} shorter, {near} of {total} near");
 }

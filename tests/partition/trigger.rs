@@ -105,3 +105,19 @@ fn reasons_are_printed() {
     let stored: Trigger = toml::from_str(&toml::to_string(&trigger).unwrap()).unwrap();
     assert_eq!(stored, trigger, "what is stored decides as before");
 }
+
+/// Just below the threshold noise of 1 % leads to no rebalance; just above, one comes.
+#[test]
+fn noise_does_not_carry_a_load_over_the_threshold() {
+    let turns = |excess: f64, seed| {
+        let (mut trigger, mut random) = (Trigger::new(1.1, 0.0), Random(seed));
+        (0..500).position(|_| {
+            let seconds = [1.0 + excess, 1.0 - excess].map(|s| 1e-3 * s * (1.0 + 0.01 * random.normal()));
+            check(&mut trigger, &seconds, &[1.0; 2], STEPS).rebalances()
+        })
+    };
+    for seed in 1..=5 {
+        assert_eq!(turns(0.085, seed), None, "seed {seed}");
+        assert!(turns(0.13, seed).is_some_and(|turn| turn <= 12), "seed {seed}");
+    }
+}

@@ -33,7 +33,7 @@ fn two_chambers(length: f64) -> ControlVolume {
         walls: vec![],
         vents: vec![],
         swept: vec![],
-        collisions: Collisions::Particles { diameter: 2.4e-3, moles_per_particle: 5e-6 },
+        collisions: Collisions::Particles { diameter: 2.4e-3, cap: None, moles_per_particle: 5e-6 },
     }
 }
 

@@ -4,7 +4,7 @@ use crate::gas::kinetics;
 use crate::plan::amounts::Amounts;
 use crate::plan::resolution::default_occupancy;
 use crate::plan::{Measured, Reason, forecast::Forecaster};
-use crate::scene::{Method, Scene};
+use crate::scene::{DiameterCap, Method, Scene};
 
 /// All candidates but for the number of particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ fn methods(
     if let Some(method) = scene.model.method {
         return (vec![method], "asked for in the scene".into());
     }
-    if scene.model.diameter_cap.is_some() {
+    if let Some(DiameterCap::Spacings(_)) = scene.model.diameter_cap {
         return (vec![Method::ClosestApproach], "the only one that has a `diameter_cap`".into());
     }
     let path = kinetics::molecular_mean_free_path(amounts.total() / measured.gas_volume);
@@ -77,11 +77,12 @@ fn methods(
     }
     let mut methods = Vec::new();
     let mut why = Vec::new();
-    let losses = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some());
+    let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
+    let losses = !scene.vents.is_empty() || rough;
     if forecaster.is_release() {
         why.push("a release without a wall is no control volume");
     } else if losses {
-        why.push("not the method control-volume, whose error beside vents and walls that keep a temperature is not predicted yet");
+        why.push("not the method control-volume, whose error beside vents, rough walls and walls that keep a temperature is not predicted yet");
     } else {
         methods.push(Method::ControlVolume);
     }

@@ -296,7 +296,8 @@ impl<'a> Run<'a> {
             (None, vec![0.0; course.volumes.len()])
         } else {
             let diameter = bias::diameter_of_holes(method, occupancy, density);
-            let states = course.solve(Collisions::Particles { diameter, moles_per_particle });
+            // Measured biases belong to the diameter of the mean gas.
+            let states = course.solve(Collisions::Particles { diameter, cap: None, moles_per_particle });
             let holes = bias::differences(&states, limit);
             (Some(states), holes)
         };

@@ -89,8 +89,15 @@ impl Simulation<'_> {
         self.account.add(plan, &tallies, &interval, samples, &timed);
         let particle_steps = interval.particles * u64::from(interval.steps);
         let clipped = self.account.state().clipped();
-        let shown =
-            Shown { time: self.read_until, step: interval.dt, tallies: &tallies, particle_steps, drift, clipped };
+        let shown = Shown {
+            time: self.read_until,
+            step: interval.dt,
+            tallies: &tallies,
+            shares: &interval.tables.shares,
+            particle_steps,
+            drift,
+            clipped,
+        };
         let told = self.guards.interval(&shown);
         self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::gas::kinetics;
 use crate::plan::Plan;
-use crate::scene::{Method, Scene};
+use crate::scene::{DiameterCap, Method, Scene};
 use crate::simulation::Model;
 use crate::study::StudyError;
 use crate::study::verify::model_from;
@@ -90,6 +90,7 @@ pub fn model_with(case: &str, mut scene: Scene, setting: &Setting, volume: Optio
     match (setting.occupancy, setting.particles, volume) {
         (Some(occupancy), Some(particles), Some(volume)) => {
             scene.model.diameter = Some(kinetics::diameter(particles as f64 / volume, occupancy));
+            scene.model.diameter_cap = Some(DiameterCap::Off);
         }
         (occupancy, _, _) => scene.model.occupancy = occupancy,
     }

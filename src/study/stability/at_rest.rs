@@ -98,7 +98,7 @@ fn findings(
             for (particle, (_, flight)) in particles.iter().zip(flights) {
                 if model.plan.grid.to_metres(particle.position).iter().all(core) {
                     visits += 1;
-                    ends += u64::from(flight.collisions);
+                    ends += u64::from(flight.collided());
                 }
             }
         }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::gas::CONTINUUM_COEFFICIENT;
 use crate::gpu::Device;
-use crate::scene::{Jet, Method};
+use crate::scene::{DiameterCap, Jet, Method};
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::study::verify::filling::{energy_error, enthalpy};
@@ -46,6 +46,8 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
     let density = particles as f64 / VOLUME;
     if method != Method::None {
         scene.model.diameter = Some((1.0 / (2f64.sqrt() * PI * density * knudsen * RADIUS)).sqrt());
+        // The Knudsen number is that of the gas that stays, which is denser than the mean.
+        scene.model.diameter_cap = Some(DiameterCap::Off);
     }
     let model = model_from("orifice", scene)?;
     let run = run(device, &model, Options::default())?;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
+use std::time::Instant;
 
 use crate::gpu::{Device, GpuError};
 use crate::study::StudyError;
@@ -23,14 +24,24 @@ pub fn run_cases<'a, E: From<StudyError>>(
 ) -> Result<(), E> {
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     let work = |sender: mpsc::Sender<(usize, Result<Findings, StudyError>)>| {
+        let _guard = StopsOnPanic(&stop);
         let mut device = None;
         while !stop.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(index) else { return };
             let found = match device.take().map_or_else(&open, Ok) {
-                Ok(opened) => case.run(device.insert(opened), effort),
+                Ok(opened) => {
+                    let start = Instant::now();
+                    let found = case.run(device.insert(opened), effort);
+                    tracing::debug!("{}: {:.1} s", case.name, start.elapsed().as_secs_f64());
+                    found
+                }
                 Err(error) => Err(error.into()),
             };
+            // Those before it are under way; none after it is needed.
+            if found.is_err() {
+                stop.store(true, Ordering::Relaxed);
+            }
             if sender.send((index, found)).is_err() {
                 return;
             }
@@ -58,6 +69,17 @@ pub fn run_cases<'a, E: From<StudyError>>(
         }
         Ok(())
     })
+}
+
+/// No worker goes on when another panics.
+struct StopsOnPanic<'a>(&'a AtomicBool);
+
+impl Drop for StopsOnPanic<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate,
             let place = model.plan.grid.to_metres(particle.position);
             let layer = usize::from(place.iter().any(|x| *x < margin || *x > EDGE - margin));
             visits[layer] += 1;
-            ends[layer] += u64::from(flight.collisions);
+            ends[layer] += u64::from(flight.collided());
         }
     })?;
     let Run { rows, outcome, .. } = seen;

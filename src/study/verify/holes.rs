@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::geometry::region_contains;
 use crate::gpu::Device;
-use crate::scene::{Method, Outline, Scene, Shape};
+use crate::scene::{DiameterCap, Method, Outline, Scene, Shape};
 use crate::simulation::{Model, Options, Row};
 use crate::study::StudyError;
 
@@ -107,7 +107,7 @@ pub fn transmission(device: &Device, particles: u64, friction: f64) -> Result<(f
 }
 
 pub(super) fn rough_tube(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let particles = if effort == Effort::Quick { 200_000 } else { 1_000_000 };
+    let particles = if effort == Effort::Quick { 300_000 } else { 1_000_000 };
     let found = transmission(device, particles, 1.0)?;
     Ok(vec![Check::of("flow through a rough tube, L = 2 R", CLAUSING, found, 0.03 * CLAUSING)].into())
 }
@@ -145,7 +145,9 @@ fn emptying_until(end_time: f64, particles: u64, knudsen: f64) -> Result<Model, 
     let mut scene = emptying_scene()?;
     scene.end_time = end_time;
     scene.model.particles = Some(particles);
+    // The Knudsen number is that of the gas that stays, which is denser than the mean.
     scene.model.diameter = Some(diameter);
+    scene.model.diameter_cap = Some(DiameterCap::Off);
     model_from("orifice", scene)
 }
 
