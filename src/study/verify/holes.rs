@@ -54,7 +54,7 @@ pub fn flow_ratio(device: &Device, particles: u64, diameter: f64) -> Result<(f64
 }
 
 /// Radius, and length, m, of the tube of [`transmission`].
-const TUBE: [f64; 2] = [0.01, 0.02];
+const TUBE: [f64; 2] = [0.0125, 0.025];
 /// Of molecules that enter a tube twice as long as its radius, those that come out at the other end if its walls scatter by
 /// the cosine law (Clausing 1932).
 pub const CLAUSING: f64 = 0.5142;
@@ -107,7 +107,7 @@ pub fn transmission(device: &Device, particles: u64, friction: f64) -> Result<(f
 }
 
 pub(super) fn rough_tube(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let particles = if effort == Effort::Quick { 300_000 } else { 1_000_000 };
+    let particles = if effort == Effort::Quick { 200_000 } else { 1_000_000 };
     let found = transmission(device, particles, 1.0)?;
     Ok(vec![Check::of("flow through a rough tube, L = 2 R", CLAUSING, found, 0.03 * CLAUSING)].into())
 }
