@@ -29,7 +29,7 @@ mod resolution;
 mod vents;
 mod warnings;
 
-use crate::gas::{Species, kinetics};
+use crate::gas::Species;
 use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
@@ -171,11 +171,6 @@ pub struct GasPlan {
 }
 
 impl Plan {
-    /// The collision diameter, m, in gas of this density, 1/m3.
-    pub fn diameter_in(&self, number_density: f64) -> f64 {
-        kinetics::capped_diameter(self.diameter, self.diameter_cap, number_density)
-    }
-
     /// The gases as they are modelled, by index.
     pub fn species(&self) -> Vec<Species> {
         self.gases.iter().map(|gas| gas.species.clone()).collect()

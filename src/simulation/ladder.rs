@@ -1,5 +1,5 @@
-//! Step size and collision diameters follow the state. The step (specification, section 9): a ladder of powers of two, changed only
-//! between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
+//! Step size and collision diameters follow the state. The step (specification, section 9): a ladder of powers of two,
+//! changed only between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,7 @@ const TAIL: f64 = 0.02;
 const FAST_TAIL: f64 = 1e-3;
 /// A longer step is taken only with this much room, so that the level does not flutter.
 const ROOM: f64 = 0.9;
+
 pub struct Ladder {
     level: u32,
     levels: u32,

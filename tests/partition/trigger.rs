@@ -106,7 +106,7 @@ fn reasons_are_printed() {
     assert_eq!(stored, trigger, "what is stored decides as before");
 }
 
-/// Just below the threshold noise of 1 % leads to no rebalance; just above, one comes.
+/// Noise of 1 % carries no load of 8.5 % over the threshold of 10 % in 500 checks; one of 13 % leads to a rebalance.
 #[test]
 fn noise_does_not_carry_a_load_over_the_threshold() {
     let turns = |excess: f64, seed| {
