@@ -1,8 +1,8 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl nearness.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
-// their velocities: mid-step points nearer than the cell edge (which the plan makes at least
-// sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more; nearer by what the smaller diameter
-// lacks where gas is dense.
+// their velocities: mid-step points nearer than `near2` says, in the longest steps the cell edge (which the plan makes at
+// least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more. Cells that lie farther away are
+// passed over.
 //
 // Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours` (the k-th of particle s at k * stride + s)
 // and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per
@@ -10,8 +10,6 @@
 // host runs the interval again with longer lists.
 
 override VENTS: bool = true;
-// The square of the largest diameter, in 1/128 cells, rounded down.
-override DIAMETER_REACH2: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
@@ -23,9 +21,10 @@ override DIAMETER_REACH2: u32;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 
-// The square of the distance, in 1/128 cells, up to which a particle with this share of the cross-section may collide.
-fn reach2(share: u32) -> i32 {
-    return PACKED_REACH2 - i32((DIAMETER_REACH2 * (FULL_SHARE - share)) / FULL_SHARE);
+// How far a point at `at` within its cell, in 1/128 of it, is at least from points in the cell before (-1), its own, or
+// the next (1).
+fn gap(at: i32, side: i32) -> i32 {
+    return select(select(0, at + 1, side < 0), 128 - at, side > 0);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -53,18 +52,28 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (CAPPED) {
         share = share_of(flights[s]);
     }
-    let own_reach2 = reach2(share);
+    let own_near2 = near2(share);
+    let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
+    let before = gap(at.x, -1) * gap(at.x, -1);
+    let after = gap(at.x, 1) * gap(at.x, 1);
+    let astray = (middle & ASTRAY) != 0u;
     var found = 0u;
     var flags = middle;
     for (var row = 0u; row < 9u; row++) {
-        // Rows of three cells, neighbours in memory; the border layer makes every index valid.
+        let y = gap(at.y, i32(row % 3u) - 1);
+        let z = gap(at.z, i32(row / 3u) - 1);
+        let left = select(own_near2 - y * y - z * z, own_near2, astray);
+        if (left <= 0) {
+            continue;
+        }
+        // Rows of three cells, neighbours in memory, without those too far away; the border layer makes every index valid.
         let first = corner + (row / 3u) * step.size.x * step.size.y + (row % 3u) * step.size.x;
-        let end = cell_start[first + 3u];
-        for (var j = cell_start[first]; j < end; j++) {
+        let end = cell_start[first + select(2u, 3u, after < left || astray)];
+        for (var j = cell_start[first + select(1u, 0u, before < left || astray)]; j < end; j++) {
             let other = middles[j];
             let distance2 = packed_distance2(middle, other);
             // Of the pair's diameter, so that either is in the other's list.
-            if (distance2 < own_reach2 && j != s && (!CAPPED || distance2 < reach2(share_of(flights[j])))) {
+            if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
                 flags |= other;
                 if (found < step.list) {
                     neighbours[found * stride + s] = j;

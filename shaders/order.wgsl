@@ -1,9 +1,9 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
 // Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
 // the step.
 //
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares` and the classes of the cells; writes
-// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL), `layers`, `origins` (the place in
+// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, `origins` (the place in
 // `particles`), clears what the
 // search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
 // the number of lower ids in the cell: a function of the set, not of any order.
@@ -22,13 +22,22 @@
 @group(0) @binding(44) var<storage, read_write> origins: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
-// What is left of the cross-section in each coarse block.
-@group(0) @binding(53) var<storage, read> shares: array<u32>;
-
 override ORIFICES: bool = true;
 override VENTS: bool = true;
 // Pairs are chosen from neighbour lists, in rounds.
 override ROUNDS_OF_PAIRS: bool = true;
+
+// The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
+fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
+    let distance2 = from_box2(middle, cell, vec3<i32>(step.own_low), vec3<i32>(step.own_high));
+    for (var links = least; links < step.depth; links++) {
+        let reach = chain_reach(cell, links);
+        if (distance2 < reach * reach) {
+            return links;
+        }
+    }
+    return max(least, step.depth);
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -52,10 +61,14 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let particle = particles[slot.x];
     sorted[place] = particle;
     let place_in_grid = cell_of(cell);
+    let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
     var mark = 0u;
     if (step.depth > 0u) {
         origins[place] = slot.x;
         mark = layer_of(place_in_grid);
+        if (mark > 0u && ROUNDS_OF_PAIRS) {
+            mark = links_away(packed(middle), place_in_grid, mark);
+        }
         if (mark == 0u && !in_box(place_in_grid, step.inner_low, step.inner_high)) {
             mark = SHARED;
         }
@@ -69,8 +82,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (ORIFICES) {
         start = birth_time(slot.y);
     }
-    let flag = select(0u, NEAR_WALL, may_part(place_in_grid));
-    middles[place] = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt))) | flag;
+    var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
+    flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
+    middles[place] = packed(middle) | flags;
     touched[place] = 0u;
     var share = 0u;
     if (CAPPED) {

@@ -1,14 +1,15 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
 // Update, part 1: the particles that the rounds since the last exchange have changed, to every device
 // that has them as ghosts.
 //
-// Reads `changed`, `sorted`, `flights`, `cells`, `peers`; writes `updates_out`, counts them (also beyond the
+// Reads `changed`, `sorted`, `flights`, `cells`, `middles`, `peers`, `shares`; writes `updates_out`, counts them (also beyond the
 // buffer's end: the host then makes it larger and packs again) and clears the marks in `layers`. One thread
 // per entry of `changed`. The receiver finds the ghost by cell and id, so order does not matter.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(37) var<storage, read> changed: array<u32>;
@@ -23,8 +24,10 @@ fn pack_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     let s = changed[entry];
     layers[s] &= ~LISTED;
     let cell = cell_of(cells[s]);
+    let reach = chain_reach(cell, step.depth);
     for (var p = 0u; p < step.near_peers; p++) {
-        if (owns(peers[p], vec3<i32>(cell), i32(step.depth))) {
+        if (owns(peers[p], vec3<i32>(cell), i32(step.depth))
+            && from_box2(middles[s], cell, peers[p].low, peers[p].high) < reach * reach) {
             let k = atomicAdd(&counters[COUNT_UPDATES], 1u);
             if (k < arrayLength(&updates_out)) {
                 updates_out[k] = Update(sorted[s], flights[s], cell_index(cell), p, 0u, 0u);

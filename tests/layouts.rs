@@ -55,7 +55,8 @@ fn twins() -> Vec<Twin> {
             stride,
             // The tail padding is not named in the shader.
             tallies_left,
-            slot
+            slot,
+            near2
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         // The tail padding is not named in the shader.

@@ -33,8 +33,10 @@ fn between(a: vec3<u32>, b: vec3<u32>) -> vec3<f32> {
 }
 
 // A position packed into one word for the search of neighbours: 10 bits per axis, in 1/128 of a cell,
-// modulo 8 cells; the top bit marks a cell near a wall that can part two particles.
+// modulo 8 cells; the top bit marks a cell near a wall that can part two particles, the next a point that is beyond its
+// cell (`nearest_cell`).
 const NEAR_WALL: u32 = 0x80000000;
+const ASTRAY: u32 = 0x40000000;
 
 fn packed(p: vec3<u32>) -> u32 {
     let q = (p >> vec3<u32>(CELL_BITS - 7u)) & vec3<u32>(1023u);
@@ -48,10 +50,6 @@ fn packed_distance2(a: u32, b: u32) -> i32 {
     let z = extractBits(i32((b >> 20u) & 1023u) - i32((a >> 20u) & 1023u), 0u, 10u);
     return x * x + y * y + z * z;
 }
-
-// Pairs nearer than a cell's edge have a packed distance below this: rounding takes less than one unit
-// per axis, and (128 + sqrt(3))^2 < 16831.
-const PACKED_REACH2: i32 = 16831;
 
 // The cell of a point up to 2^30 quanta (half the longest side of the grid, or more) outside the grid on
 // either side. Positions in the grid reach up to 2^31, so the sign bit alone does not tell the two sides.

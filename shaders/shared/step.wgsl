@@ -49,6 +49,8 @@ struct Step {
     tallies_left: u32,
     // Place of the step in its interval.
     slot: u32,
+    // The square of the distance, in 1/128 cells, below which two particles of the largest diameter may meet.
+    near2: u32,
 }
 
 override WORKGROUP: u32 = 64;

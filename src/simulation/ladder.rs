@@ -23,6 +23,8 @@ pub struct Ladder {
     limit: f64,
     top: f64,
     gas: BlockGas,
+    /// Coarsest level that the speeds allow.
+    fast_level: u32,
     /// What is left of the cross-section in each block; empty without a cap.
     shares: Vec<u32>,
 }
@@ -53,6 +55,7 @@ pub struct Demand {
 pub struct LadderState {
     pub level: u32,
     levels: u32,
+    fast_level: u32,
     shares: Vec<u32>,
 }
 
@@ -64,6 +67,7 @@ impl Ladder {
             limit: plan.collision_limit,
             top: plan.time_step,
             gas: BlockGas::new(plan, volumes),
+            fast_level: 0,
             shares: Vec::new(),
         }
     }
@@ -72,13 +76,19 @@ impl Ladder {
         self.level
     }
 
+    /// By how many halvings a step of this level is shorter than speeds alone ask for: no pair flies further in it than
+    /// in the longest step divided by 2 to these.
+    pub fn halvings(&self, level: u32) -> u32 {
+        level.saturating_sub(self.fast_level)
+    }
+
     /// What is left of the cross-section in each block, in `FULL_SHARE`ths; empty without a cap.
     pub fn shares(&self) -> &[u32] {
         &self.shares
     }
 
     pub fn state(&self) -> LadderState {
-        LadderState { level: self.level, levels: self.levels, shares: self.shares.clone() }
+        LadderState { level: self.level, levels: self.levels, fast_level: self.fast_level, shares: self.shares.clone() }
     }
 
     /// # Errors
@@ -92,6 +102,7 @@ impl Ladder {
         }
         self.check(&state.shares)?;
         self.level = state.level;
+        self.fast_level = state.fast_level;
         self.shares.clone_from(&state.shares);
         Ok(())
     }
@@ -131,6 +142,7 @@ impl Ladder {
     pub fn follow(&mut self, demand: Demand) -> Result<u32, LadderError> {
         let Demand { collision, fast_level, shares } = demand;
         self.shares = shares;
+        self.fast_level = fast_level;
         let level_for = |limit: f64| {
             // Halving is exact; a logarithm would depend on the system's library.
             let mut collision = collision;
@@ -179,7 +191,15 @@ mod tests {
     use crate::simulation::block_gas::tests::{block, block_gas};
 
     fn ladder(volumes: Vec<f64>) -> Ladder {
-        Ladder { level: 0, levels: 12, limit: 0.3, top: 1.0, gas: block_gas(volumes), shares: Vec::new() }
+        Ladder {
+            level: 0,
+            levels: 12,
+            limit: 0.3,
+            top: 1.0,
+            gas: block_gas(volumes),
+            fast_level: 0,
+            shares: Vec::new(),
+        }
     }
 
     fn demand(collision: f64) -> Demand {
@@ -199,6 +219,17 @@ mod tests {
         assert!(restored.restore(&LadderState { shares: vec![1], ..cut.state() }).is_err());
         assert!(restored.check(&[1]).is_err() && restored.check(&[]).is_ok());
         assert_eq!(restored.level(), cut.level());
+    }
+
+    /// Speeds twice as high in half the step reach as far; a step that density asks for reaches less.
+    #[test]
+    fn halvings_for_density_alone_leave_the_nearness_smaller() {
+        let mut ladder = ladder(vec![1.0]);
+        ladder.follow(Demand { fast_level: 1, ..demand(1.0) }).unwrap();
+        assert_eq!((ladder.level(), ladder.halvings(2), ladder.halvings(0)), (2, 1, 0));
+        let mut restored = self::ladder(vec![1.0]);
+        restored.restore(&ladder.state()).unwrap();
+        assert_eq!(restored.halvings(2), 1);
     }
 
     /// A few particles in a sliver do not set the step of all, nor does what is empty.

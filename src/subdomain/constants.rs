@@ -5,6 +5,7 @@ use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
 use super::buffers::{CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
+use super::nearness;
 use super::scales::Scales;
 use super::walls::Walls;
 
@@ -111,7 +112,7 @@ pub fn constants(
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("CAPPED", flag(features.capped)),
-        ("DIAMETER_REACH2", (16384.0 * (plan.diameter / grid.cell).powi(2)).floor()),
+        ("DIAMETER2_PACKED", nearness::diameter2(plan)),
         ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
         ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),

@@ -7,6 +7,7 @@ use super::buffers::{CHUNK, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::kernels::CollisionKernels;
 use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuStep, GpuVent};
+use super::nearness;
 use super::place::Cells;
 use super::{GpuError, Subdomain};
 
@@ -26,6 +27,7 @@ pub struct StepSlot {
     /// Entries of `sorted`.
     pub(super) total: u32,
     tallies_left: u32,
+    near2: u32,
 }
 
 /// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
@@ -37,6 +39,8 @@ pub struct Tables {
     pub motions: Vec<GpuMotion>,
     /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
     pub shares: Vec<u32>,
+    /// By how many halvings the steps are shorter than the speeds ask for.
+    pub halvings: u32,
 }
 
 /// The share of a block whose gas has the largest diameter (`shaders/shared/cap.wgsl`).
@@ -112,6 +116,7 @@ impl Subdomain {
         device.write(&self.fixed.vents, 0, &tables.vents);
         device.write(&self.fixed.motions, 0, &tables.motions);
         device.write(&self.fixed.shares, 0, &tables.shares);
+        let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let tally_every = u64::from(self.domain.plan.tally_every);
         let tallies = |steps: usize| (first_step + steps as u64) / tally_every;
         let Newborns { of_step, list, first_id, stride } = *newborns;
@@ -133,6 +138,7 @@ impl Subdomain {
                 arrivals: 0,
                 total: self.count + born,
                 tallies_left: (tallies(of_step.len()) - tallies(k)) as u32,
+                near2,
             };
             entered += born;
             if self.place.is_alone() {
@@ -206,6 +212,7 @@ impl Subdomain {
                 stride: slot.stride,
                 tallies_left: slot.tallies_left,
                 slot: slot.slot,
+                near2: slot.near2,
                 ..GpuStep::default()
             };
             let at = stride * at as usize;
@@ -233,6 +240,7 @@ impl Subdomain {
             arrivals: 0,
             total: self.count,
             tallies_left: 0,
+            near2: 0,
         };
         self.write_parameters(device, &slot);
         slot

@@ -32,7 +32,8 @@ pub struct GpuStep {
     pub stride: u32,
     pub tallies_left: u32,
     pub slot: u32,
-    pub pad: [u32; 2],
+    pub near2: u32,
+    pub pad: u32,
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.

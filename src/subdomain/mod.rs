@@ -13,6 +13,7 @@ mod encode;
 mod exchange;
 mod kernels;
 mod layout;
+mod nearness;
 mod place;
 mod scales;
 mod state;

@@ -29,11 +29,11 @@ pub fn tank(end_time: f64) -> Scene {
 
 /// Gas so dense that neighbour lists are too short at first, and intervals are run again.
 pub fn dense() -> Scene {
-    let text = "title = \"dense\"\nend_time = 2e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+    let text = "title = \"dense\"\nend_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-        [model]\nparticles = 1500\noccupancy = 0.4\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 3\n";
+        [model]\nparticles = 1500\ndiameter = 0.010\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 3\n";
     scene::parse(text, "dense.toml", Path::new("")).unwrap()
 }
 

@@ -116,7 +116,7 @@ pub fn dense(seed: u64) -> Model {
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
          [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-         [model]\nparticles = 1500\noccupancy = 0.4\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 0\n"
+         [model]\nparticles = 1500\ndiameter = 0.010\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 0\n"
     ))
 }
 

@@ -100,9 +100,7 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
     let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
     let near_wall = |c: u32| u32::from(cloud.world.class(c) != CLEAR) << 31;
-    let part = |p: &[u32; 3], k: usize| (p[k] >> (cells.bits - 7) & 1023) << (10 * k);
-    let packed: Vec<u32> =
-        middles.iter().zip(&of).map(|(p, &c)| part(p, 0) | part(p, 1) | part(p, 2) | near_wall(c)).collect();
+    let packed: Vec<u32> = middles.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | near_wall(c)).collect();
     let run = |ghosts: u32, before: &[u32], asked: &[u32]| {
         let mut rig = rig_of(&cloud, before);
         rig.put("cell_start", &start);

@@ -169,6 +169,7 @@ fn updates_go_to_those_who_have_the_ghost() {
         rig.put("sorted", &particles);
         rig.put("flights", &flights);
         rig.put("cells", &bins);
+        rig.put("middles", &vec![0u32; COUNT]);
         rig.put("layers", &vec![marks; COUNT]);
         rig.put("changed", &changed);
         rig.put("peers", &local.peers());

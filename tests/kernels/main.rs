@@ -15,6 +15,7 @@ mod coats;
 mod collide;
 mod exchange;
 mod fly;
+mod halo;
 mod lists;
 mod local;
 mod match_pairs;

@@ -30,14 +30,8 @@ fn crowd(seed: u32) -> Crowd {
     middles.sort_by_key(|&p| cells.index(cells.cell(p)));
     let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
-    let packed: Vec<u32> = middles
-        .iter()
-        .zip(&of)
-        .map(|(p, &c)| {
-            let part = |k: usize| (p[k] >> (cells.bits - 7) & 1023) << (10 * k);
-            part(0) | part(1) | part(2) | u32::from(world.class(c) != CLEAR) << 31
-        })
-        .collect();
+    let packed: Vec<u32> =
+        middles.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | u32::from(world.class(c) != CLEAR) << 31).collect();
     let mut rig = Rig::new(&world);
     rig.put("cell_start", &start);
     rig.put("middles", &packed);
@@ -49,7 +43,11 @@ fn crowd(seed: u32) -> Crowd {
 
 impl Crowd {
     fn run(&mut self, room: usize) -> Vec<Vec<u32>> {
-        self.rig.step(GpuStep { count: COUNT as u32, list: room as u32, ..GpuStep::default() });
+        self.run_near(room, CELL_NEAR2)
+    }
+
+    fn run_near(&mut self, room: usize, near2: u32) -> Vec<Vec<u32>> {
+        self.rig.step(GpuStep { count: COUNT as u32, list: room as u32, near2, ..GpuStep::default() });
         self.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
         self.rig.run("neighbours", COUNT);
         let flat: Vec<u32> = self.rig.get("neighbours", room * COUNT);
@@ -58,10 +56,14 @@ impl Crowd {
     }
 
     fn all_pairs(&self) -> Vec<BTreeSet<u32>> {
+        self.pairs_near(CELL_NEAR2)
+    }
+
+    fn pairs_near(&self, near2: u32) -> Vec<BTreeSet<u32>> {
         let cells = self.world.cells();
         let near = |i: usize, j: usize| {
             let (p, q) = (self.middles[i], self.middles[j]);
-            i != j && cells.touching(p, q) && cells.packed_near(p, q)
+            i != j && cells.touching(p, q) && cells.packed_near(p, q, near2)
         };
         (0..COUNT).map(|i| (0..COUNT).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect()
     }
@@ -99,6 +101,23 @@ fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
     // The check can fail: the packed rule is wider than the edge of a cell, but by few pairs.
     let total: usize = lists.iter().map(Vec::len).sum();
     assert!(beyond > 0 && beyond < total / 10, "{beyond} of {total}");
+}
+
+/// In shorter steps lists are shorter, down to those of particles in one place, and hold whom a search of all pairs finds.
+#[test]
+fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
+    let mut crowd = crowd(17);
+    let mut before = usize::MAX;
+    for near2 in [12_000, 6_000, 1_500, 40, 1] {
+        let lists = crowd.run_near(64, near2);
+        let expected = crowd.pairs_near(near2);
+        for (s, list) in lists.iter().enumerate() {
+            assert_eq!(list.iter().copied().collect::<BTreeSet<u32>>(), expected[s], "particle {s}, {near2}");
+        }
+        let total: usize = lists.iter().map(Vec::len).sum();
+        assert!(total < before, "{near2}");
+        before = total;
+    }
 }
 
 /// Lists that are too short keep what fits and report the longest that was wanted.
@@ -159,7 +178,7 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
         shares.iter().map(|&share| GpuFlight { collisions: share << 16, ..free_flights(1)[0] }).collect();
     crowd.rig.put("flights", &flights);
     crowd.rig.constant("CAPPED", 1.0);
-    crowd.rig.constant("DIAMETER_REACH2", whole);
+    crowd.rig.constant("DIAMETER2_PACKED", whole);
     let lists: Vec<BTreeSet<u32>> = crowd.run(64).into_iter().map(|list| list.into_iter().collect()).collect();
     let uncapped = crowd.all_pairs();
     let edge = crowd.world.grid.cell;

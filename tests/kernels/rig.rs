@@ -44,6 +44,8 @@ pub const MOVED: usize = 48;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
+/// Nearer than a cell's edge, once packed: (128 + sqrt(3))^2 < 16831.
+pub const CELL_NEAR2: u32 = 16_831;
 /// Cell classes of `shaders/shared/grid.wgsl`.
 pub const CLEAR: u32 = 0;
 pub const SOLID: u32 = 3;
@@ -192,7 +194,7 @@ impl Rig {
             ("BLOCKS_X", 1.0),
             ("BLOCKS_Y", 1.0),
             ("DIAMETER", 0.0),
-            ("DIAMETER_REACH2", 0.0),
+            ("DIAMETER2_PACKED", 0.0),
             ("SEED_LOW", 0.0),
             ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),
@@ -241,7 +243,8 @@ impl Rig {
     }
 
     /// The parameters of a step. Those that say where the device's cells lie are of one that owns the whole
-    /// grid, unless they are given; `total` is by default all that there are.
+    /// grid, unless they are given; `total` is by default all that there are, and particles meet within a
+    /// cell's edge.
     pub fn step(&mut self, step: GpuStep) {
         let alone = GpuStep {
             size: self.grid,
@@ -254,7 +257,8 @@ impl Rig {
         };
         let placed = if step.bins == 0 { alone } else { step };
         let total = if step.total == 0 { step.count + step.newborns + step.arrivals } else { step.total };
-        self.uniform("step", &[GpuStep { total, stride: step.stride.max(1), ..placed }]);
+        let near2 = if step.near2 == 0 { CELL_NEAR2 } else { step.near2 };
+        self.uniform("step", &[GpuStep { total, near2, stride: step.stride.max(1), ..placed }]);
     }
 
     pub fn gases(&mut self, gases: &[GpuGas]) {

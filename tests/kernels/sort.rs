@@ -175,9 +175,8 @@ fn order_is_canonical() {
         let middles: Vec<u32> = rig.get("middles", COUNT);
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);
-            let part = |k: usize| (middle[k] >> (cells.bits - 7) & 1023) << (10 * k);
             let flag = u32::from(world.near_triangle(cell[canonical[s]])) << 31;
-            assert_eq!(middles[s], part(0) | part(1) | part(2) | flag);
+            assert_eq!(middles[s], cells.packed(middle) | flag);
         }
         assert_eq!(rig.list("near_walls", LIST_NEAR_WALLS), near_walls);
         // Alone all are in layer 0 and nobody else's ghosts.

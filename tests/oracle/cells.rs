@@ -42,20 +42,32 @@ impl Cells {
     }
 
     /// Whether two points come close enough for a neighbour list by the packed rule: their coordinates
-    /// rounded down to 1/128 cell, modulo 8 cells, are nearer than 128 + sqrt(3) units.
-    pub fn packed_near(&self, p: [u32; 3], q: [u32; 3]) -> bool {
+    /// rounded down to 1/128 cell, modulo 8 cells, are nearer than the square root of `near2`, for a whole cell 128 + sqrt(3)
+    /// units.
+    pub fn packed_near(&self, p: [u32; 3], q: [u32; 3], near2: u32) -> bool {
         let units = (0..3).map(|k| {
             let part = |x: u32| i64::from(x >> (self.bits - 7)) % 1024;
             let d = (part(q[k]) - part(p[k])).rem_euclid(1024);
             if d >= 512 { d - 1024 } else { d }
         });
-        units.map(|d| d * d).sum::<i64>() <= 16_830
+        units.map(|d| d * d).sum::<i64>() < i64::from(near2)
     }
 
     /// Whether two points are nearer than the edge of a cell, exactly.
     pub fn nearer_than_a_cell(&self, p: [u32; 3], q: [u32; 3]) -> bool {
         let d2 = (0..3).map(|k| Cells::signed(q[k]) - Cells::signed(p[k])).map(|d| i128::from(d * d)).sum::<i128>();
         d2 < 1 << (2 * self.bits)
+    }
+
+    /// A point in one word, in 1/128 cells, modulo 8 cells, with the mark of a point beyond its cell.
+    pub fn packed(&self, p: [u32; 3]) -> u32 {
+        let part = |k: usize| (p[k] >> (self.bits - 7) & 1023) << (10 * k);
+        part(0) | part(1) | part(2) | u32::from(self.astray(p)) << 30
+    }
+
+    /// Whether a point is beyond its cell.
+    pub fn astray(&self, p: [u32; 3]) -> bool {
+        (0..3).any(|k| Cells::signed(p[k]) >> self.bits != i64::from(self.cell(p)[k]))
     }
 
     /// Whether the cells of two points are the same or neighbours.
