@@ -1,8 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl nearness.wgsl
 // Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than `near2` says, in the longest steps the cell edge (which the plan makes at
-// least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2), or by a hundredth more. Cells that lie farther away are
-// passed over.
+// least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
+// farther away are passed over.
 //
 // Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours` (the k-th of particle s at k * stride + s)
 // and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per

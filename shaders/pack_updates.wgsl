@@ -1,6 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
 // Update, part 1: the particles that the rounds since the last exchange have changed, to every device
-// that has them as ghosts.
+// that needs them as ghosts. (It may have others near its border, as newborns or as its own of the step before: no chain
+// leads to those, so what becomes of them changes nothing.)
 //
 // Reads `changed`, `sorted`, `flights`, `cells`, `middles`, `peers`, `shares`; writes `updates_out`, counts them (also beyond the
 // buffer's end: the host then makes it larger and packs again) and clears the marks in `layers`. One thread

@@ -13,6 +13,9 @@
 // Rigid spheres, the method `hard-sphere`.
 override RIGID: bool = false;
 
+// The square of the relative speed of the plan's fastest pairs, (m/s)^2.
+override FASTEST2: f32;
+
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
@@ -118,6 +121,9 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         touch_neighbours(pair.x);
         touch_neighbours(pair.y);
         return;
+    }
+    if (dot(g, g) > FASTEST2 && (layers[pair.x] & LAYER) == 0u) {
+        atomicAdd(&counters[FAST_PAIRS], 1u);
     }
     let key = vec2<u32>(SEED_LOW, SEED_HIGH);
     let ids = vec2<u32>(id_of(i.tag), id_of(j.tag));

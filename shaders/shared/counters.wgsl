@@ -18,3 +18,4 @@ const STRAYS: u32 = 45;             // particles whose owner is none of the peer
 const MISSING: u32 = 46;            // updates of ghosts that are not here
 const CANDIDATES: u32 = 47;         // entries of the neighbour lists at the last step before the read
 const MOVED: u32 = 48;              // particles that came from another owner since the last read
+const FAST_PAIRS: u32 = 49;         // collisions of pairs faster than the plan's fastest since the last read

@@ -32,14 +32,26 @@ fn between(a: vec3<u32>, b: vec3<u32>) -> vec3<f32> {
     return vec3<f32>(bitcast<vec3<i32>>(b - a)) * QUANTUM;
 }
 
+// The cell of a point up to 2^30 quanta (half the longest side of the grid, or more) outside the grid on
+// either side. Positions in the grid reach up to 2^31, so the sign bit alone does not tell the two sides.
+const MARGIN: u32 = 0x40000000;
+
+fn signed_cell(p: vec3<u32>) -> vec3<i32> {
+    return (bitcast<vec3<i32>>(p - vec3<u32>(MARGIN)) >> vec3<u32>(CELL_BITS)) + vec3<i32>(i32(MARGIN >> CELL_BITS));
+}
+
 // A position packed into one word for the search of neighbours: 10 bits per axis, in 1/128 of a cell,
-// modulo 8 cells; the top bit marks a cell near a wall that can part two particles, the next a point that is beyond its
+// modulo 8 cells, and no more than a cell beyond the grid, so that the word and the cell (`nearest_cell`) tell the place;
+// the top bit marks a cell near a wall that can part two particles, the next a point that is beyond its
 // cell (`nearest_cell`).
 const NEAR_WALL: u32 = 0x80000000;
 const ASTRAY: u32 = 0x40000000;
 
 fn packed(p: vec3<u32>) -> u32 {
-    let q = (p >> vec3<u32>(CELL_BITS - 7u)) & vec3<u32>(1023u);
+    let cell = i32(1u << CELL_BITS);
+    let end = (vec3<u32>(CELLS_X, CELLS_Y, CELLS_Z) << vec3<u32>(CELL_BITS)) - vec3<u32>(MARGIN);
+    let inside = clamp(bitcast<vec3<i32>>(p - vec3<u32>(MARGIN)), vec3<i32>(-i32(MARGIN) - cell), bitcast<vec3<i32>>(end) + cell - 1);
+    let q = ((bitcast<vec3<u32>>(inside) + MARGIN) >> vec3<u32>(CELL_BITS - 7u)) & vec3<u32>(1023u);
     return q.x | (q.y << 10u) | (q.z << 20u);
 }
 
@@ -49,14 +61,6 @@ fn packed_distance2(a: u32, b: u32) -> i32 {
     let y = extractBits(i32((b >> 10u) & 1023u) - i32((a >> 10u) & 1023u), 0u, 10u);
     let z = extractBits(i32((b >> 20u) & 1023u) - i32((a >> 20u) & 1023u), 0u, 10u);
     return x * x + y * y + z * z;
-}
-
-// The cell of a point up to 2^30 quanta (half the longest side of the grid, or more) outside the grid on
-// either side. Positions in the grid reach up to 2^31, so the sign bit alone does not tell the two sides.
-const MARGIN: u32 = 0x40000000;
-
-fn signed_cell(p: vec3<u32>) -> vec3<i32> {
-    return (bitcast<vec3<i32>>(p - vec3<u32>(MARGIN)) >> vec3<u32>(CELL_BITS)) + vec3<i32>(i32(MARGIN >> CELL_BITS));
 }
 
 // The cell of a point that may lie outside the grid (the mid-step point of a fast particle beyond a

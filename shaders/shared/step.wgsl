@@ -26,10 +26,10 @@ struct Step {
     bins: u32,
     // The cells whose particles this device owns.
     own_low: vec3<u32>,
-    // Layers of cells around them with ghosts; 0 on a device alone.
+    // Layers of cells around them, and links of chains of neighbours from them, with ghosts (halo.wgsl); 0 on a device alone.
     depth: u32,
     own_high: vec3<u32>,
-    // Layers, counted from the own cells, up to which the pairs of this round are settled here.
+    // Layers of ghosts (halo.wgsl) up to which the pairs of this round are settled here.
     reach: u32,
     // Cells that no other device has in its halo.
     inner_low: vec3<u32>,

@@ -11,7 +11,7 @@ struct Update {
     pad2: u32,
 }
 
-// Another device: the cells it owns. It has ghosts in `step.depth` layers around them.
+// Another device: the cells it owns. Its ghosts are in `step.depth` layers around them (halo.wgsl).
 struct Peer {
     low: vec3<i32>,
     pad: u32,

@@ -138,7 +138,7 @@ impl<'a> Exchange<'a> {
         self.traffic.rebalancing_seconds += seconds;
     }
 
-    /// Particles to those who own them or have them in their halo, in one message to each peer.
+    /// Particles to those who own them or need them as ghosts, in one message to each peer.
     ///
     /// # Errors
     /// If a device or another rank fails.

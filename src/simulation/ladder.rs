@@ -14,6 +14,9 @@ use crate::subdomain::BlockSum;
 const TAIL: f64 = 0.02;
 /// Share that may cross more than a cell in a step.
 const FAST_TAIL: f64 = 1e-3;
+/// Share of the collisions that may be of pairs faster than the plan's fastest: twice what 6 sqrt(kT/m) leaves in gas at
+/// the highest temperature of the plan, (1 + x) e^-x of the flux of pairs at x = m g^2 / (4 kT) = 9.
+const FAST_PAIRS: f64 = 2.5e-3;
 /// A longer step is taken only with this much room, so that the level does not flutter.
 const ROOM: f64 = 0.9;
 
@@ -23,8 +26,8 @@ pub struct Ladder {
     limit: f64,
     top: f64,
     gas: BlockGas,
-    /// Coarsest level that the speeds allow.
-    fast_level: u32,
+    /// Pairs are faster than planned for.
+    hot: bool,
     /// What is left of the cross-section in each block; empty without a cap.
     shares: Vec<u32>,
 }
@@ -46,6 +49,8 @@ pub struct Demand {
     pub collision: f64,
     /// Coarsest level at which few enough particles cross more than a cell.
     pub fast_level: u32,
+    /// Whether more pairs than planned for are faster than its fastest.
+    pub hot: bool,
     /// What is to be left of the cross-section in each block, in `FULL_SHARE`ths; empty without a cap.
     pub shares: Vec<u32>,
 }
@@ -55,7 +60,7 @@ pub struct Demand {
 pub struct LadderState {
     pub level: u32,
     levels: u32,
-    fast_level: u32,
+    hot: bool,
     shares: Vec<u32>,
 }
 
@@ -67,7 +72,7 @@ impl Ladder {
             limit: plan.collision_limit,
             top: plan.time_step,
             gas: BlockGas::new(plan, volumes),
-            fast_level: 0,
+            hot: false,
             shares: Vec::new(),
         }
     }
@@ -76,10 +81,10 @@ impl Ladder {
         self.level
     }
 
-    /// By how many halvings a step of this level is shorter than speeds alone ask for: no pair flies further in it than
-    /// in the longest step divided by 2 to these.
+    /// By how many halvings less the fastest pairs fly in a step of this level than in the longest: none while pairs are
+    /// faster than planned for.
     pub fn halvings(&self, level: u32) -> u32 {
-        level.saturating_sub(self.fast_level)
+        if self.hot { 0 } else { level }
     }
 
     /// What is left of the cross-section in each block, in `FULL_SHARE`ths; empty without a cap.
@@ -88,7 +93,7 @@ impl Ladder {
     }
 
     pub fn state(&self) -> LadderState {
-        LadderState { level: self.level, levels: self.levels, fast_level: self.fast_level, shares: self.shares.clone() }
+        LadderState { level: self.level, levels: self.levels, hot: self.hot, shares: self.shares.clone() }
     }
 
     /// # Errors
@@ -102,7 +107,7 @@ impl Ladder {
         }
         self.check(&state.shares)?;
         self.level = state.level;
-        self.fast_level = state.fast_level;
+        self.hot = state.hot;
         self.shares.clone_from(&state.shares);
         Ok(())
     }
@@ -114,8 +119,8 @@ impl Ladder {
         if found == expected { Ok(()) } else { Err(StateError::differs("blocks with a diameter", found, expected)) }
     }
 
-    /// What a measured state asks for.
-    pub fn demand(&self, blocks: &[BlockSum], fast: &[u32]) -> Demand {
+    /// What a measured state asks for; `met` are the collisions of the interval, and those of them of fast pairs.
+    pub fn demand(&self, blocks: &[BlockSum], fast: &[u32], met: [u64; 2]) -> Demand {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
         let shares = self.gas.shares(blocks);
         let mut parts = self.gas.parts(blocks, &shares);
@@ -131,7 +136,9 @@ impl Ladder {
         }
         let allowed = FAST_TAIL * total as f64;
         let fast_level = fast.iter().position(|&count| f64::from(count) <= allowed).unwrap_or(fast.len());
-        Demand { collision: rate * self.top, fast_level: fast_level as u32, shares }
+        let [met, met_fast] = met;
+        let hot = met_fast as f64 > FAST_PAIRS * met as f64;
+        Demand { collision: rate * self.top, fast_level: fast_level as u32, hot, shares }
     }
 
     /// Takes the diameters that the demand asks for, and the level too: finer at once, coarser by one level and with
@@ -140,9 +147,9 @@ impl Ladder {
     /// # Errors
     /// If it is below the ladder.
     pub fn follow(&mut self, demand: Demand) -> Result<u32, LadderError> {
-        let Demand { collision, fast_level, shares } = demand;
+        let Demand { collision, fast_level, hot, shares } = demand;
         self.shares = shares;
-        self.fast_level = fast_level;
+        self.hot = hot;
         let level_for = |limit: f64| {
             // Halving is exact; a logarithm would depend on the system's library.
             let mut collision = collision;
@@ -173,6 +180,7 @@ impl Ladder {
     /// Takes the diameters alone.
     pub fn hold(&mut self, demand: Demand) {
         self.shares = demand.shares;
+        self.hot = demand.hot;
     }
 
     /// The level of the start of a run: that of the demand, without hysteresis.
@@ -191,19 +199,11 @@ mod tests {
     use crate::simulation::block_gas::tests::{block, block_gas};
 
     fn ladder(volumes: Vec<f64>) -> Ladder {
-        Ladder {
-            level: 0,
-            levels: 12,
-            limit: 0.3,
-            top: 1.0,
-            gas: block_gas(volumes),
-            fast_level: 0,
-            shares: Vec::new(),
-        }
+        Ladder { level: 0, levels: 12, limit: 0.3, top: 1.0, gas: block_gas(volumes), hot: false, shares: Vec::new() }
     }
 
     fn demand(collision: f64) -> Demand {
-        Demand { collision, fast_level: 0, shares: Vec::new() }
+        Demand { collision, fast_level: 0, hot: false, shares: Vec::new() }
     }
 
     #[test]
@@ -221,15 +221,21 @@ mod tests {
         assert_eq!(restored.level(), cut.level());
     }
 
-    /// Speeds twice as high in half the step reach as far; a step that density asks for reaches less.
+    /// A step that density asks for reaches less, but not while pairs are faster than planned for.
     #[test]
-    fn halvings_for_density_alone_leave_the_nearness_smaller() {
+    fn the_fastest_pairs_fly_less_in_shorter_steps() {
         let mut ladder = ladder(vec![1.0]);
-        ladder.follow(Demand { fast_level: 1, ..demand(1.0) }).unwrap();
-        assert_eq!((ladder.level(), ladder.halvings(2), ladder.halvings(0)), (2, 1, 0));
+        let asked = |met| ladder.demand(&[block(10)], &[0], met).hot;
+        assert_eq!([[0, 0], [10_000, 25], [10_000, 26]].map(asked), [false, false, true]);
+        ladder.follow(demand(1.0)).unwrap();
+        assert_eq!([ladder.level(), ladder.halvings(2), ladder.halvings(0)], [2, 2, 0]);
+        ladder.follow(Demand { hot: true, ..demand(1.0) }).unwrap();
+        assert_eq!(ladder.halvings(2), 0);
         let mut restored = self::ladder(vec![1.0]);
         restored.restore(&ladder.state()).unwrap();
-        assert_eq!(restored.halvings(2), 1);
+        assert_eq!(restored.halvings(2), 0);
+        restored.hold(demand(1.0));
+        assert_eq!(restored.halvings(2), 2);
     }
 
     /// A few particles in a sliver do not set the step of all, nor does what is empty.
@@ -237,7 +243,7 @@ mod tests {
     fn the_tail_does_not_count() {
         let collision = |numbers: [u64; 2]| {
             let blocks = numbers.map(block);
-            ladder(vec![1.0, 1e-6]).demand(&blocks, &[0]).collision
+            ladder(vec![1.0, 1e-6]).demand(&blocks, &[0], [0; 2]).collision
         };
         assert_eq!(collision([1000, 2]), 1000.0 - 1000f64.sqrt());
         assert_eq!(collision([0, 0]), 0.0);

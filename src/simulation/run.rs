@@ -264,7 +264,7 @@ impl<'a> Simulation<'a> {
         let at_start = self.measure()?;
         self.account.start(&at_start);
         self.conditions.start(&at_start);
-        let demand = self.ladder.demand(&at_start.blocks, &at_start.fast);
+        let demand = self.ladder.demand(&at_start.blocks, &at_start.fast, [0; 2]);
         if self.options.hold_step {
             self.ladder.hold(demand);
         } else {

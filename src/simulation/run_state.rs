@@ -220,7 +220,7 @@ mod tests {
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
             asked: vec![Asked {
-                demand: Demand { collision: 0.1 + 0.2, fast_level: 3, shares: vec![1, 32768] },
+                demand: Demand { collision: 0.1 + 0.2, fast_level: 3, hot: true, shares: vec![1, 32768] },
                 seen: Seen::default(),
                 left: 7,
                 switches: true,

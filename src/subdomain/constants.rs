@@ -113,6 +113,7 @@ pub fn constants(
         ("DIAMETER", plan.diameter),
         ("CAPPED", flag(features.capped)),
         ("DIAMETER2_PACKED", nearness::diameter2(plan)),
+        ("FASTEST2", nearness::fastest2(plan)),
         ("RIGID", flag(plan.method == Method::HardSphere)),
         ("SEED_LOW", (plan.seed & 0xffff_ffff) as f64),
         ("CROSS_SECTION", std::f64::consts::PI * plan.diameter * plan.diameter),

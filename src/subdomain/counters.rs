@@ -1,7 +1,7 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words of the buffer.
-pub const WORDS: usize = 49;
+pub const WORDS: usize = 50;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
@@ -32,6 +32,8 @@ pub struct Counters {
     pub blocked: u32,
     /// Particles whose owner was none of the peers: the interval must be run again with more peers.
     pub strays: u32,
+    /// Collisions of pairs faster than the plan's fastest.
+    pub fast_pairs: u32,
     /// Updates of ghosts that were not there.
     pub missing: u32,
     /// Particles that came from another owner.
@@ -59,13 +61,14 @@ impl Counters {
             strays: words[45],
             missing: words[46],
             moved: words[48],
+            fast_pairs: words[49],
             candidates: words[47],
             near_walls: words[NEAR_WALLS],
         }
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 13] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 14] {
         [
             &mut self.lost,
             &mut self.sampled,
@@ -78,6 +81,7 @@ impl Counters {
             &mut self.strays,
             &mut self.missing,
             &mut self.moved,
+            &mut self.fast_pairs,
             &mut self.candidates,
             &mut self.near_walls,
         ]

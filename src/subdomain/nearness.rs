@@ -3,49 +3,58 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-/// A cell's edge in the units of packed positions (`shaders/shared/grid.wgsl`), squared.
-const EDGE2: f64 = 128.0 * 128.0;
-/// Two points at a distance d, in these units, are less than d + sqrt(3) apart once packed: for d up to an edge
-/// (d + sqrt(3))^2 < d^2 + 447.
-const PACKING2: u32 = 447;
+/// A cell's edge in the units of packed positions (`shaders/shared/grid.wgsl`).
+const EDGE: f64 = 128.0;
 
 /// The square of the largest diameter, in packed units, rounded down.
 pub(super) fn diameter2(plan: &Plan) -> f64 {
-    (EDGE2 * (plan.diameter / plan.grid.cell).powi(2)).floor()
+    (EDGE * plan.diameter / plan.grid.cell).powi(2).floor()
+}
+
+/// The square of the relative speed, (m/s)^2, with which a pair that meets in the longest step comes from as far as a
+/// cell's edge: what the plan takes for the fastest.
+pub(super) fn fastest2(plan: &Plan) -> f64 {
+    let (cell, diameter) = (plan.grid.cell, plan.diameter);
+    let flown = match plan.method {
+        // Spheres touch on the way, not at the closest approach.
+        Method::HardSphere => cell - diameter,
+        _ => (cell * cell - diameter * diameter).max(0.0).sqrt(),
+    };
+    (2.0 * flown / plan.time_step).powi(2)
 }
 
 /// The square of the distance, in packed units, below which particles of the largest diameter may meet in a step. In the
-/// longest that the speeds allow that is a cell's edge, of which the fastest pairs fly what it has beyond the diameter
-/// (specification, section 2); where density asks for `halvings` of the step, they fly less.
+/// longest that is a cell's edge, of which the fastest pairs fly what it has beyond the diameter (specification, section
+/// 2). In a step of so many `halvings` they fly less.
 pub(super) fn near2(plan: &Plan, halvings: u32) -> u32 {
-    edges2(plan.method, plan.diameter / plan.grid.cell, halvings)
+    packed2(plan.method, plan.diameter / plan.grid.cell, halvings)
 }
 
-fn edges2(method: Method, diameter: f64, halvings: u32) -> u32 {
+/// `diameter` in cells' edges.
+fn packed2(method: Method, diameter: f64, halvings: u32) -> u32 {
     let shorter = 0.5f64.powi(halvings.min(64) as i32);
-    let edges2 = match method {
-        // Spheres touch on the way, not at the closest approach.
-        Method::HardSphere => (diameter + (1.0 - diameter) * shorter).powi(2),
-        _ => diameter * diameter + (1.0 - diameter * diameter) * shorter * shorter,
+    let edges = match method {
+        Method::HardSphere => diameter + (1.0 - diameter) * shorter,
+        _ => (diameter * diameter + (1.0 - diameter * diameter) * shorter * shorter).sqrt(),
     };
-    (EDGE2 * edges2).ceil() as u32 + PACKING2
+    // Points as far apart are less than a unit an axis farther once packed.
+    (EDGE * edges + 3f64.sqrt()).powi(2).ceil() as u32
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// sigma^2 + (g dt/2)^2, sigma + g dt/2 of rigid spheres; never less than the diameter, never more than an edge.
+    /// sigma^2 + (g dt/2)^2, of rigid spheres sigma + g dt/2, and packing: never less than the diameter, never more than
+    /// an edge.
     #[test]
     fn a_step_cut_for_density_reaches_less() {
+        let packed = |edges: f64| (EDGE * edges + 3f64.sqrt()).powi(2).ceil() as u32;
         for method in [Method::ClosestApproach, Method::HardSphere] {
-            assert_eq!(edges2(method, 0.8, 0), 16384 + PACKING2);
-            let least = (EDGE2 * 0.64f64).ceil() as u32 + PACKING2;
-            assert!((least..=least + 1).contains(&edges2(method, 0.8, 60)), "{method:?}");
+            assert_eq!(packed2(method, 0.8, 0), 16_831);
+            assert!((packed(0.8)..=packed(0.8) + 1).contains(&packed2(method, 0.8, 60)), "{method:?}");
         }
-        assert_eq!(edges2(Method::ClosestApproach, 0.8, 1), (EDGE2 * (0.64f64 + 0.09)).ceil() as u32 + PACKING2);
-        assert_eq!(edges2(Method::HardSphere, 0.8, 1), (EDGE2 * 0.9f64 * 0.9).ceil() as u32 + PACKING2);
-        let packed = |d: f64| (128.0 * d + 3f64.sqrt()).powi(2);
-        assert!((1..=100).all(|k| packed(0.01 * f64::from(k)) < EDGE2 * (0.01 * f64::from(k)).powi(2) + 447.0));
+        assert_eq!(packed2(Method::ClosestApproach, 0.8, 1), packed((0.64f64 + 0.09).sqrt()));
+        assert_eq!(packed2(Method::HardSphere, 0.8, 1), packed(0.9));
     }
 }

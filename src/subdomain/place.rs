@@ -31,7 +31,7 @@ pub enum Ghosts {
 pub struct Place {
     /// The cells whose particles it owns.
     pub own: Cells,
-    /// Layers of cells around them whose particles it has as ghosts: twice the rounds between two exchanges, none
+    /// Layers of cells around them in which its ghosts are (`shaders/shared/halo.wgsl`): twice the rounds between two exchanges, none
     /// where particles collide within their cells.
     pub depth: u32,
     pub ghosts: Ghosts,

@@ -194,8 +194,11 @@ fn rigid_spheres_have_the_same_bits_on_any_number_of_ranks() {
 #[test]
 fn lists_that_grow_among_ranks_change_no_bit() {
     let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1)];
-    let runs = same(&dense(1), &ways);
+    let model = dense(1);
+    let runs = same(&model, &ways);
     assert!(runs.iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
+    // In steps that density cuts, in which pairs meet nearer than a cell's edge.
+    assert!(runs[0].outcome.steps > model.plan.steps, "no step was cut");
 }
 
 /// Buffers of particles, newborns, messages and updates grow on the way.

@@ -70,7 +70,8 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
     assert!(particles[..count].iter().any(|p| p.tag != NOBODY && local.inner.holds(cell(p))));
 }
 
-/// A particle goes to exactly the peers whose cells, with the halo around, hold its cell. One whose owner is
+/// A particle goes to exactly the peers whose cells, with the halo around, hold its cell, where all in the halo are needed
+/// (whom else, tests/kernels/halo.rs shows). One whose owner is
 /// unknown is counted, and so is what finds no room, which is not written.
 #[test]
 fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {

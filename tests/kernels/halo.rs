@@ -33,6 +33,10 @@ impl Crowd {
         let cells = world.cells();
         let mut stream = Stream::new(seed);
         let mut particles = world.particles(&mut stream, COUNT, 500.0);
+        // Some fly far beyond the walls and the grid.
+        for particle in particles.iter_mut().step_by(20) {
+            particle.velocity = particle.velocity.map(|v| 40.0 * v);
+        }
         let of = |p: &GpuParticle| cells.cell(cells.middle(p.position, p.velocity, DT));
         particles.sort_by_key(|p| (cells.index(of(p)), p.id()));
         let cell: Vec<[u32; 3]> = particles.iter().map(of).collect();
@@ -131,7 +135,9 @@ impl Crowd {
 fn all_that_a_chain_of_neighbours_joins_are_sent() {
     let crowd = Crowd::new(80);
     let links = crowd.links(&crowd.neighbours());
-    for depth in [2, 4] {
+    let astray = |p: &GpuParticle| crowd.world.cells().astray(crowd.world.cells().middle(p.position, p.velocity, DT));
+    assert!(crowd.particles.iter().filter(|p| astray(p)).count() > COUNT / 30);
+    for depth in [2, 4, 6] {
         let mut rig = crowd.rig();
         rig.put("border", &crowd.border());
         rig.put("peers", &crowd.peers());

@@ -68,8 +68,8 @@ impl Local {
             inner_high: self.inner.high,
             peers: self.others.len() as u32,
             near_peers: 2,
-            // All in the layers of cells around are needed.
-            near2: 1 << 24,
+            // All in the layers of cells around are needed as ghosts.
+            near2: 1 << 20,
             ..GpuStep::default()
         }
     }

@@ -27,6 +27,10 @@ fn crowd(seed: u32) -> Crowd {
             world.fixed(std::array::from_fn(|a| stream.between(world.low[a] - beyond, world.high[a] + beyond)))
         })
         .collect();
+    // Some in one place.
+    for k in (7..COUNT).step_by(60) {
+        middles[k] = middles[k - 1];
+    }
     middles.sort_by_key(|&p| cells.index(cells.cell(p)));
     let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
@@ -115,7 +119,7 @@ fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
             assert_eq!(list.iter().copied().collect::<BTreeSet<u32>>(), expected[s], "particle {s}, {near2}");
         }
         let total: usize = lists.iter().map(Vec::len).sum();
-        assert!(total < before, "{near2}");
+        assert!(total < before && total > 0, "{near2}");
         before = total;
     }
 }

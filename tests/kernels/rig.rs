@@ -41,6 +41,7 @@ pub const STRAYS: usize = 45;
 pub const MISSING: usize = 46;
 pub const CANDIDATES: usize = 47;
 pub const MOVED: usize = 48;
+pub const FAST_PAIRS: usize = 49;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -195,6 +196,7 @@ impl Rig {
             ("BLOCKS_Y", 1.0),
             ("DIAMETER", 0.0),
             ("DIAMETER2_PACKED", 0.0),
+            ("FASTEST2", 1e30),
             ("SEED_LOW", 0.0),
             ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),

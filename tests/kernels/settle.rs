@@ -85,6 +85,12 @@ fn settle(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool) -> Rig {
 }
 
 fn settle_with(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bool) -> Rig {
+    let rig = prepared(cloud, pairs, spin, curves);
+    rig.run("settle", pairs.len());
+    rig
+}
+
+fn prepared(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bool) -> Rig {
     let mut rig = cloud.rig();
     let mut choices = vec![[NOBODY, 0u32]; cloud.particles.len()];
     for &(i, j, time) in pairs {
@@ -105,8 +111,30 @@ fn settle_with(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves:
     rig.put("pairs", &pairs.iter().map(|&(i, j, _)| [i as u32, j as u32]).collect::<Vec<_>>());
     rig.set_counter(ROUND as usize, pairs.len() as u32);
     rig.step(cloud.step(ROUND));
-    rig.run("settle", pairs.len());
     rig
+}
+
+/// Collisions of pairs faster than the limit are counted, by the owner of the lower id.
+#[test]
+fn fast_pairs_are_counted_by_the_owner_of_the_lower_id() {
+    let mut stream = Stream::new(67);
+    let cloud = Cloud::new(&mut stream, World::plain(), 3000, 1.0);
+    let pairs = meetings(&cloud);
+    let speed2 = |i: usize, j: usize| {
+        let [v, w] = [i, j].map(|k| cloud.particles[k].velocity.map(f64::from));
+        dot(minus(v, w), minus(v, w))
+    };
+    let mut speeds: Vec<f64> = pairs.iter().map(|&(i, j, _)| speed2(i, j)).collect();
+    speeds.sort_by(f64::total_cmp);
+    let limit = 0.5 * (speeds[pairs.len() / 2] + speeds[pairs.len() / 2 - 1]);
+    let layers: Vec<u32> = (0..cloud.particles.len()).map(|_| stream.below(2)).collect();
+    let mut rig = prepared(&cloud, &pairs, false, false);
+    rig.constant("FASTEST2", limit);
+    rig.put("layers", &layers);
+    rig.run("settle", pairs.len());
+    let counted = pairs.iter().filter(|&&(i, j, _)| layers[i] == 0 && speed2(i, j) > limit).count();
+    assert_eq!(rig.counter(FAST_PAIRS) as usize, counted);
+    assert!(counted > 20 && counted < pairs.len() / 2 - 20, "{counted} of {}", pairs.len());
 }
 
 /// What is off in one pair, in units of its bound: velocity, spin, place at the meeting.

@@ -41,16 +41,11 @@ impl Cells {
         self.counts.iter().map(|&n| n as usize).product()
     }
 
-    /// Whether two points come close enough for a neighbour list by the packed rule: their coordinates
-    /// rounded down to 1/128 cell, modulo 8 cells, are nearer than the square root of `near2`, for a whole cell 128 + sqrt(3)
-    /// units.
+    /// Whether two points come close enough for a neighbour list by the packed rule: the distance of their packed
+    /// coordinates is below the square root of `near2`, for a whole cell 128 + sqrt(3) units.
     pub fn packed_near(&self, p: [u32; 3], q: [u32; 3], near2: u32) -> bool {
-        let units = (0..3).map(|k| {
-            let part = |x: u32| i64::from(x >> (self.bits - 7)) % 1024;
-            let d = (part(q[k]) - part(p[k])).rem_euclid(1024);
-            if d >= 512 { d - 1024 } else { d }
-        });
-        units.map(|d| d * d).sum::<i64>() < i64::from(near2)
+        let (p, q) = (self.units(p), self.units(q));
+        (0..3).map(|k| (q[k] - p[k]).pow(2)).sum::<i64>() < i64::from(near2)
     }
 
     /// Whether two points are nearer than the edge of a cell, exactly.
@@ -59,9 +54,18 @@ impl Cells {
         d2 < 1 << (2 * self.bits)
     }
 
-    /// A point in one word, in 1/128 cells, modulo 8 cells, with the mark of a point beyond its cell.
+    /// A point's coordinates, no more than a cell beyond the grid, in 1/128 cells, rounded down.
+    fn units(&self, p: [u32; 3]) -> [i64; 3] {
+        std::array::from_fn(|k| {
+            let end = i64::from(self.counts[k]) + 1;
+            Cells::signed(p[k]).clamp(-1 << self.bits, (end << self.bits) - 1) >> (self.bits - 7)
+        })
+    }
+
+    /// These modulo 8 cells in one word, with the mark of a point beyond its cell.
     pub fn packed(&self, p: [u32; 3]) -> u32 {
-        let part = |k: usize| (p[k] >> (self.bits - 7) & 1023) << (10 * k);
+        let units = self.units(p);
+        let part = |k: usize| (units[k].rem_euclid(1024) as u32) << (10 * k);
         part(0) | part(1) | part(2) | u32::from(self.astray(p)) << 30
     }
 

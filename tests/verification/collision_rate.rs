@@ -31,6 +31,24 @@ fn collision_rate_of_three_rounds_is_that_of_kinetic_theory() {
     assert!((rate.core - 1.0).abs() < 0.015, "{:.4} +- {:.4}", rate.core, rate.error);
 }
 
+/// In steps that density cuts pairs meet nearer than a cell's edge, and the search goes less far: nobody is missed.
+#[test]
+fn the_rate_is_the_same_in_steps_that_density_cuts() {
+    let gas = EquilibriumBox {
+        particles: 8000,
+        occupancy: 0.1,
+        rounds: 3,
+        step_over_tau: 0.8,
+        steps: 32,
+        ..EquilibriumBox::default()
+    };
+    let rate = collisions::collision_rate_within(&device(), &gas, 0.13).expect("a run");
+    println!("cut {} times: {:.4} +- {:.4}", rate.outcome.steps / 32, rate.core, rate.error);
+    assert!(rate.outcome.steps >= 8 * 32 - 8, "{} steps", rate.outcome.steps);
+    assert!(rate.error <= 0.015 / 3.0, "too few collisions: {}", rate.error);
+    assert!((rate.core - 1.0).abs() < 0.015, "{:.4} +- {:.4}", rate.core, rate.error);
+}
+
 /// The specification's table at x = .2: .814, .947, .982 of the theory's rate for R = 1, 2, 3.
 #[test]
 fn fewer_rounds_lose_more_collisions_and_say_so() {

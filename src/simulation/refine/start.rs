@@ -29,7 +29,7 @@ pub fn state(
     let Model { scene, vessel, plan, coats, .. } = model;
     let mut ladder = Ladder::new(plan, block_volumes(vessel, &plan.grid, plan.block_cells_log2));
     let (blocks, fast) = tallies(plan, particles);
-    ladder.start(ladder.demand(&blocks, &fast))?;
+    ladder.start(ladder.demand(&blocks, &fast, [0; 2]))?;
     let mut account = Account::new(plan);
     account.start_with(particles, &inflow);
     let zones = scene.chambers.len() + scene.probes.len();

@@ -114,7 +114,8 @@ impl Simulation<'_> {
                 observer.balance(record)?;
             }
         }
-        let demand = self.ladder.demand(&tallies.blocks, &tallies.fast);
+        let met = [tallies.counters.collisions, tallies.counters.fast_pairs.into()];
+        let demand = self.ladder.demand(&tallies.blocks, &tallies.fast, met);
         let left = self.account.state().left();
         let mut switches = false;
         if self.read_until >= self.next_row * (1.0 - 1e-9) && self.averages.ready() {

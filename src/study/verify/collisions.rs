@@ -154,9 +154,17 @@ pub fn watched(
 /// # Errors
 /// If the run fails.
 pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate, StudyError> {
-    let mut model = gas.model()?;
     // No finer steps.
-    model.plan.collision_limit = 1.0;
+    collision_rate_within(device, gas, 1.0)
+}
+
+/// The same in steps that are halved until x is at most `limit`.
+///
+/// # Errors
+/// If the run fails.
+pub fn collision_rate_within(device: &Device, gas: &EquilibriumBox<'_>, limit: f64) -> Result<Rate, StudyError> {
+    let mut model = gas.model()?;
+    model.plan.collision_limit = limit;
     let margin = gas.wall_layer();
     let (mut visits, mut ends) = ([0u64; 2], [0u64; 2]);
     let seen = watched(device, &mut model, Options::default(), |model, places, flights| {
@@ -171,7 +179,8 @@ pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate,
     let temperature = rows[0].chambers[0].temperature / TEMPERATURE;
     let gbar = (16.0 / PI * temperature).sqrt() * gas.thermal_speed();
     let density = (gas.particles - 1) as f64 / EDGE.powi(3);
-    let expected = density * PI * model.plan.diameter.powi(2) * gbar * gas.time_step();
+    let step = gas.time_step() * f64::from(gas.steps) / outcome.steps as f64;
+    let expected = density * PI * model.plan.diameter.powi(2) * gbar * step;
     let ratio = |k: usize| ends[k] as f64 / visits[k] as f64 / expected;
     Ok(Rate {
         core: ratio(0),
