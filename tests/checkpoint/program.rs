@@ -29,7 +29,7 @@ pub fn tank(end_time: f64) -> Scene {
 
 /// Gas so dense that neighbour lists are too short at first, and intervals are run again.
 pub fn dense() -> Scene {
-    let text = "title = \"dense\"\nend_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+    let text = "title = \"dense\"\nend_time = 5e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\

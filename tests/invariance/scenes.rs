@@ -112,7 +112,7 @@ pub fn effusion() -> Model {
 /// Dense gas with long neighbour lists: intervals are run again, and nothing is lost.
 pub fn dense(seed: u64) -> Model {
     model(&format!(
-        "end_time = 4e-4\nseed = {seed}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+        "end_time = 1.5e-4\nseed = {seed}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
          [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
