@@ -263,6 +263,8 @@ fn all_gathering(comm: &dyn Communicator) -> Result<(), String> {
 }
 
 fn broadcasting(comm: &dyn Communicator) -> Result<(), String> {
+    // Nothing, from a vector that never held anything.
+    same("nothing", told(comm.broadcast(Vec::new()))?, Vec::new())?;
     for length in [0, 1, 100_000] {
         let found = told(comm.broadcast(bytes(comm.rank(), 0, 0, length + comm.rank())))?;
         same_bytes("rank 0's bytes", &found, &bytes(0, 0, 0, length))?;

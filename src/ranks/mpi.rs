@@ -219,7 +219,10 @@ impl Communicator for Mpi {
         root.broadcast_into(&mut length);
         check_length(length as usize)?;
         message.resize(length as usize, 0);
-        root.broadcast_into(&mut message[..]);
+        // The address of an empty vector may be that of MPI_IN_PLACE, which a broadcast refuses.
+        if length > 0 {
+            root.broadcast_into(&mut message[..]);
+        }
         Ok(message)
     }
 
