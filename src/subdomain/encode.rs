@@ -39,7 +39,7 @@ pub struct Tables {
     pub motions: Vec<GpuMotion>,
     /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
     pub shares: Vec<u32>,
-    /// By how many halvings the steps are shorter than the speeds ask for.
+    /// By how many halvings less the fastest pairs fly in these steps than in the longest.
     pub halvings: u32,
 }
 

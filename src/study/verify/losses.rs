@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::gpu::Device;
-use crate::simulation::Options;
+use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
@@ -30,6 +30,14 @@ pub fn within_walls(
     temperature: f64,
     wall: &str,
 ) -> Result<Run, StudyError> {
+    run(device, &model_within_walls(particles, end_time, temperature, wall)?, Options::default())
+}
+
+/// The model of [`within_walls`].
+///
+/// # Errors
+/// If no plan can be made for it.
+pub fn model_within_walls(particles: u64, end_time: f64, temperature: f64, wall: &str) -> Result<Model, StudyError> {
     let text = format!(
         "end_time = {end_time:e}\nseed = 3\n[[gas]]\nname = \"nitrogen\"\nmolar_mass = {MOLAR_MASS}\ngamma = 1.4\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\n\
@@ -38,7 +46,7 @@ pub fn within_walls(
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
          [model]\nparticles = {particles}\noccupancy = 0.1\ntime_step = 3e-6\n[output]\nrows = 60\nsnapshots = 0\n"
     );
-    run(device, &model_of("heat-loss", &text)?, Options::default())
+    model_of("heat-loss", &text)
 }
 
 /// Temperature of the cube after `time`, K: dT/dt = -(T - T_w)/tau, tau = n cv / (h A).
