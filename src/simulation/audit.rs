@@ -179,7 +179,7 @@ impl Account {
     }
 
     /// What must hold after every interval, of all ranks together; how far the energy is off, relative.
-    pub fn check(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval) -> Result<f64, String> {
+    pub fn check(&mut self, tallies: &Tallies, interval: &Interval) -> Result<f64, String> {
         let counters = &tallies.counters;
         let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
         let expected = i128::from(interval.particles) - i128::from(self.counted.left + left(tallies));
@@ -195,8 +195,8 @@ impl Account {
         if counters.outside > 0 {
             return Err(format!("particles were found outside the vessel ({} times in these steps)", counters.outside));
         }
-        let (since, brought) = interval.energy_tallied(plan);
-        let samples = f64::from(interval.samples(plan));
+        let (since, brought) = interval.energy_tallied();
+        let samples = f64::from(interval.samples());
         let had = samples * (self.counted.start.energy + self.counted.energy_entered) + since;
         let (lost, missed) = self.lost(tallies);
         let expected = had - samples * self.counted.energy_lost - missed;
@@ -255,7 +255,7 @@ impl Account {
             *total += own;
         }
         // One step was timed; a tally, if it had one, is in fewer steps than the others.
-        let tallied = (interval.first_step + steps).is_multiple_of(u64::from(plan.tally_every));
+        let tallied = interval.tallied.last().is_some_and(|&tallied| tallied);
         for &(name, seconds) in timed {
             let share = if name == "tally" && tallied { u64::from(samples) } else { steps };
             match self.counted.phases.iter_mut().find(|(known, ..)| known == name) {

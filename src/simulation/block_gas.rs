@@ -1,6 +1,7 @@
 //! What the tallies of the coarse blocks say of the gas in them: density and heat, and from them the rate of
 //! collisions and the share that is left of the cross-section where gas is dense (specification, sections 2 and 9).
 
+use crate::gas::kinetics;
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::subdomain::{BlockSum, FULL_SHARE, Scales};
@@ -19,10 +20,11 @@ pub struct BlockGas {
     cap: Option<Cap>,
 }
 
-/// The diameter is at most that at `from`, 1/m3, times (from/n)^(1/3).
+/// The largest diameter, m, and how many mean spacings it may have.
 #[derive(Debug, Clone, Copy)]
 struct Cap {
-    from: f64,
+    diameter: f64,
+    spacings: f64,
 }
 
 /// Particles that see the same gas.
@@ -47,7 +49,7 @@ impl BlockGas {
                 plan.diameter * plan.diameter * pi * (16.0 / pi * heaviest / lightest).sqrt()
             },
             energy_unit: scales.block_energy,
-            cap: plan.diameter_cap.map(|spacings| Cap { from: (spacings / plan.diameter).powi(3) }),
+            cap: plan.diameter_cap.map(|spacings| Cap { diameter: plan.diameter, spacings }),
             volumes,
             full: block_edge.powi(3),
         }
@@ -114,10 +116,7 @@ impl BlockGas {
 impl Cap {
     /// (sigma/sigma_max)^2, never nothing.
     fn share(self, density: f64) -> u32 {
-        if density <= self.from {
-            return FULL_SHARE;
-        }
-        let ratio = libm::cbrt(self.from / density);
+        let ratio = kinetics::capped_diameter(self.diameter, Some(self.spacings), density) / self.diameter;
         ((ratio * ratio * f64::from(FULL_SHARE)).round() as u32).max(1)
     }
 }
@@ -164,7 +163,7 @@ pub mod tests {
     #[test]
     fn the_cross_section_falls_where_gas_is_dense() {
         let volumes = vec![1.0, 1.0, 1.0, 0.01, 0.03];
-        let cap = Some(Cap { from: surely(1000.0) });
+        let cap = Some(Cap { diameter: 1.0, spacings: surely(1000.0).cbrt() });
         let gas = BlockGas { cap, ..block_gas(volumes) };
         let blocks = [block(1000), block(8000), block(0), block(100), block(220)];
         let shares = gas.shares(&blocks);
@@ -178,6 +177,6 @@ pub mod tests {
         let growth = parts[1].rate / parts[0].rate;
         assert!((growth - (surely(8000.0) / surely(1000.0)).cbrt()).abs() < 1e-3, "{growth}");
         assert_eq!(block_gas(vec![1.0]).shares(&[block(1_000_000)]), Vec::<u32>::new());
-        assert_eq!(Cap { from: 1e-30 }.share(1e30), 1);
+        assert_eq!(Cap { diameter: 1e10, spacings: 1.0 }.share(1e30), 1);
     }
 }

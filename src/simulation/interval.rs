@@ -19,6 +19,8 @@ pub struct Interval {
     pub dt: f64,
     pub first_step: u64,
     pub steps: u32,
+    /// Whether each step adds to the zones.
+    pub tallied: Vec<bool>,
     /// Newborns of each step, on this rank and on all.
     pub newborns_of: Vec<u32>,
     pub entering: Vec<u32>,
@@ -80,11 +82,13 @@ impl Interval {
     ) -> Result<Interval, SimulationError> {
         let dt = (end - start) / f64::from(steps);
         let scales = Scales::new(plan);
+        let every = |count: u64| count.is_multiple_of(u64::from(plan.tally_every));
         let born: Vec<Newborn> = inflow.take_until(end);
         let mut interval = Interval {
             dt,
             first_step,
             steps,
+            tallied: (first_step + 1..).take(steps as usize).map(every).collect(),
             newborns_of: vec![0; steps as usize],
             entering: vec![0; steps as usize],
             newborns: Vec::with_capacity(born.len()),
@@ -121,25 +125,30 @@ impl Interval {
         Ok(interval)
     }
 
+    /// Adds the last step to the zones, whatever its number: the history ends where the run does.
+    pub fn tally_last(&mut self) {
+        if let Some(last) = self.tallied.last_mut() {
+            *last = true;
+        }
+    }
+
     /// The times at which its tallies of the zones are taken, s, of an interval that starts at `start`.
-    pub fn tallied_at(&self, plan: &Plan, start: f64) -> impl Iterator<Item = f64> {
-        let steps = (0..self.steps).filter(|&k| tallied(plan, self.first_step + u64::from(k)));
-        let dt = self.dt;
-        steps.map(move |k| start + f64::from(k + 1) * dt).collect::<Vec<f64>>().into_iter()
+    pub fn tallied_at(&self, start: f64) -> impl Iterator<Item = f64> {
+        (1u32..).zip(&self.tallied).filter(|(_, tallied)| **tallied).map(move |(k, _)| start + f64::from(k) * self.dt)
     }
 
     /// How many of its steps add to the zones.
-    pub fn samples(&self, plan: &Plan) -> u32 {
-        (0..self.steps).filter(|&k| tallied(plan, self.first_step + u64::from(k))).count() as u32
+    pub fn samples(&self) -> u32 {
+        self.tallied.iter().map(|&tallied| u32::from(tallied)).sum()
     }
 
     /// The energy that the newborns had brought since its start, J, summed over the steps that add to the zones;
     /// and all that they brought.
-    pub fn energy_tallied(&self, plan: &Plan) -> (f64, f64) {
+    pub fn energy_tallied(&self) -> (f64, f64) {
         let (mut brought, mut summed) = (0.0, 0.0);
-        for (step, energy) in (self.first_step..).zip(&self.energy) {
+        for (energy, &tallied) in self.energy.iter().zip(&self.tallied) {
             brought += energy;
-            if tallied(plan, step) {
+            if tallied {
                 summed += brought;
             }
         }
@@ -186,13 +195,13 @@ impl Machine<'_, '_> {
             first_id: interval.first_id,
             stride: interval.stride,
         };
-        let slots =
-            self.subdomain.begin_interval(device, interval.first_step, interval.dt, &newborns, &interval.tables)?;
+        let Interval { first_step, dt, ref tallied, ref tables, .. } = interval;
+        let slots = self.subdomain.begin_interval(device, first_step, dt, tallied, &newborns, tables)?;
         let last = slots.len() - 1;
         let mut rec = Recording::new(device);
         let mut present = 0;
         for (k, mut slot) in slots.into_iter().enumerate() {
-            let sampling = Sampling { lost: k == 0, tally: tallied(plan, interval.first_step + k as u64) };
+            let sampling = Sampling { lost: k == 0, tally: interval.tallied[k] };
             rec.time(self.timer.filter(|_| k == last));
             self.subdomain.begin_step(device, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
@@ -218,9 +227,4 @@ impl Machine<'_, '_> {
         let traffic = self.exchange.recent();
         Ok(InFlight { before, tallies, phases, present, traffic, interval })
     }
-}
-
-/// Steps that add to the zones: a function of the step's number alone.
-fn tallied(plan: &Plan, step: u64) -> bool {
-    (step + 1).is_multiple_of(u64::from(plan.tally_every))
 }

@@ -430,13 +430,16 @@ impl<'a> Simulation<'a> {
             Some(_) => Deal::All,
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
+        if self.clock.done() {
+            interval.tally_last();
+        }
         interval.tables = self.conditions.tables(start, end);
         interval.tables.shares = self.ladder.shares().to_vec();
         interval.tables.halvings = self.ladder.halvings(level);
         let moving = &self.model.moving;
         if !moving.is_empty() {
             interval.tables.motions = moving.steps(&plan.grid, start, interval.dt, steps);
-            interval.volumes = moving.mean_volumes(self.averages.drawn(), interval.tallied_at(plan, start));
+            interval.volumes = moving.mean_volumes(self.averages.drawn(), interval.tallied_at(start));
         }
         self.submit(interval)
     }

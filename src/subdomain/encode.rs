@@ -108,6 +108,7 @@ impl Subdomain {
         device: &Device,
         first_step: u64,
         dt: f64,
+        tallied: &[bool],
         newborns: &Newborns<'_>,
         tables: &Tables,
     ) -> Result<Vec<StepSlot>, GpuError> {
@@ -117,15 +118,14 @@ impl Subdomain {
         device.write(&self.fixed.motions, 0, &tables.motions);
         device.write(&self.fixed.shares, 0, &tables.shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
-        let tally_every = u64::from(self.domain.plan.tally_every);
-        let tallies = |steps: usize| (first_step + steps as u64) / tally_every;
+        let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
         let Newborns { of_step, list, first_id, stride } = *newborns;
         self.make_room(device, list.len() as u64, list.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
         let mut entered = 0;
-        for (k, &born) in of_step.iter().enumerate() {
+        for (k, (&born, &tallied)) in of_step.iter().zip(tallied).enumerate() {
             let slot = StepSlot {
                 slot: k as u32,
                 index: (first_step + k as u64) as u32,
@@ -137,9 +137,10 @@ impl Subdomain {
                 stride,
                 arrivals: 0,
                 total: self.count + born,
-                tallies_left: (tallies(of_step.len()) - tallies(k)) as u32,
+                tallies_left,
                 near2,
             };
+            tallies_left -= u32::from(tallied);
             entered += born;
             if self.place.is_alone() {
                 bytes.extend(self.parameters(device, &slot));

@@ -14,13 +14,17 @@ pub(super) fn diameter2(plan: &Plan) -> f64 {
 /// The square of the relative speed, (m/s)^2, with which a pair that meets in the longest step comes from as far as a
 /// cell's edge: what the plan takes for the fastest.
 pub(super) fn fastest2(plan: &Plan) -> f64 {
-    let (cell, diameter) = (plan.grid.cell, plan.diameter);
-    let flown = match plan.method {
+    let edges = flown(plan.method, plan.diameter / plan.grid.cell);
+    (2.0 * edges * plan.grid.cell / plan.time_step).powi(2)
+}
+
+/// What the fastest pairs fly in half the longest step, in edges; `diameter` too.
+fn flown(method: Method, diameter: f64) -> f64 {
+    match method {
         // Spheres touch on the way, not at the closest approach.
-        Method::HardSphere => cell - diameter,
-        _ => (cell * cell - diameter * diameter).max(0.0).sqrt(),
-    };
-    (2.0 * flown / plan.time_step).powi(2)
+        Method::HardSphere => 1.0 - diameter,
+        _ => (1.0 - diameter * diameter).max(0.0).sqrt(),
+    }
 }
 
 /// The square of the distance, in packed units, below which particles of the largest diameter may meet in a step. In the
@@ -32,10 +36,10 @@ pub(super) fn near2(plan: &Plan, halvings: u32) -> u32 {
 
 /// `diameter` in cells' edges.
 fn packed2(method: Method, diameter: f64, halvings: u32) -> u32 {
-    let shorter = 0.5f64.powi(halvings.min(64) as i32);
+    let flown = flown(method, diameter) * 0.5f64.powi(halvings.min(64) as i32);
     let edges = match method {
-        Method::HardSphere => diameter + (1.0 - diameter) * shorter,
-        _ => (diameter * diameter + (1.0 - diameter * diameter) * shorter * shorter).sqrt(),
+        Method::HardSphere => diameter + flown,
+        _ => (diameter * diameter + flown * flown).sqrt(),
     };
     // Points as far apart are less than a unit an axis farther once packed.
     (EDGE * edges + 3f64.sqrt()).powi(2).ceil() as u32

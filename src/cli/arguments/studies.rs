@@ -98,7 +98,7 @@ pub struct VerifyArguments {
     #[arg(long)]
     pub full: bool,
     /// Cases that run at a time; changes no result
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub jobs: u32,
     /// Only say which cases there are
     #[arg(long, conflicts_with_all = ["quick", "full", "markdown", "gpu"])]

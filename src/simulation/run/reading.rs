@@ -83,9 +83,9 @@ impl Simulation<'_> {
         self.read_until += duration;
         let plan = &self.model.plan;
         let lost = |what: String| SimulationError::Lost { time: self.read_until, what };
-        let drift = self.account.check(plan, &tallies, &interval).map_err(lost)?;
+        let drift = self.account.check(&tallies, &interval).map_err(lost)?;
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
-        let samples = interval.samples(plan);
+        let samples = interval.samples();
         self.account.add(plan, &tallies, &interval, samples, &timed);
         let particle_steps = interval.particles * u64::from(interval.steps);
         let clipped = self.account.state().clipped();
