@@ -23,28 +23,38 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (s >= step.total) {
         return;
     }
-    var particle: Particle;
-    var meets_wall: bool;
+    // Of a struct that is not copied whole only the fields that are used are read.
+    var tag: u32;
+    var position: vec3<u32>;
+    var velocity: vec3<f32>;
     if (COLLISIONS) {
         if ((layers[s] & LAYER) != 0u) {
             particles[s].tag = NOBODY;
             return;
         }
-        particle = sorted[s];
+        tag = sorted[s].tag;
+        position = sorted[s].position;
+        velocity = sorted[s].velocity;
     } else {
-        particle = particles[s];
-        if (VENTS && particle.tag == NOBODY) {
+        tag = particles[s].tag;
+        if (VENTS && tag == NOBODY) {
             return;
         }
+        position = particles[s].position;
+        velocity = particles[s].velocity;
     }
+    // Most gas is far from walls.
+    var far = false;
+    var meets_wall: bool;
     if (ROUNDS_OF_PAIRS) {
         meets_wall = flights[s].wall < step.dt;
     } else {
         var start = 0.0;
         if (ORIFICES) {
-            start = birth_time(id_of(particle.tag));
+            start = birth_time(id_of(tag));
         }
-        meets_wall = may_hit(particle.position, particle.velocity, start, step.dt);
+        far = !may_hit(position, velocity, start, step.dt);
+        meets_wall = !far && passes_walls(position, velocity, start, step.dt);
     }
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {
@@ -54,10 +64,16 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         bouncing[append(LIST_BOUNCE)] = s;
         return;
     }
-    particle.position = shifted(particle.position, particle.velocity * step.dt);
-    let cell = particle.position >> vec3<u32>(CELL_BITS);
-    if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
-        atomicAdd(&counters[OUTSIDE], 1u);
+    let end = shifted(position, velocity * step.dt);
+    if (!far) {
+        let cell = end >> vec3<u32>(CELL_BITS);
+        if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
+            atomicAdd(&counters[OUTSIDE], 1u);
+        }
     }
-    particles[s] = particle;
+    if (COLLISIONS) {
+        particles[s] = Particle(end, tag, velocity, sorted[s].spin);
+    } else {
+        particles[s].position = end;
+    }
 }

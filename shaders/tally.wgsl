@@ -82,16 +82,17 @@ fn contains(zone: Zone, p: vec3<u32>) -> bool {
     return along >= 0.0 && along < zone.height && dot(away, away) < zone.radius * zone.radius;
 }
 
-fn holds(zone: u32, p: vec3<u32>) -> bool {
-    if (zone == 0u || zone > CHAMBERS) {
-        return contains(zones[zone], p);
+// Whether an earlier chamber has what lies in this zone too.
+fn taken(zone: u32, p: vec3<u32>) -> bool {
+    if (zone > CHAMBERS) {
+        return false;
     }
     for (var earlier = 1u; earlier < zone; earlier++) {
         if (contains(zones[earlier], p)) {
-            return false;
+            return true;
         }
     }
-    return contains(zones[zone], p);
+    return false;
 }
 
 fn share64(slot: u32, value: vec2<u32>) {
@@ -119,6 +120,8 @@ fn tally(
     workgroupBarrier();
     let zone = group.y;
     let gas = group.z;
+    // Once, not for each particle.
+    let here = zones[zone];
     let count = step.total;
     var number = 0u;
     var x = vec2<u32>(0u);
@@ -131,13 +134,18 @@ fn tally(
         if (i >= count) {
             break;
         }
-        let particle = particles[i];
-        if (particle.tag == NOBODY || gas_of(particle.tag) != gas || !holds(zone, particle.position)) {
+        let tag = particles[i].tag;
+        if (tag == NOBODY || gas_of(tag) != gas) {
             continue;
         }
-        let velocity = particle.velocity * VELOCITY_SCALE;
-        let kinetic = 0.5 * dot(particle.velocity, particle.velocity) * ENERGY_SCALE;
-        let spin = particle.spin * ENERGY_SCALE;
+        let position = particles[i].position;
+        if (!contains(here, position) || taken(zone, position)) {
+            continue;
+        }
+        let v = particles[i].velocity;
+        let velocity = v * VELOCITY_SCALE;
+        let kinetic = 0.5 * dot(v, v) * ENERGY_SCALE;
+        let spin = particles[i].spin * ENERGY_SCALE;
         if (any(abs(velocity) >= vec3<f32>(1073741824.0)) || kinetic >= ENERGY_RANGE || spin >= ENERGY_RANGE) {
             atomicAdd(&counters[TALLY_OVERFLOW], 1u);
             continue;
