@@ -6,8 +6,8 @@
 // One thread per particle in the first round, per entry of `rechoose` in later ones: only a particle that
 // collided, or whose neighbour did, can choose otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
 // choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
-// the order of the candidates; both particles of a pair evaluate it with the lower id first, in the one
-// place below, so that they agree to the last bit.
+// the order of the candidates. Seen from the other particle of a pair, r and g have the other sign and all that is made of
+// them here has the same bits, so that both agree on its time.
 
 // Rigid spheres, the method `hard-sphere`.
 override RIGID: bool = false;
@@ -37,30 +37,40 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var best_time = NEVER;
     var best_id = NOBODY;
     let listed = neighbour_count[s];
-    let own = sorted[s];
+    if (listed == 0u) {
+        choices[s] = best;
+        return;
+    }
+    let position = sorted[s].position;
+    let velocity = sorted[s].velocity;
     let own_flight = flights[s];
-    let own_id = id_of(own.tag);
+    let own_latest = min(step.dt, own_flight.wall);
     let stride = arrayLength(&neighbour_count);
     for (var k = 0u; k < listed; k++) {
         let j = neighbours[k * stride + s];
-        let other = sorted[j];
-        let other_flight = flights[j];
-        let other_id = id_of(other.tag);
-        let first = own_id < other_id;
-        let r = select(-1.0, 1.0, first) * between(own.position, other.position);
-        let g = select(-1.0, 1.0, first) * (other.velocity - own.velocity);
+        let r = between(position, sorted[j].position);
+        let g = sorted[j].velocity - velocity;
         let g2 = dot(g, g);
         if (g2 == 0.0) {
             continue;
         }
         var time = -dot(r, g) / g2;
-        let earliest = max(own_flight.start, other_flight.start);
-        let latest = min(step.dt, min(own_flight.wall, other_flight.wall));
-        if (!RIGID && !(time >= earliest && time < latest)) {
+        // Most candidates pass too far away, or not in this step: so much can be told without the other's flight.
+        if (!RIGID && !(time >= own_flight.start && time < own_latest)) {
             continue;
         }
         let miss = r + g * time;
-        let inside = diameter2(own_flight, other_flight) - dot(miss, miss);
+        let miss2 = dot(miss, miss);
+        if (miss2 >= DIAMETER * DIAMETER) {
+            continue;
+        }
+        let other_flight = flights[j];
+        let earliest = max(own_flight.start, other_flight.start);
+        let latest = min(own_latest, other_flight.wall);
+        if (!RIGID && !(time >= earliest && time < latest)) {
+            continue;
+        }
+        let inside = diameter2(own_flight, other_flight) - miss2;
         if (inside <= 0.0) {
             continue;
         }
@@ -72,9 +82,11 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 continue;
             }
         }
-        if (own_flight.partner == other.tag && other_flight.partner == own.tag) {
+        let tag = sorted[j].tag;
+        if (own_flight.partner == tag && other_flight.partner == sorted[s].tag) {
             continue;
         }
+        let other_id = id_of(tag);
         if (time > best_time || (time == best_time && other_id >= best_id)) {
             continue;
         }
