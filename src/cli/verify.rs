@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::gpu::Device;
 use crate::output::{OutputError, line_chart};
+use crate::study::StudyError;
 use crate::study::verify::{CASES, Case, Check, Effort, Findings, Verdict, report, run_cases};
 
 use super::CliError;
@@ -26,18 +27,28 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     let info = Device::open(raw.gpu.as_deref())?.adapter().info.clone();
     say(&report::head())?;
     let mut outcomes: Vec<(&Case, Findings)> = Vec::new();
+    let mut failed: Vec<(&Case, StudyError)> = Vec::new();
     let open = || Device::open(raw.gpu.as_deref());
     run_cases(&cases, effort, raw.jobs as usize, open, |case, found| -> Result<(), CliError> {
-        say(&report::lines(case, &found.checks))?;
-        outcomes.push((case, found));
+        match found {
+            Ok(found) => {
+                say(&report::lines(case, &found.checks))?;
+                outcomes.push((case, found));
+            }
+            Err(error) => {
+                say(&report::failed(case, &error.to_string()))?;
+                failed.push((case, error));
+            }
+        }
         Ok(())
     })?;
     let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, found)| &found.checks).collect();
     let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
     if let Some(path) = &raw.markdown {
+        let reasons: Vec<(&Case, String)> = failed.iter().map(|(case, error)| (*case, error.to_string())).collect();
         let driver = format!("{} {}", info.driver, info.driver_info);
         let device = format!("{} ({})", info.name, driver.trim());
-        let page = report::page(&outcomes, &command(&raw), &device, FIGURES);
+        let page = report::page(&outcomes, &reasons, &command(&raw), &device, FIGURES);
         let io = |action, path: &Path, source| OutputError::Io { action, path: path.to_path_buf(), source };
         fs::write(path, page).map_err(|source| io("write", path, source))?;
         let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
@@ -47,7 +58,10 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
             line_chart(&path, &chart.title, chart.x_label, chart.y_label, &chart.series)?;
         }
     }
-    say(&format!("{passed} of {} pass\n", checks.len()))?;
+    say(&format!("{}\n", report::summary(&outcomes, failed.len())))?;
+    if let Some((_, error)) = failed.into_iter().next() {
+        return Err(error.into());
+    }
     if passed == checks.len() {
         Ok(())
     } else {

@@ -113,9 +113,16 @@ fn advect_flies_the_free_and_lists_the_others() {
             }
             let p = particles[k];
             let start = born.get(p.id().wrapping_sub(first_id) as usize).map_or(0.0, |newborn| newborn.start);
-            let at = cells.index(cells.cell(cells.shifted(p.position, p.velocity.map(|v| v * start))));
+            let [from, to] = [start, DT].map(|t| cells.cell(cells.shifted(p.position, p.velocity.map(|v| v * t))));
             let fastest = p.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
-            world.class(at) != CLEAR || fastest * (DT - start) * cells.quanta_per_metre >= (1u32 << cells.bits) as f32
+            let slow = fastest * (DT - start) * cells.quanta_per_metre < (1u32 << cells.bits) as f32;
+            if world.class(cells.index(from)) == CLEAR && slow {
+                return false;
+            }
+            // A wall is met in a cell that has one.
+            let passed = |k: usize| from[k].min(to[k])..=from[k].max(to[k]);
+            let with_wall = |x, y, z| world.has_triangle(cells.index([x, y, z]));
+            passed(2).any(|z| passed(1).any(|y| passed(0).any(|x| with_wall(x, y, z))))
         };
         let mut rig = Rig::new(&world);
         rig.constant("COLLISIONS", f64::from(u8::from(collisions)));

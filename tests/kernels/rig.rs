@@ -128,6 +128,11 @@ impl World {
         })
     }
 
+    /// Whether a triangle is listed in the cell.
+    pub fn has_triangle(&self, cell: u32) -> bool {
+        self.walls.start[cell as usize] < self.walls.start[cell as usize + 1]
+    }
+
     pub fn class(&self, cell: u32) -> u32 {
         self.walls.class[cell as usize / 16] >> (2 * (cell % 16)) & 3
     }

@@ -11,17 +11,17 @@ use crate::study::StudyError;
 
 use super::{Case, Effort, Findings};
 
-/// Runs the cases on `workers` devices, and hands what they find to `done` in the order of the cases. Every other worker
-/// takes them from the end, where the long ones are, so that all end together.
+/// Runs the cases on `workers` devices, and hands what they find, or why they could not run, to `done` in the order of
+/// the cases. Every other worker takes them from the end, where the long ones are, so that all end together.
 ///
 /// # Errors
-/// Of the first case, in their order, of those that failed, or of `done`; no other case is started then.
-pub fn run_cases<'a, E: From<StudyError>>(
+/// Of `done`; no other case is started then.
+pub fn run_cases<'a, E>(
     cases: &[&'a Case],
     effort: Effort,
     workers: usize,
     open: impl Fn() -> Result<Device, GpuError> + Sync,
-    mut done: impl FnMut(&'a Case, Findings) -> Result<(), E>,
+    mut done: impl FnMut(&'a Case, Result<Findings, StudyError>) -> Result<(), E>,
 ) -> Result<(), E> {
     let (left, stop) = (Mutex::new(0..cases.len()), AtomicBool::new(false));
     let take = |from_end: bool| {
@@ -34,18 +34,15 @@ pub fn run_cases<'a, E: From<StudyError>>(
         while !stop.load(Ordering::Relaxed) {
             let Some(index) = take(from_end) else { return };
             let case = cases[index];
-            let found = match device.take().map_or_else(&open, Ok) {
-                Ok(opened) => {
-                    let start = Instant::now();
-                    let found = case.run(device.insert(opened), effort);
-                    tracing::debug!("{}: {:.1} s", case.name, start.elapsed().as_secs_f64());
-                    found
-                }
-                Err(error) => Err(error.into()),
-            };
-            if found.is_err() {
-                stop.store(true, Ordering::Relaxed);
-            }
+            let start = Instant::now();
+            let opened = device.take().map_or_else(&open, Ok);
+            let found = opened.map_err(StudyError::from).and_then(|opened| {
+                let found = case.run(&opened, effort)?;
+                // One on which a case failed may be lost.
+                device = Some(opened);
+                Ok(found)
+            });
+            tracing::debug!("{}: {:.1} s", case.name, start.elapsed().as_secs_f64());
             if sender.send((index, found)).is_err() {
                 return;
             }
@@ -63,7 +60,7 @@ pub fn run_cases<'a, E: From<StudyError>>(
         for (index, findings) in receiver {
             found.insert(index, findings);
             while let Some(findings) = found.remove(&expected) {
-                let handed = findings.map_err(E::from).and_then(|findings| done(cases[expected], findings));
+                let handed = done(cases[expected], findings);
                 if handed.is_err() {
                     stop.store(true, Ordering::Relaxed);
                     return handed;
@@ -71,10 +68,7 @@ pub fn run_cases<'a, E: From<StudyError>>(
                 expected += 1;
             }
         }
-        match found.into_values().find_map(Result::err) {
-            Some(error) => Err(E::from(error)),
-            None => Ok(()),
-        }
+        Ok(())
     })
 }
 
@@ -108,34 +102,61 @@ mod tests {
         Err(StudyError::TooShort { state: "case".into() })
     }
 
-    fn order(cases: &[&Case], workers: usize) -> (Vec<String>, Result<(), StudyError>) {
-        let mut seen = Vec::new();
+    /// Which cases have been told, and which of them could not run.
+    fn order(cases: &[&Case], workers: usize) -> (Vec<String>, Vec<String>) {
+        let (mut seen, mut failed) = (Vec::new(), Vec::new());
         let outcome = run_cases(
             cases,
             Effort::Quick,
             workers,
             || Device::open(None),
             |case, findings| {
-                assert_eq!(findings.checks[0].quantity, if case.name == "a" { "slow" } else { "fast" });
                 seen.push(case.name.to_owned());
+                match findings {
+                    Ok(found) => {
+                        assert_eq!(found.checks[0].quantity, if case.name == "a" { "slow" } else { "fast" })
+                    }
+                    Err(error) => failed.push(format!("{}: {error}", case.name)),
+                }
                 Ok::<(), StudyError>(())
             },
         );
-        (seen, outcome)
+        assert!(outcome.is_ok());
+        (seen, failed)
     }
 
+    /// One that cannot run takes nothing from the others.
     #[test]
     fn findings_come_in_the_order_of_the_cases() {
         let case = |name, run| Case { name, law: "", run };
         let cases = [case("a", slow), case("b", fast), case("c", fast), case("d", failing), case("e", fast)];
         let [a, b, c, d, e] = &cases;
         for workers in [1, 2, 9] {
-            let (seen, outcome) = order(&[a, b, c, e], workers);
-            assert!(outcome.is_ok() && seen == ["a", "b", "c", "e"], "{seen:?}");
-            let (seen, outcome) = order(&[a, b, d, c, e], workers);
-            assert!(matches!(outcome, Err(StudyError::TooShort { .. })), "{workers}");
-            assert!(["a", "b"].starts_with(&seen.iter().map(String::as_str).collect::<Vec<_>>()), "{seen:?}");
+            let (seen, failed) = order(&[a, b, c, e], workers);
+            assert!(failed.is_empty() && seen == ["a", "b", "c", "e"], "{seen:?}");
+            let (seen, failed) = order(&[a, b, d, c, e], workers);
+            assert_eq!(seen, ["a", "b", "d", "c", "e"]);
+            assert_eq!(failed, [format!("d: {}", StudyError::TooShort { state: "case".into() })]);
         }
-        assert!(order(&[], 2).1.is_ok());
+        assert!(order(&[], 2).0.is_empty());
+    }
+
+    /// What stops the table stops the cases.
+    #[test]
+    fn no_case_is_started_when_nobody_listens() {
+        let cases: Vec<Case> = (0..8).map(|_| Case { name: "b", law: "", run: slow }).collect();
+        let mut told = 0;
+        let cases: Vec<&Case> = cases.iter().collect();
+        let outcome = run_cases(
+            &cases,
+            Effort::Quick,
+            1,
+            || Device::open(None),
+            |_, _| {
+                told += 1;
+                Err("closed")
+            },
+        );
+        assert_eq!((outcome, told), (Err("closed"), 1));
     }
 }

@@ -20,23 +20,49 @@ pub fn lines(case: &Case, checks: &[Check]) -> String {
     checks.iter().map(|check| line(&cells(case, check))).collect()
 }
 
-/// A page with all cases, their laws and what came of them. `command`: what made it, `device`: where; `figures`: the folder
-/// with the charts, from the page.
-pub fn page(outcomes: &[(&Case, Findings)], command: &str, device: &str, figures: &str) -> String {
+/// In place of the lines of a case that could not run.
+pub fn failed(case: &Case, why: &str) -> String {
+    format!("{:<width$} did not run: {why}\n", case.name, width = WIDTHS[0])
+}
+
+/// How many of the checks pass, and of the cases how many could not run.
+pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
+    let passed = outcomes.iter().flat_map(|(_, found)| &found.checks).filter(|c| c.verdict() == Verdict::Pass).count();
+    let all: usize = outcomes.iter().map(|(_, found)| found.checks.len()).sum();
+    match failed {
+        0 => format!("{passed} of {all} pass"),
+        1 => format!("{passed} of {all} pass, 1 case did not run"),
+        _ => format!("{passed} of {all} pass, {failed} cases did not run"),
+    }
+}
+
+/// A page with all cases, their laws and what came of them; the failed with the reason. `command`: what made it, `device`:
+/// where; `figures`: the folder with the charts, from the page.
+pub fn page(
+    outcomes: &[(&Case, Findings)],
+    failed: &[(&Case, String)],
+    command: &str,
+    device: &str,
+    figures: &str,
+) -> String {
     let mut page = format!(
         "# Accuracy\n\n\
          Reference cases and what a run gave for them, as printed by\n\n```sh\n{command}\n```\n\n\
          on {device}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
          a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n"
     );
-    let passed = outcomes.iter().flat_map(|(_, found)| &found.checks).filter(|c| c.verdict() == Verdict::Pass).count();
-    let all: usize = outcomes.iter().map(|(_, found)| found.checks.len()).sum();
-    let _ = writeln!(page, "{passed} of {all} pass.\n\n| {} |", TITLES.join(" | "));
+    let _ = writeln!(page, "{}.\n\n| {} |", summary(outcomes, failed.len()), TITLES.join(" | "));
     page += "|---|---|--:|--:|--:|--:|---|\n";
     for (case, found) in outcomes {
         for check in &found.checks {
             let _ = writeln!(page, "| {} |", cells(case, check).map(|cell| cell.replace('|', "\\|")).join(" | "));
         }
+    }
+    if !failed.is_empty() {
+        page += "\n## What did not run\n\n";
+    }
+    for (case, why) in failed {
+        let _ = writeln!(page, "- `{}`: {why}.", case.name);
     }
     page += "\n## The laws\n\n";
     for (case, _) in outcomes {
@@ -90,8 +116,10 @@ mod tests {
         let bad = Check { measured: 1.03, ..good.clone() };
         let chart = Curves::new("wall-pressure", "Pressure".into(), "f", "p");
         let found = Findings { checks: vec![good, bad], charts: vec![chart] };
-        let page = page(&[(&CASES[0], found)], "corpuscle verify", "a device", "figures");
-        assert!(page.contains("1 of 2 pass"), "{page}");
+        let failed = [(&CASES[1], "no room".to_owned())];
+        let page = page(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures");
+        assert!(page.contains("1 of 2 pass, 1 case did not run."), "{page}");
+        assert!(page.contains(&format!("\n- `{}`: no room.\n", CASES[1].name)), "{page}");
         assert!(
             page.contains("| wall-pressure | mean \\|x\\| | 1.000 | 1.010 | 0.001000 | 0.02000 | pass |"),
             "{page}"
