@@ -1,12 +1,14 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
-use crate::plan::{Choice, Measured, MeasuredVent, Plan, PlanError, choose, plan};
+use crate::plan::{Choice, Measured, MeasuredVent, Plan, PlanError, Reason, choose, plan, significant};
 use crate::scene::{Opening, Scene};
+use crate::subdomain::Memory;
 
 use super::coats::Coats;
 use super::moving::Moving;
 use super::outlook::outlook;
+use super::run::AHEAD;
 
 pub struct Model {
     pub scene: Scene,
@@ -86,11 +88,20 @@ impl Model {
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
 
-    /// The plan with the reasons and the forecast of the choice, for people. `plan` is what runs and checkpoints go by.
+    /// The plan with the reasons and the forecast of the choice, and what memory it takes, for people. `plan` is what runs and checkpoints go by.
     pub fn explained(&self) -> Plan {
         let mut plan = self.plan.clone();
         if let Some(choice) = &self.choice {
             choice.explain(&mut plan);
+        }
+        if let Some(memory) = Memory::of(&plan, AHEAD as u64) {
+            let value = format!("{} MB", significant(memory.all / 1e6));
+            let why = format!(
+                "at least, on one device: {} bytes per particle, {} per cell; lists of neighbours grow where they are too short",
+                memory.per_particle,
+                significant(memory.per_cell)
+            );
+            plan.reasons.push(Reason { quantity: "device memory".into(), value, why });
         }
         plan
     }

@@ -39,7 +39,7 @@ use reading::all_tallies;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
-const AHEAD: usize = 2;
+pub(super) const AHEAD: usize = 2;
 
 /// The ranks of a run.
 enum Ranks<'a> {

@@ -204,6 +204,21 @@ impl ExchangeBuffers {
     }
 }
 
+/// Of the buffers that grow with the number of particles, on a device alone.
+pub fn bytes_per_particle(collisions: bool, rounds: bool, list: u64) -> u64 {
+    let particle = size_of::<GpuParticle>() as u64;
+    // `particles` and `rare`; `sorted`, `bins`, `slots`, `cells` and `layers`; `flights`, `middles`, `touched`, the lists and
+    // their lengths.
+    let mut bytes = particle + 4;
+    if collisions {
+        bytes += particle + 8 + 8 + 4 + 4;
+    }
+    if rounds {
+        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 * list + 4;
+    }
+    bytes
+}
+
 /// What grows with the number of particles.
 pub struct ParticleBuffers {
     pub capacity: u64,
@@ -371,5 +386,24 @@ impl<'a> Buffers<'a> {
             (_, "cuts") => &exchange.cuts,
             _ => return None,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a plan is told to take is what is made: a change of one without the other is seen here.
+    #[test]
+    fn the_bytes_of_a_particle_are_those_of_its_buffers() {
+        let device = Device::open(None).expect("a device");
+        let bytes = |features: Features, capacity: u64| {
+            ParticleBuffers::new(&device, capacity, 1, 24, features).expect("room").bytes()
+        };
+        for (collisions, rounds) in [(false, false), (true, false), (true, true)] {
+            let features = Features { collisions, rounds, ..Features::default() };
+            let found = bytes(features, 6400) - bytes(features, 3200);
+            assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, 24), "{collisions} {rounds}");
+        }
     }
 }

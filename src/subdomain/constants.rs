@@ -22,7 +22,7 @@ const MOST_BOUNCES: f64 = 32.0;
 const MOST_BOUNCES_MOVING: f64 = 1024.0;
 
 /// What the scene has, and so what is compiled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Features {
     pub collisions: bool,
     /// Pairs are chosen from neighbour lists, in rounds; without it they collide within their cells.

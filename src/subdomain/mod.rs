@@ -13,6 +13,7 @@ mod encode;
 mod exchange;
 mod kernels;
 mod layout;
+mod memory;
 mod nearness;
 mod place;
 mod scales;
@@ -37,6 +38,7 @@ pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
     GpuVent, GpuWeights, GpuZone,
 };
+pub use memory::Memory;
 pub use place::{Cells, Ghosts, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};

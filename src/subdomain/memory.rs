@@ -1,0 +1,37 @@
+//! What a device alone needs for a plan: the sizes of the buffers that grow with the particles and with the cells.
+
+use crate::plan::Plan;
+use crate::scene::Method;
+
+use super::buffers::{CHUNK, FIRST_LIST, bytes_per_particle};
+use super::layout::GpuParticle;
+
+/// Bytes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Memory {
+    /// Of each particle, with its share of the copies that are kept to run an interval again, and with neighbour lists of
+    /// their first length.
+    pub per_particle: u64,
+    /// Of each cell of the grid: that of the sort, and that of the walls.
+    pub per_cell: f64,
+    pub all: f64,
+}
+
+/// Start of the list of walls; class; whether a wall may part the gas there: bytes of a cell (`DomainBuffers`).
+const WALLS_OF_A_CELL: f64 = 4.0 + 2.0 / 8.0 + 1.0 / 8.0;
+
+impl Memory {
+    /// With so many copies of the particles under way; `None` of a plan that no device runs.
+    pub fn of(plan: &Plan, copies: u64) -> Option<Memory> {
+        if plan.method == Method::ControlVolume {
+            return None;
+        }
+        let collisions = plan.method != Method::None;
+        let state = size_of::<GpuParticle>() as u64;
+        let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), FIRST_LIST) + copies * state;
+        let sort = if collisions { 8.0 + 4.0 / CHUNK as f64 } else { 0.0 };
+        let per_cell = sort + WALLS_OF_A_CELL;
+        let cells = plan.grid.cell_count() as f64;
+        Some(Memory { per_particle, per_cell, all: plan.particles as f64 * per_particle as f64 + cells * per_cell })
+    }
+}
