@@ -1,9 +1,10 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`) and the classes of the
-// cells; writes `particles` (in canonical order; dead slots in place of ghosts), and appends those that meet a wall, or
-// without rounds may meet one (noted in `layers`), to `bouncing`. One thread per particle, which writes its own slot.
+// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes of the
+// cells, `wall_start` and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
+// those that meet a wall, or without rounds pass a cell that has one (noted in `layers`), to `bouncing`. One thread per
+// particle, which writes its own slot.
 
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;

@@ -59,13 +59,14 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
         }
     }
     say(&format!("{}\n", report::summary(&outcomes, failed.len())))?;
-    if let Some((_, error)) = failed.into_iter().next() {
-        return Err(error.into());
+    let mut errors: Vec<CliError> = failed.into_iter().map(|(_, error)| error.into()).collect();
+    if passed < checks.len() {
+        errors.push(CliError::Verification { failed: checks.len() - passed, checks: checks.len() });
     }
-    if passed == checks.len() {
-        Ok(())
-    } else {
-        Err(CliError::Verification { failed: checks.len() - passed, checks: checks.len() })
+    // What cannot be trusted is worse than what could not be done; it has the highest code.
+    match errors.into_iter().max_by_key(CliError::exit_code) {
+        Some(error) => Err(error),
+        None => Ok(()),
     }
 }
 

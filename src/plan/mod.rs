@@ -117,7 +117,7 @@ pub struct Plan {
     pub ladder_levels: u32,
     /// Steps between changes of the level.
     pub steps_per_interval: u32,
-    /// Steps between tallies.
+    /// Steps between tallies; the last step of a run has one too.
     pub tally_every: u32,
     /// A block of the coarse grid is 2^this cells along each axis.
     pub block_cells_log2: u32,

@@ -88,7 +88,8 @@ impl Model {
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
 
-    /// The plan with the reasons and the forecast of the choice, and what memory it takes, for people. `plan` is what runs and checkpoints go by.
+    /// The plan with the reasons and the forecast of the choice, and what memory it takes, for people. `plan` is what runs
+    /// and checkpoints go by.
     pub fn explained(&self) -> Plan {
         let mut plan = self.plan.clone();
         if let Some(choice) = &self.choice {
@@ -97,7 +98,7 @@ impl Model {
         if let Some(memory) = Memory::of(&plan, AHEAD as u64) {
             let value = format!("{} MB", significant(memory.all / 1e6));
             let why = format!(
-                "at least, on one device: {} bytes per particle, {} per cell; lists of neighbours grow where they are too short",
+                "on one device, all particles there: {} bytes per particle, {} per cell; more where lists of neighbours grow",
                 memory.per_particle,
                 significant(memory.per_cell)
             );

@@ -12,8 +12,9 @@ pub struct Memory {
     /// Of each particle, with its share of the copies that are kept to run an interval again, and with neighbour lists of
     /// their first length.
     pub per_particle: u64,
-    /// Of each cell of the grid: that of the sort, and that of the walls.
+    /// Of each cell of the grid: that of the sort, that of the walls, and its volume for collisions within it.
     pub per_cell: f64,
+    /// Were all particles there at once that ever enter.
     pub all: f64,
 }
 
@@ -30,7 +31,8 @@ impl Memory {
         let state = size_of::<GpuParticle>() as u64;
         let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), FIRST_LIST) + copies * state;
         let sort = if collisions { 8.0 + 4.0 / CHUNK as f64 } else { 0.0 };
-        let per_cell = sort + WALLS_OF_A_CELL;
+        let volume = if plan.method == Method::Cell { 4.0 } else { 0.0 };
+        let per_cell = sort + volume + WALLS_OF_A_CELL;
         let cells = plan.grid.cell_count() as f64;
         Some(Memory { per_particle, per_cell, all: plan.particles as f64 * per_particle as f64 + cells * per_cell })
     }

@@ -22,6 +22,8 @@ pub struct Way {
     pub pace: Pace,
     pub batch: Option<u32>,
     pub order: Option<&'static Shuffle>,
+    /// Where the run stops before its end.
+    pub stop: Option<u64>,
 }
 
 impl Way {
@@ -34,11 +36,11 @@ impl Way {
             Pace::OneAtATime
         };
         let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::Asked } else { Ghosts::All });
-        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None }
+        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None, stop: None }
     }
 
     pub fn name(&self) -> String {
-        let Way { ranks, mode, halo_rounds, ghosts, pace, batch, order } = self;
+        let Way { ranks, mode, halo_rounds, ghosts, pace, batch, order, .. } = self;
         let order = if order.is_some() { ", another order" } else { "" };
         format!(
             "{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, ghosts {ghosts:?}, {pace:?}, \
@@ -50,7 +52,7 @@ impl Way {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
         let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
         let halo = HaloOptions { rounds: self.halo_rounds, ghosts: self.ghosts };
-        Options { batch: self.batch, halo, balance, ..Options::default() }
+        Options { batch: self.batch, halo, balance, stop_after_steps: self.stop, ..Options::default() }
     }
 }
 

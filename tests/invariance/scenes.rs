@@ -128,8 +128,10 @@ pub fn tube() -> Model {
          [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
          [model]\nparticles = 2500\noccupancy = 0.005\n[output]\nrows = 1\nsnapshots = 0\n",
     );
-    model.scene.end_time = 7.0 * model.plan.time_step;
-    Model::new(model.scene).expect("a model")
+    model.scene.end_time = 14.0 * model.plan.time_step;
+    let mut model = Model::new(model.scene).expect("a model");
+    model.plan.steps_per_interval = 7;
+    model
 }
 
 /// A short jet into a box with a vent and a warm wall, that goes on as a control volume once pressures are uniform.

@@ -1,7 +1,8 @@
 //! The bytes that the phases of a step must move, counted from their buffers.
 //!
 //! Each element that a phase reads or writes counts once, however often its threads come back to it: what a cache that
-//! forgets nothing within a phase would leave. So bytes over time are no more than what really moves, and their share of the
+//! forgets nothing within a phase would leave. An element is a whole struct, also where only some of its fields are
+//! wanted: memory moves lines. So bytes over time are no more than what really moves, and their share of the
 //! copy's rate says how far a phase is from being bound by memory. Walls (some kilobytes) and tallies are left out.
 
 use crate::scene::Method;

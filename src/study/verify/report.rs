@@ -20,19 +20,23 @@ pub fn lines(case: &Case, checks: &[Check]) -> String {
     checks.iter().map(|check| line(&cells(case, check))).collect()
 }
 
-/// In place of the lines of a case that could not run.
+/// In place of the lines of a case whose run failed.
 pub fn failed(case: &Case, why: &str) -> String {
-    format!("{:<width$} did not run: {why}\n", case.name, width = WIDTHS[0])
+    format!("{:<width$} failed: {}\n", case.name, one_line(why), width = WIDTHS[0])
 }
 
-/// How many of the checks pass, and of the cases how many could not run.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// How many of the checks pass, and how many cases failed before they had any.
 pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
     let passed = outcomes.iter().flat_map(|(_, found)| &found.checks).filter(|c| c.verdict() == Verdict::Pass).count();
     let all: usize = outcomes.iter().map(|(_, found)| found.checks.len()).sum();
     match failed {
         0 => format!("{passed} of {all} pass"),
-        1 => format!("{passed} of {all} pass, 1 case did not run"),
-        _ => format!("{passed} of {all} pass, {failed} cases did not run"),
+        1 => format!("{passed} of {all} pass, 1 case failed"),
+        _ => format!("{passed} of {all} pass, {failed} cases failed"),
     }
 }
 
@@ -59,10 +63,10 @@ pub fn page(
         }
     }
     if !failed.is_empty() {
-        page += "\n## What did not run\n\n";
+        page += "\n## What failed\n\n";
     }
     for (case, why) in failed {
-        let _ = writeln!(page, "- `{}`: {why}.", case.name);
+        let _ = writeln!(page, "- `{}`: {}.", case.name, one_line(why));
     }
     page += "\n## The laws\n\n";
     for (case, _) in outcomes {
@@ -116,9 +120,9 @@ mod tests {
         let bad = Check { measured: 1.03, ..good.clone() };
         let chart = Curves::new("wall-pressure", "Pressure".into(), "f", "p");
         let found = Findings { checks: vec![good, bad], charts: vec![chart] };
-        let failed = [(&CASES[1], "no room".to_owned())];
+        let failed = [(&CASES[1], "no\n  room".to_owned())];
         let page = page(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures");
-        assert!(page.contains("1 of 2 pass, 1 case did not run."), "{page}");
+        assert!(page.contains("1 of 2 pass, 1 case failed."), "{page}");
         assert!(page.contains(&format!("\n- `{}`: no room.\n", CASES[1].name)), "{page}");
         assert!(
             page.contains("| wall-pressure | mean \\|x\\| | 1.000 | 1.010 | 0.001000 | 0.02000 | pass |"),
