@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::gpu::Device;
 use crate::output::{OutputError, line_chart};
 use crate::study::StudyError;
-use crate::study::verify::{CASES, Case, Check, Effort, Findings, Verdict, report, run_cases};
+use crate::study::verify::{CASES, Case, Effort, Findings, report, run_cases};
 
 use super::CliError;
 use super::arguments::VerifyArguments;
@@ -42,8 +42,6 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
         }
         Ok(())
     })?;
-    let checks: Vec<&Check> = outcomes.iter().flat_map(|(_, found)| &found.checks).collect();
-    let passed = checks.iter().filter(|check| check.verdict() == Verdict::Pass).count();
     if let Some(path) = &raw.markdown {
         let reasons: Vec<(&Case, String)> = failed.iter().map(|(case, error)| (*case, error.to_string())).collect();
         let driver = format!("{} {}", info.driver, info.driver_info);
@@ -60,14 +58,16 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
     }
     say(&format!("{}\n", report::summary(&outcomes, failed.len())))?;
     let mut errors: Vec<CliError> = failed.into_iter().map(|(_, error)| error.into()).collect();
-    if passed < checks.len() {
-        errors.push(CliError::Verification { failed: checks.len() - passed, checks: checks.len() });
+    let (passed, checks) = report::passed(&outcomes);
+    if passed < checks {
+        errors.push(CliError::Verification { failed: checks - passed, checks });
     }
-    // What cannot be trusted is worse than what could not be done; it has the highest code.
-    match errors.into_iter().max_by_key(CliError::exit_code) {
-        Some(error) => Err(error),
-        None => Ok(()),
-    }
+    worst(errors)
+}
+
+/// What cannot be trusted is worse than what could not be done; it has the highest code.
+fn worst(errors: Vec<CliError>) -> Result<(), CliError> {
+    errors.into_iter().max_by_key(CliError::exit_code).map_or(Ok(()), Err)
 }
 
 /// The named ones, all if none is named.
@@ -87,4 +87,22 @@ fn command(raw: &VerifyArguments) -> String {
     words.push(if raw.full { "--full" } else { "--quick" }.to_owned());
     words.extend(raw.markdown.as_ref().map(|path| format!("--markdown {}", path.display())));
     words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::GpuError;
+
+    /// A check that does not pass is not hidden by a case that had no device, nor the other way round if all pass.
+    #[test]
+    fn the_worst_of_all_is_told() {
+        let trouble = || CliError::Study(StudyError::from(GpuError::NoAdapter));
+        let wrong = || CliError::Verification { failed: 1, checks: 2 };
+        let code = |errors| worst(errors).map_err(|error| error.exit_code());
+        assert_eq!(code(vec![trouble(), wrong()]), Err(4));
+        assert_eq!(code(vec![wrong(), trouble()]), Err(4));
+        assert_eq!(code(vec![trouble()]), Err(3));
+        assert_eq!(code(Vec::new()), Ok(()));
+    }
 }

@@ -19,7 +19,7 @@ const DEFAULT_ROUNDS: u32 = 8;
 /// A cell edge must not fall short of its rule by rounding.
 const EDGE_MARGIN: f64 = 1.0001;
 /// Relative speeds above this many sqrt(kT/m) do not occur in practice.
-const FASTEST_PAIR: f64 = 6.0;
+pub const FASTEST_PAIR: f64 = 6.0;
 /// 99.9 % of the molecules are slower than this many sqrt(kT/m).
 const FAST_PARTICLE: f64 = 4.04;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.

@@ -136,6 +136,9 @@ pub fn step_stride(device: &Device) -> u64 {
     crate::gpu::STEP_BYTES.next_multiple_of(alignment.max(1))
 }
 
+/// Bytes of these buffers for each bin.
+pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 + 4.0 / CHUNK as f64;
+
 /// What grows with the number of cells that have bins. `cell_count` is zero between steps.
 pub struct CellBuffers {
     pub capacity: u64,
@@ -405,5 +408,8 @@ mod tests {
             let found = bytes(features, 6400) - bytes(features, 3200);
             assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, 24), "{collisions} {rounds}");
         }
+        let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
+        let some = 2 * u64::from(CHUNK);
+        assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * BYTES_PER_BIN);
     }
 }

@@ -3,7 +3,7 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-use super::buffers::{CHUNK, FIRST_LIST, bytes_per_particle};
+use super::buffers::{BYTES_PER_BIN, FIRST_LIST, bytes_per_particle};
 use super::layout::GpuParticle;
 
 /// Bytes.
@@ -30,7 +30,7 @@ impl Memory {
         let collisions = plan.method != Method::None;
         let state = size_of::<GpuParticle>() as u64;
         let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), FIRST_LIST) + copies * state;
-        let sort = if collisions { 8.0 + 4.0 / CHUNK as f64 } else { 0.0 };
+        let sort = if collisions { BYTES_PER_BIN } else { 0.0 };
         let volume = if plan.method == Method::Cell { 4.0 } else { 0.0 };
         let per_cell = sort + volume + WALLS_OF_A_CELL;
         let cells = plan.grid.cell_count() as f64;

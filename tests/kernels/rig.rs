@@ -123,8 +123,7 @@ impl World {
         (0..27i64).any(|k| {
             let (x, y, z) = (x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
             let inside = (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
-            let at = ((z * ny + y) * nx + x) as usize;
-            inside && self.walls.start[at] < self.walls.start[at + 1]
+            inside && self.has_triangle(((z * ny + y) * nx + x) as u32)
         })
     }
 

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use crate::gas::kinetics;
 use crate::geometry::region_contains;
 use crate::gpu::Device;
+use crate::plan::FASTEST_PAIR;
 use crate::scene::{DiameterCap, Method, Outline, Scene, Shape};
 use crate::simulation::{Model, Options, Row};
 use crate::study::StudyError;
@@ -128,8 +129,6 @@ pub(super) fn effusion(device: &Device, effort: Effort) -> Result<Findings, Stud
 
 /// m3: the inner box.
 pub const VOLUME: f64 = 0.16 * 0.12 * 0.12;
-/// K, of the gas that leaves.
-const TEMPERATURE: f64 = 700.0;
 /// m, half the side of the hole, which is the radius 2 area / perimeter of a square one.
 pub const RADIUS: f64 = 0.02;
 
@@ -151,16 +150,17 @@ fn emptying_until(end_time: f64, particles: u64, knudsen: f64) -> Result<Model, 
     // The Knudsen number is that of the gas that stays, which is denser than the mean.
     scene.model.diameter = Some(diameter);
     scene.model.diameter_cap = Some(DiameterCap::Off);
-    scene.model.time_step = thin_gas_step(diameter, density);
+    let gas = &scene.chambers[0];
+    scene.model.time_step = thin_gas_step(diameter, density, gas.temperature);
     model_from("orifice", scene)
 }
 
 /// Where spheres are far smaller than their spacing, a step in which the fastest pairs close in by a diameter takes a
 /// grid of thousands of cells for each particle. In this one, s, they close in by half the spacing: as by
 /// a diameter at an occupancy of 0.065, while the gas collides the less often the thinner it is.
-fn thin_gas_step(diameter: f64, density: f64) -> Option<f64> {
+fn thin_gas_step(diameter: f64, density: f64, temperature: f64) -> Option<f64> {
     let spacing = kinetics::mean_spacing(density);
-    let fastest = 6.0 * (GAS_CONSTANT / 0.028 * TEMPERATURE).sqrt();
+    let fastest = FASTEST_PAIR * (GAS_CONSTANT / 0.028 * temperature).sqrt();
     (diameter < 0.25 * spacing).then(|| 0.5 * spacing / fastest)
 }
 
@@ -278,8 +278,9 @@ const CD_LIMITS: [f64; 2] = [0.583, 0.84];
 pub(super) fn blow_down(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, tolerance) = if effort == Effort::Quick { (6000, 0.07) } else { (60_000, 0.03) };
     // Half of it has left by then.
-    let rows = run(device, &emptying_until(6e-3, particles, 0.1)?, Options::default())?.rows;
-    let (start, density) = (TEMPERATURE, particles as f64 / VOLUME);
+    let model = emptying_until(6e-3, particles, 0.1)?;
+    let rows = run(device, &model, Options::default())?.rows;
+    let (start, density) = (model.scene.chambers[0].temperature, particles as f64 / VOLUME);
     let inner = |row: &Row| (row.chambers[0].particles[0], row.chambers[0].temperature);
     let first = rows.first().map_or((f64::NAN, f64::NAN), inner);
     let last = rows.last().map_or((f64::NAN, f64::NAN), inner);

@@ -29,10 +29,15 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// How many of the checks pass, and how many cases failed before they had any.
+/// How many of the checks pass, of how many.
+pub fn passed(outcomes: &[(&Case, Findings)]) -> (usize, usize) {
+    let checks = || outcomes.iter().flat_map(|(_, found)| &found.checks);
+    (checks().filter(|check| check.verdict() == Verdict::Pass).count(), checks().count())
+}
+
+/// The same in words, and how many cases failed before they had any.
 pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
-    let passed = outcomes.iter().flat_map(|(_, found)| &found.checks).filter(|c| c.verdict() == Verdict::Pass).count();
-    let all: usize = outcomes.iter().map(|(_, found)| found.checks.len()).sum();
+    let (passed, all) = passed(outcomes);
     match failed {
         0 => format!("{passed} of {all} pass"),
         1 => format!("{passed} of {all} pass, 1 case failed"),
