@@ -48,6 +48,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     let middle = middles[s];
     let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
     let stride = arrayLength(&neighbour_count);
+    let list = step.list;
     var share = FULL_SHARE;
     if (CAPPED) {
         share = share_of(flights[s]);
@@ -75,15 +76,15 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             // Of the pair's diameter, so that either is in the other's list.
             if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
                 flags |= other;
-                if (found < step.list) {
+                if (found < list) {
                     neighbours[found * stride + s] = j;
                 }
                 found++;
             }
         }
     }
-    neighbour_count[s] = min(found, step.list);
-    if (found > step.list) {
+    neighbour_count[s] = min(found, list);
+    if (found > list) {
         atomicMax(&counters[MOST_NEIGHBOURS], found);
     }
     let walls = found > 0u && (flags & NEAR_WALL) != 0u;
