@@ -107,6 +107,12 @@ fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
+// Where in `wall_list` the triangles of an x-row of cells are: neighbours in memory, as are the cells.
+fn row_list(cells: Cells, y: u32, z: u32) -> vec2<u32> {
+    let row = cell_index(vec3<u32>(cells.low.x, y, z));
+    return vec2<u32>(wall_start[row], wall_start[row + cells.high.x - cells.low.x + 1u]);
+}
+
 // Takes the triangle into account as the first wall that a flight meets that is at `from_point` at the time `start`.
 fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>, start: f32, end: f32) {
     let triangle = triangles[index];
@@ -140,8 +146,8 @@ fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
     let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
-            let row = cell_index(vec3<u32>(cells.low.x, y, z));
-            if (wall_start[row] < wall_start[row + cells.high.x - cells.low.x + 1u]) {
+            let list = row_list(cells, y, z);
+            if (list.x < list.y) {
                 return true;
             }
         }
@@ -164,10 +170,8 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     let cells = cells_of(from_point, to_point);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
-            // The cells of an x-row are neighbours in memory, and so are their lists.
-            let row = cell_index(vec3<u32>(cells.low.x, y, z));
-            let last = wall_start[row + cells.high.x - cells.low.x + 1u];
-            for (var k = wall_start[row]; k < last; k++) {
+            let list = row_list(cells, y, z);
+            for (var k = list.x; k < list.y; k++) {
                 meet(&hit, wall_list[k], from_point, v, start, end);
             }
         }
@@ -229,9 +233,8 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     let along = between(p, q);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
-            let row = cell_index(vec3<u32>(cells.low.x, y, z));
-            let last = wall_start[row + cells.high.x - cells.low.x + 1u];
-            for (var k = wall_start[row]; k < last; k++) {
+            let list = row_list(cells, y, z);
+            for (var k = list.x; k < list.y; k++) {
                 if (parts(wall_list[k], p, q, along)) {
                     return true;
                 }

@@ -108,3 +108,39 @@ fn it_switches_once_pressures_are_uniform() {
     let off = particles.chambers[0].pressure / then.chambers[0].pressure - 1.0;
     assert!(off.abs() < 0.01, "{off}");
 }
+
+/// Walls take heat, a vent passes gas and a piston works on it: what they took until the run ends, particles and control
+/// volume together, is what the gas lost. The totals of the last row stand for it, and no total jumps where the one follows
+/// on the other.
+#[test]
+fn totals_of_walls_vents_and_pistons_go_on() {
+    let end = 6e-4;
+    let text = format!(
+        "end_time = {end:e}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.06, 0.06]\ngas = \"inside\"\n\
+         temperature = 300.0\nheat_transfer = 8000.0\n\
+         [[wall]]\nname = \"piston\"\nshape = \"box\"\nmin = [-0.05, -0.01, -0.01]\nmax = [0.01, 0.07, 0.07]\ngas = \"outside\"\n\
+         [[motion]]\nwall = \"piston\"\ndirection = [1.0, 0.0, 0.0]\nvelocity = 40.0\n\
+         [[chamber]]\nname = \"all\"\npressure = 4e5\ntemperature = 600.0\ngas = \"air\"\n\
+         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+         [[vent]]\nname = \"valve\"\nwall = \"box\"\nface = \"+x\"\ndischarge = 0.15\n\
+         [model]\nparticles = 6000\nswitch = 3e-4\n[output]\nrows = 24\nsnapshots = 0\n"
+    );
+    let found = run(&model(&text), Options::default());
+    let continued = found.outcome.continued.as_ref().expect("it switched");
+    let totals = |row: &Row| [row.walls[0].heat, row.vents[0].enthalpy, -row.motions[0].work];
+    let last = totals(found.rows.last().expect("rows"));
+    let start = found.outcome.audit.energy_start;
+    let lost = start - continued.audit.energy_end;
+    println!("heat {:.4} J, enthalpy {:.4} J, work {:.4} J of {start:.4} J", last[0], last[1], -last[2]);
+    assert!(last[0] > 0.01 * start && last[1] > 0.01 * start && last[2] < -0.01 * start, "{last:?} of {start}");
+    assert!((lost / last.iter().sum::<f64>() - 1.0).abs() < 1e-5, "{lost} {last:?}");
+    // A total that started anew would fall, one that was taken twice would grow by that of all rows.
+    let at = found.rows.iter().position(|row| row.particles == 0).expect("rows of the control volume");
+    let [before, after] = [at - 1, at].map(|row| &found.rows[row]);
+    let length = (after.window[1] - before.window[1]) / before.window[1];
+    for (before, after) in totals(before).into_iter().zip(totals(after)) {
+        let grown = (after - before) / (before * length);
+        assert!((0.4..2.5).contains(&grown), "{before} {after} in {length} of the time before");
+    }
+}
