@@ -4,6 +4,8 @@
 //! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). The result is
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
 //! entry point, and the bindings and override constants that the entry point uses.
+//!
+//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,6 +15,11 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 const CAPABILITIES: Capabilities = Capabilities::empty();
+
+/// What a build is made of.
+const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
+const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x100_0000_01b3;
 
 /// A kernel with the shared files before it.
 pub struct Kernel {
@@ -34,9 +41,10 @@ struct Part {
 }
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
     // Cargo looks at every file below.
-    println!("cargo::rerun-if-changed=shaders");
+    for path in SOURCES {
+        println!("cargo::rerun-if-changed={path}");
+    }
     let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
         for path in unused {
             println!("cargo::warning={} is used by no kernel", path.display());
@@ -45,10 +53,32 @@ fn main() {
         let path = Path::new(&out).join("shaders.rs");
         fs::write(&path, table(&kernels)).map_err(|error| format!("{}: {error}", path.display()))
     });
-    if let Err(message) = written {
+    let numbered = written.and_then(|()| {
+        let mut number = FNV_START;
+        SOURCES.iter().try_for_each(|path| add_to(&mut number, Path::new(path)))?;
+        println!("cargo::rustc-env=CORPUSCLE_SOURCE={number:016x}");
+        Ok(())
+    });
+    if let Err(message) = numbered {
         eprintln!("{message}");
         process::exit(1);
     }
+}
+
+/// Adds a file, or all files of a folder in the order of their names, to a hash (FNV-1a, 64 bits).
+fn add_to(number: &mut u64, path: &Path) -> Result<(), String> {
+    let told = |error: std::io::Error| format!("{}: {error}", path.display());
+    if path.is_dir() {
+        let entries: Result<Vec<_>, _> = fs::read_dir(path).map_err(told)?.map(|entry| Ok(entry?.path())).collect();
+        let mut paths = entries.map_err(told)?;
+        paths.sort();
+        return paths.iter().try_for_each(|path| add_to(number, path));
+    }
+    let name = path.to_string_lossy();
+    for byte in name.bytes().chain(fs::read(path).map_err(told)?) {
+        *number = (*number ^ u64::from(byte)).wrapping_mul(FNV_PRIME);
+    }
+    Ok(())
 }
 
 /// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.

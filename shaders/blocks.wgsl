@@ -33,7 +33,7 @@ fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let cell = nearest_cell(particle.position);
     let slot = block_of(cell) * 4u;
     let speed2 = dot(particle.velocity, particle.velocity);
-    let energy = 0.5 * gases[gas_of(particle.tag)].mass * speed2 * BLOCK_ENERGY_SCALE;
+    let energy = 0.5 * gases[kind_of(particle.tag)].mass * speed2 * BLOCK_ENERGY_SCALE;
     if (energy >= 4.29e9) {
         atomicAdd(&counters[TALLY_OVERFLOW], 1u);
         return;

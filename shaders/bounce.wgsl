@@ -127,7 +127,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     } else if (ORIFICES) {
         time = birth_time(id_of(particle.tag));
     }
-    let gas = gases[gas_of(particle.tag)];
+    let gas = gases[kind_of(particle.tag)];
     var bounces = 0u;
     var end = step.dt;
     // Velocity of the wall that was hit last.

@@ -97,8 +97,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let time = bitcast<f32>(choices[pair.x].y);
     var i = sorted[pair.x];
     var j = sorted[pair.y];
-    let mass_i = gases[gas_of(i.tag)].mass;
-    let mass_j = gases[gas_of(j.tag)].mass;
+    let mass_i = gases[kind_of(i.tag)].mass;
+    let mass_j = gases[kind_of(j.tag)].mass;
     let mu = mass_i * mass_j / (mass_i + mass_j);
     let g = j.velocity - i.velocity;
     let miss = between(i.position, j.position) + g * time;

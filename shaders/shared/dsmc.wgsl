@@ -101,8 +101,8 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
             continue;
         }
         let draw2 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 1u, part), key);
-        let mass_i = gases[gas_of(i.tag)].mass;
-        let mass_j = gases[gas_of(j.tag)].mass;
+        let mass_i = gases[kind_of(i.tag)].mass;
+        let mass_j = gases[kind_of(j.tag)].mass;
         let mu = mass_i * mass_j / (mass_i + mass_j);
         var draw3 = vec4<u32>(0u);
         if (SPIN) {

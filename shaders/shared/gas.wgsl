@@ -9,3 +9,10 @@ struct Gas {
     inverse_beta: f32,
     inverse_beta1: f32,
 }
+
+override GASES: u32;
+
+// Of a particle by its tag; of one gas alone no tag is asked.
+fn kind_of(tag: u32) -> u32 {
+    return select(gas_of(tag), 0u, GASES == 1u);
+}

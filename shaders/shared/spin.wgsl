@@ -21,7 +21,7 @@ fn exchanged(i: Particle, j: Particle, mu: f32, speed: f32, draw: vec4<u32>, dra
     if (SPIN) {
         let before = 0.5 * mu * speed * speed;
         var energy = before;
-        let gas_i = gases[gas_of(i.tag)];
+        let gas_i = gases[kind_of(i.tag)];
         if (unit_interval(draw.x) < gas_i.exchange) {
             let sum = energy + i.spin;
             let own = vec2<f32>(gas_i.inverse_beta, gas_i.inverse_beta1);
@@ -30,7 +30,7 @@ fn exchanged(i: Particle, j: Particle, mu: f32, speed: f32, draw: vec4<u32>, dra
             after.spin_i = min(sum * share, sum);
             energy = sum - after.spin_i;
         }
-        let gas_j = gases[gas_of(j.tag)];
+        let gas_j = gases[kind_of(j.tag)];
         if (unit_interval(draw.w) < gas_j.exchange) {
             let sum = energy + j.spin;
             let own = vec2<f32>(gas_j.inverse_beta, gas_j.inverse_beta1);
@@ -55,8 +55,8 @@ struct Pair {
 fn deflected(before_i: Particle, before_j: Particle, mu: f32, change: vec3<f32>, after: Exchanged) -> Pair {
     var i = before_i;
     var j = before_j;
-    let mass_i = gases[gas_of(i.tag)].mass;
-    let mass_j = gases[gas_of(j.tag)].mass;
+    let mass_i = gases[kind_of(i.tag)].mass;
+    let mass_j = gases[kind_of(j.tag)].mass;
     i.velocity = before_i.velocity - (mu / mass_i) * change;
     j.velocity = before_j.velocity + (mu / mass_j) * change;
     if (SPIN) {
@@ -66,9 +66,9 @@ fn deflected(before_i: Particle, before_j: Particle, mu: f32, change: vec3<f32>,
         let residual = (i.spin - after.spin_i) + (j.spin - after.spin_j) - gained;
         i.spin = after.spin_i;
         j.spin = after.spin_j;
-        if (gases[gas_of(i.tag)].exchange > 0.0 && i.spin + residual >= 0.0) {
+        if (gases[kind_of(i.tag)].exchange > 0.0 && i.spin + residual >= 0.0) {
             i.spin += residual;
-        } else if (gases[gas_of(j.tag)].exchange > 0.0 && j.spin + residual >= 0.0) {
+        } else if (gases[kind_of(j.tag)].exchange > 0.0 && j.spin + residual >= 0.0) {
             j.spin += residual;
         }
     }

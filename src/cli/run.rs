@@ -84,12 +84,13 @@ pub fn launch(
             tracing::info!("{}", choice.summary());
         }
     }
+    devices::agree_on_run(model, comm)?;
     if model.plan.method == Method::ControlVolume {
         // Nothing to share out: the first rank does it.
         return if comm.rank() == 0 { uniform::run(settings, quiet, started) } else { Ok(()) };
     }
     let device = devices::open(execution.gpu.as_deref(), comm)?;
-    devices::agree(&device, model, comm)?;
+    devices::agree_on_device(&device, comm)?;
     if !quiet {
         say(&heading(device.adapter(), model))?;
         say(&devices::map(&device, comm)?)?;
@@ -122,11 +123,15 @@ pub fn launch(
         done
     })?;
     // The cause rather than what the others heard of it.
-    let (heard, mut causes): (Vec<_>, Vec<_>) = results.into_iter().partition(|result| {
-        matches!(result, Ok(()) | Err(CliError::Rank(_)) | Err(CliError::Simulation(SimulationError::Rank(_))))
-    });
-    causes.extend(heard.into_iter().filter(Result::is_err));
-    causes.into_iter().next().unwrap_or(Ok(()))
+    let heard = |error: &CliError| matches!(error, CliError::Rank(_) | CliError::Simulation(SimulationError::Rank(_)));
+    let failed = results.into_iter().enumerate().filter_map(|(rank, result)| Some((rank, result.err()?)));
+    match failed.min_by_key(|(rank, error)| (heard(error), *rank)) {
+        None => Ok(()),
+        Some((rank, error)) => {
+            tracing::error!("subdomain {rank} of {subdomains} ended the run");
+            Err(error)
+        }
+    }
 }
 
 /// What all ranks of this process share.

@@ -8,7 +8,7 @@
 //! v^2/2kT), i.e. m v^2/2kT is Gamma(3/2); tangential components are normal, spin is Gamma(zeta/2) kT (or as its
 //! modes have it, see [`Species`]), all at the stagnation temperature T0 of the moment: the mean energy is exactly the
 //! enthalpy h = (5 + zeta)/2 kT0.
-//! With a jet of Mach number M, a flux Maxwellian drifts at u = M sqrt(gamma R Ts / M_mix) with
+//! With a jet a flux Maxwellian drifts at u, which is given, or by the Mach number M sqrt(gamma R Ts / M_mix), with
 //! cp Ts + u^2/2 = cp T0, its direction uniform over the solid angle of the cone.
 //!
 //! **Energy debt.** Each orifice carries the sum of h - e over its particles. A particle pays a fraction of
@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::{FlowIntegral, value_held};
 use super::{Draws, Particle, Purpose, Species, thermo};
-use crate::scene::{GAS_CONSTANT, Jet, Mixture, Orifice};
+use crate::scene::{GAS_CONSTANT, Jet, JetSpeed, Mixture, Orifice};
 
 /// Share of the debt that one particle pays.
 const DEBT_SHARE: f64 = 0.125;
@@ -298,8 +298,38 @@ fn effusing_velocity(temperature: f64, gas: &Species, draws: &mut Draws) -> [f64
     [c0 * (2.0 * draws.gamma(1.5)).sqrt(), c0 * draws.normal(), c0 * draws.normal()]
 }
 
+/// The drift of a jet, m/s, and its static temperature, K: h(Ts) + u^2/2 = h(T0). `None` if a gas of that stagnation
+/// temperature cannot be so fast.
+pub fn jet_state(speed: JetSpeed, stagnation: f64, mixture: &Mixture, gases: &[Species]) -> Option<[f64; 2]> {
+    let molar_mass = thermo::molar_mass(mixture, gases);
+    match speed {
+        JetSpeed::Mach(mach) => {
+            let temperature = temperature_at_mach(stagnation, mach, mixture, gases);
+            let gamma = thermo::heat_capacity_ratio(mixture, gases, temperature);
+            Some([mach * (gamma * GAS_CONSTANT * temperature / molar_mass).sqrt(), temperature])
+        }
+        JetSpeed::Velocity(velocity) => {
+            let left = thermo::molar_enthalpy(mixture, gases, stagnation) - 0.5 * molar_mass * velocity * velocity;
+            if left <= 0.0 {
+                return None;
+            }
+            let excess = |t: f64| thermo::molar_enthalpy(mixture, gases, t) - left;
+            let slope = |t: f64| thermo::molar_cv(mixture, gases, t) + GAS_CONSTANT;
+            Some([velocity, thermo::root(excess, slope, stagnation)])
+        }
+    }
+}
+
+/// The Mach number of such a jet; infinite where there is none.
+pub fn jet_mach(speed: JetSpeed, stagnation: f64, mixture: &Mixture, gases: &[Species]) -> f64 {
+    jet_state(speed, stagnation, mixture, gases).map_or(f64::INFINITY, |[drift, temperature]| {
+        let gamma = thermo::heat_capacity_ratio(mixture, gases, temperature);
+        drift / (gamma * GAS_CONSTANT * temperature / thermo::molar_mass(mixture, gases)).sqrt()
+    })
+}
+
 /// Of a flow at a Mach number, K: h(Ts) + u^2/2 = h(T0) with u^2 = Ma^2 gamma R Ts / M.
-fn static_temperature(stagnation: f64, mach: f64, mixture: &Mixture, gases: &[Species]) -> f64 {
+fn temperature_at_mach(stagnation: f64, mach: f64, mixture: &Mixture, gases: &[Species]) -> f64 {
     if thermo::is_constant(mixture, gases) {
         let gamma = thermo::heat_capacity_ratio(mixture, gases, stagnation);
         return stagnation / (1.0 + 0.5 * (gamma - 1.0) * mach * mach);
@@ -328,10 +358,9 @@ impl Source {
         gases: &[Species],
         draws: &mut Draws,
     ) -> ([f64; 3], f64) {
-        let temperature = static_temperature(stagnation, jet.mach, &self.orifice.mixture, gases);
-        let gamma = thermo::heat_capacity_ratio(&self.orifice.mixture, gases, temperature);
-        let molar_mass = thermo::molar_mass(&self.orifice.mixture, gases);
-        let drift = jet.mach * (gamma * GAS_CONSTANT * temperature / molar_mass).sqrt();
+        // The plan has refused a jet that is too fast at some time.
+        let [drift, temperature] =
+            jet_state(jet.speed, stagnation, &self.orifice.mixture, gases).unwrap_or([0.0, stagnation]);
         let cosine = 1.0 - draws.uniform() * (1.0 - libm::cos(jet.cone_angle));
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let around = 2.0 * std::f64::consts::PI * draws.uniform();

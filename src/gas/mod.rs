@@ -27,7 +27,7 @@ pub use curve::{
     value_held, value_inside, velocity,
 };
 pub use discharge::{CONTINUUM_COEFFICIENT, Side, exchange};
-pub use inflow::{Inflow, InflowState, InflowStateError, Newborn};
+pub use inflow::{Inflow, InflowState, InflowStateError, Newborn, jet_mach, jet_state};
 pub use initial::{FillError, Filling, fill};
 pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;

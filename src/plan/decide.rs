@@ -12,9 +12,9 @@ use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
 use super::warnings::{Decided, warnings};
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
-use crate::gas::{Species, kinetics};
+use crate::gas::{Species, jet_mach, kinetics};
 use crate::geometry::Grid;
-use crate::scene::{Method, Scene, Switch};
+use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
 pub const LADDER_LEVELS: u32 = 12;
@@ -32,6 +32,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let method = method(scene, &mut reasons);
     let species = species(scene, measured, &mut reasons)?;
     motion::check(scene, method)?;
+    jets(scene, &species)?;
     switch(scene, method, &mut reasons)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
@@ -157,7 +158,24 @@ fn switch(scene: &Scene, method: Method, reasons: &mut Vec<Reason>) -> Result<()
     Ok(())
 }
 
-/// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them.
+/// A jet of given velocity must be possible whenever its gas flows.
+fn jets(scene: &Scene, species: &[Species]) -> Result<(), PlanError> {
+    for orifice in &scene.orifices {
+        let Some(Jet { speed: JetSpeed::Velocity(velocity), .. }) = orifice.jet else { continue };
+        let speed = JetSpeed::Velocity(velocity);
+        // The coldest decides; a temperature is linear between the points of its curve.
+        let temperature = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+        let mach = jet_mach(speed, temperature, &orifice.mixture, species);
+        if mach > FASTEST_JET {
+            let (orifice, limit) = (orifice.name.clone(), FASTEST_JET);
+            return Err(PlanError::JetTooFast { orifice, velocity, temperature, mach, limit });
+        }
+    }
+    Ok(())
+}
+
+/// What the scene lacks: `subdomain::Features` has the same flags, and compiles nothing for them (of gases the kernels know
+/// the number).
 fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
     let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
@@ -166,7 +184,7 @@ fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, cap
         ("a diameter that follows the local density", capped || method != Method::ClosestApproach),
         ("spin energy", present().any(|gas| gas.species.has_spin())),
         ("heat capacities that depend on the temperature", present().any(|gas| !gas.species.is_constant())),
-        ("a second gas", present().count() > 1),
+        ("a second gas", gases.len() > 1),
         ("inflow", injected > 0),
         ("measured surfaces", !scene.surfaces.is_empty()),
         ("walls that are no mirrors", coated),

@@ -21,6 +21,12 @@ pub enum PlanError {
     #[error("chamber `{chamber}` has a volume of {volume} m3")]
     #[diagnostic(help("its region must overlap the gas space enclosed by the walls"))]
     NoVolume { chamber: String, volume: f64 },
+    #[error(
+        "orifice `{orifice}`: a jet of {} m/s at a stagnation temperature of {} K would have Mach number {}; {} is the largest",
+        significant(*velocity), significant(*temperature), significant(*mach), significant(*limit)
+    )]
+    #[diagnostic(help("give the jet a smaller `velocity`, or a `mach`, or the gas a higher `temperature`"))]
+    JetTooFast { orifice: String, velocity: f64, temperature: f64, mach: f64, limit: f64 },
     #[error("{volumes} volumes were measured for {chambers} chambers")]
     Volumes { volumes: usize, chambers: usize },
     #[error("{particles} particles are more than the {limit} that an id can name")]

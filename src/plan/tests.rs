@@ -427,3 +427,23 @@ fn the_diameter_is_capped_where_gas_is_dense() {
     });
     assert!(matches!(rigid, Err(PlanError::CapOf { method: "hard-sphere" })));
 }
+
+/// A jet whose velocity is beyond Mach 20 in its coldest gas is refused, a slower one is planned.
+#[test]
+fn jets_are_no_faster_than_their_gas_can_be() {
+    let jet = |velocity| {
+        planned(|scene, _| {
+            scene.orifices[0].jet = Some(Jet { speed: JetSpeed::Velocity(velocity), cone_angle: 0.0 });
+            scene.orifices[0].temperature = Curve { points: vec![[0.0, 700.0], [0.05, 400.0]] };
+        })
+    };
+    // sqrt(2 cp T0 / M) = 911.7 m/s at 400 K; Mach 20 is 905.6 m/s.
+    assert!(jet(905.0).is_ok());
+    let refused = jet(907.0);
+    assert!(
+        matches!(&refused, Err(PlanError::JetTooFast { orifice, temperature: 400.0, mach, .. })
+            if orifice == "inflator" && *mach > 20.0),
+        "{refused:?}"
+    );
+    assert!(matches!(jet(2000.0), Err(PlanError::JetTooFast { mach: f64::INFINITY, .. })));
+}

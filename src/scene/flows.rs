@@ -6,10 +6,11 @@ use super::names::Names;
 use super::numbers::{bounded, direction, not_negative, point, positive, show};
 use super::raw::{RawJet, RawOrifice};
 use super::raw_values::{At, NumberOr, Numbers};
-use super::types::{Curve, Jet, Orifice, UnitSystem};
+use super::types::{Curve, Jet, JetSpeed, Orifice, UnitSystem};
 use super::units::Quantity;
 
-const FASTEST_JET: f64 = 20.0;
+/// Largest Mach number of a jet.
+pub const FASTEST_JET: f64 = 20.0;
 
 pub(super) fn orifice(raw: &At<RawOrifice>, gases: &Names, units: UnitSystem) -> Result<Orifice, Problem> {
     let orifice = &raw.value;
@@ -37,7 +38,7 @@ pub(super) fn orifice(raw: &At<RawOrifice>, gases: &Names, units: UnitSystem) ->
             }
         },
         mixture: mixture(&orifice.gas, gases)?,
-        jet: orifice.jet.as_ref().map(|jet| self::jet(&jet.value)).transpose()?,
+        jet: orifice.jet.as_ref().map(|jet| self::jet(jet, units)).transpose()?,
     })
 }
 
@@ -82,10 +83,21 @@ pub(super) fn curve(
     Ok(Curve { points })
 }
 
-fn jet(raw: &RawJet) -> Result<Jet, Problem> {
-    let mach = bounded(&raw.mach, Quantity::Pure, UnitSystem::Si, "a number above 0 and at most 20", |mach| {
-        mach > 0.0 && mach <= FASTEST_JET
-    })?;
+fn jet(raw: &At<RawJet>, units: UnitSystem) -> Result<Jet, Problem> {
+    let keys = "exactly one of `mach`, `velocity`";
+    let (raw, span) = (&raw.value, &raw.span);
+    let speed = match (&raw.mach, &raw.velocity) {
+        (Some(mach), None) => {
+            JetSpeed::Mach(bounded(mach, Quantity::Pure, UnitSystem::Si, "a number above 0 and at most 20", |mach| {
+                mach > 0.0 && mach <= FASTEST_JET
+            })?)
+        }
+        (None, Some(velocity)) => JetSpeed::Velocity(positive(velocity, Quantity::Velocity, units)?),
+        (Some(_), Some(velocity)) => {
+            return Err(Problem::value(&velocity.span, "both `mach` and `velocity`", keys));
+        }
+        (None, None) => return Err(Problem::value(span, "neither `mach` nor `velocity`", keys)),
+    };
     let degrees = match &raw.cone_angle {
         None => 0.0,
         Some(angle) => {
@@ -94,5 +106,5 @@ fn jet(raw: &RawJet) -> Result<Jet, Problem> {
             })?
         }
     };
-    Ok(Jet { mach, cone_angle: degrees.to_radians() })
+    Ok(Jet { speed, cone_angle: degrees.to_radians() })
 }

@@ -29,6 +29,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use errors::{InvalidScene, Problem, SceneError};
+pub use flows::FASTEST_JET;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use types::*;

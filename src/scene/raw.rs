@@ -296,12 +296,14 @@ pub struct RawOrifice {
     pub jet: Option<At<RawJet>>,
 }
 
-/// A drifting inflow.
+/// A drifting inflow; exactly one of `mach`, `velocity`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawJet {
     /// Mach number, above 0 and at most 20.
-    pub mach: At<f64>,
+    pub mach: Option<At<f64>>,
+    /// Above 0, and at no time beyond Mach 20.
+    pub velocity: Option<At<f64>>,
     /// Half angle of the cone over which the direction is spread, degrees, 0 to below 90; 0 unless given.
     pub cone_angle: Option<At<f64>>,
 }

@@ -222,10 +222,18 @@ pub struct Orifice {
     pub jet: Option<Jet>,
 }
 
+/// At what speed a jet drifts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum JetSpeed {
+    Mach(f64),
+    /// m/s.
+    Velocity(f64),
+}
+
 /// A drifting inflow; without it the orifice emits a Maxwell speed distribution (specification, section 4).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet {
-    pub mach: f64,
+    pub speed: JetSpeed,
     /// Half angle of the cone over which the drift direction is spread, rad.
     pub cone_angle: f64,
 }

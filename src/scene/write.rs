@@ -52,8 +52,12 @@ pub fn to_toml(scene: &Scene) -> String {
         out.curve("temperature", &orifice.temperature);
         out.entry("gas", &mixture_table(&orifice.mixture, &scene.gases));
         if let Some(jet) = &orifice.jet {
-            let (mach, angle) = (shown(jet.mach), shown(degrees(jet.cone_angle)));
-            out.entry("jet", &format!("{{ mach = {mach}, cone_angle = {angle} }}"));
+            let speed = match jet.speed {
+                JetSpeed::Mach(mach) => format!("mach = {}", shown(mach)),
+                JetSpeed::Velocity(velocity) => format!("velocity = {}", shown(velocity)),
+            };
+            let angle = shown(degrees(jet.cone_angle));
+            out.entry("jet", &format!("{{ {speed}, cone_angle = {angle} }}"));
         }
     }
     for probe in &scene.probes {

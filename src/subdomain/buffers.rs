@@ -409,7 +409,7 @@ mod tests {
             assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, 24), "{collisions} {rounds}");
         }
         let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
-        let some = 2 * u64::from(CHUNK);
+        let some = 64 * CHUNK;
         assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * BYTES_PER_BIN);
     }
 }

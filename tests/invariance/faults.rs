@@ -22,6 +22,8 @@ enum Fault {
     AlterUpdates,
     /// The particles of one message are missing.
     LoseParticles,
+    /// All particles come as slots that hold none.
+    EmptyParticles,
     /// Its first update names a ghost that is not there.
     AlterId,
     /// It never comes.
@@ -57,17 +59,23 @@ impl Faulty<'_> {
         let fits = match self.fault {
             Fault::None => false,
             Fault::LoseMessage => true,
-            Fault::LoseParticles => !updates,
+            Fault::LoseParticles | Fault::EmptyParticles => !updates,
             _ => updates,
         };
         if !fits {
             return Some(message);
         }
-        self.done.set(!matches!(self.fault, Fault::LoseUpdates | Fault::AlterUpdates));
+        let all = [Fault::LoseUpdates, Fault::AlterUpdates, Fault::EmptyParticles];
+        self.done.set(!all.contains(&self.fault));
         match self.fault {
             Fault::LoseMessage => return None,
             Fault::LoseParticles | Fault::LoseUpdates => drop(message.drain(..message.len() - SEAL)),
             Fault::AlterUpdates => message.chunks_exact_mut(UPDATE).for_each(|update| update[VELOCITY] ^= 1),
+            Fault::EmptyParticles => {
+                let records = message.len() - SEAL;
+                let particles = message[..records].chunks_exact_mut(size_of::<GpuParticle>());
+                particles.for_each(|particle| particle[TAG..TAG + 4].fill(0xff));
+            }
             Fault::AlterId => message[TAG] ^= 1,
             Fault::None => {}
         }
@@ -154,6 +162,9 @@ fn a_spoilt_message_is_seen() {
         let found = outcome(fault);
         assert!(matches!(&found, Ok(Some(_)) | Err(_)), "{fault:?}: {found:?}");
     }
+    // So many are missing that no run goes on.
+    let fewer = outcome(Fault::EmptyParticles);
+    assert!(fewer.is_err(), "{fewer:?}");
     let missing = outcome(Fault::AlterId);
     assert!(missing.as_ref().is_err_and(|error| error.contains("updates of ghosts")), "{missing:?}");
     let stuck = outcome(Fault::LoseMessage);

@@ -271,6 +271,7 @@ impl Rig {
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(gases);
         self.uniform("gases", &table);
+        self.constant("GASES", gases.len() as f64);
     }
 
     /// Sets one counter, the others as they are.

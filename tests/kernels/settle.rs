@@ -335,3 +335,20 @@ fn a_wall_between_a_pair_stops_the_collision() {
     // The check can fail: both happen.
     assert!(blocked > 5 && met > 100, "{blocked} blocked, {met} met");
 }
+
+/// Where there is one gas only, kernels do not look at tags for it: nothing else changes.
+#[test]
+fn one_gas_alone_is_the_first_of_the_table() {
+    let mut stream = Stream::new(71);
+    let mut cloud = Cloud::new(&mut stream, World::plain(), 1000, 1.0);
+    let settled = |cloud: &Cloud, gases: f64| {
+        let pairs = meetings(cloud);
+        let mut rig = prepared(cloud, &pairs, true, false);
+        rig.constant("GASES", gases);
+        rig.run("settle", pairs.len());
+        rig.get::<u32>("sorted", 8 * cloud.particles.len())
+    };
+    assert_ne!(settled(&cloud, 1.0), settled(&cloud, 2.0), "of two gases tags are needed");
+    cloud.particles.iter_mut().for_each(|particle| particle.tag &= 0x0fff_ffff);
+    assert_eq!(settled(&cloud, 1.0), settled(&cloud, 2.0));
+}

@@ -13,6 +13,7 @@ mod equipartition;
 mod filling;
 mod hard_sphere;
 mod heat_curve;
+mod long_steps;
 mod mixing;
 mod orifice;
 mod piston;

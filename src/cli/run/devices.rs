@@ -1,5 +1,6 @@
 //! Which device each rank takes, and what all must have in common.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::gpu::{Device, adapters};
@@ -18,52 +19,50 @@ pub fn open(asked: Option<&str>, comm: &dyn Communicator) -> Result<Device, CliE
     let known = adapters();
     let gpus = known.iter().filter(|adapter| !adapter.is_cpu()).count();
     let usable = if gpus > 0 { gpus } else { known.len().min(1) };
-    let Some((index, shared)) = choose_device(comm.node_rank(), comm.node_size(), usable) else {
-        return Ok(Device::open(None)?);
-    };
-    if shared && comm.node_rank() == index {
-        tracing::warn!(
-            "{} ranks of this machine share {usable} device{}: adapter {index} serves several",
-            comm.node_size(),
-            if usable == 1 { "" } else { "s" },
-        );
-    }
-    Ok(Device::open(Some(&index.to_string()))?)
+    // `map` tells which devices serve several.
+    let index = choose_device(comm.node_rank(), usable);
+    Ok(Device::open(index.map(|index| index.to_string()).as_deref())?)
 }
 
-/// All ranks must be the same program on the same scene, and their adapters of one model and driver: else their
-/// bits would differ.
-pub fn agree(device: &Device, model: &Model, comm: &dyn Communicator) -> Result<(), CliError> {
-    let info = &device.adapter().info;
+/// All ranks must be the same program on the same scene. To be asked before any rank takes a way of its own.
+pub fn agree_on_run(model: &Model, comm: &dyn Communicator) -> Result<(), CliError> {
     let facts = [
         ("version of the program", env!("CARGO_PKG_VERSION").to_owned()),
+        ("build of the program", env!("CORPUSCLE_SOURCE").to_owned()),
         ("scene", to_toml(&model.scene)),
         ("plan", model.plan.to_toml()?),
-        ("adapter", info.name.clone()),
-        ("driver", format!("{} {}", info.driver, info.driver_info)),
     ];
     Ok(ranks::agree(comm, &facts)?)
 }
 
-/// A line for each rank: its machine's adapter. Collective; empty for a rank alone.
+/// Their adapters must be of one model and driver: else their bits would differ.
+pub fn agree_on_device(device: &Device, comm: &dyn Communicator) -> Result<(), CliError> {
+    let info = &device.adapter().info;
+    let facts = [("adapter", info.name.clone()), ("driver", format!("{} {}", info.driver, info.driver_info))];
+    Ok(ranks::agree(comm, &facts)?)
+}
+
+/// A line for each rank: its machine's adapter. Warns of adapters that serve several ranks. Collective; empty for a rank
+/// alone.
 pub fn map(device: &Device, comm: &dyn Communicator) -> Result<String, CliError> {
     if comm.size() == 1 {
         return Ok(String::new());
     }
     let adapter = device.adapter();
-    let own = format!(
-        "{}, rank {} of {} there: adapter {} {} {}",
-        host(),
-        comm.node_rank(),
-        comm.node_size(),
-        adapter.index,
-        adapter.info.name,
-        adapter.info.device_pci_bus_id,
-    );
-    let mut text = String::new();
+    let place = format!("{}, rank {} of {} there", host(), comm.node_rank(), comm.node_size());
+    let taken = format!("adapter {} {} {}", adapter.index, adapter.info.name, adapter.info.device_pci_bus_id);
+    let own = [host(), place, taken].join("\n");
+    let (mut text, mut served) = (String::new(), BTreeMap::<(String, String), usize>::new());
     for (rank, line) in comm.gather(own.into_bytes())?.unwrap_or_default().into_iter().enumerate() {
+        let line = String::from_utf8_lossy(&line).into_owned();
+        let mut parts = line.split('\n').map(|part| part.trim_end().to_owned());
+        let [host, place, taken] = std::array::from_fn(|_| parts.next().unwrap_or_default());
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "rank {rank}: {}", String::from_utf8_lossy(&line).trim_end());
+        let _ = writeln!(text, "rank {rank}: {place}: {taken}");
+        *served.entry((host, taken)).or_default() += 1;
+    }
+    for ((host, taken), ranks) in served.into_iter().filter(|(_, ranks)| *ranks > 1) {
+        tracing::warn!("{ranks} ranks of {host} share {taken}");
     }
     Ok(text)
 }

@@ -70,12 +70,13 @@ fn mass_is_within_half_a_particle() {
 /// Energy: exactly the enthalpy at the temperatures of entry, for spin, for speed, for mixtures and jets.
 #[test]
 fn energy_is_the_enthalpy_injected() {
-    let jet = |mach| Some(Jet { mach, cone_angle: 0.3 });
+    let jet = |mach| Some(Jet { speed: JetSpeed::Mach(mach), cone_angle: 0.3 });
     for orifices in [
         vec![orifice(vec![(0, 1.0)], None)],
         vec![orifice(vec![(1, 1.0)], None)],
         vec![orifice(vec![(0, 0.5), (1, 0.2), (2, 0.3)], None), orifice(vec![(2, 1.0)], jet(0.0))],
         vec![orifice(vec![(0, 1.0)], jet(2.5)), orifice(vec![(1, 1.0)], jet(1.0))],
+        vec![orifice(vec![(0, 1.0)], Some(Jet { speed: JetSpeed::Velocity(600.0), cone_angle: 0.3 }))],
     ] {
         let mut inflow = inflow(&orifices);
         // Halfway the debt accounts for the difference.
@@ -149,7 +150,7 @@ fn default_speeds_are_maxwellian() {
 /// A fast jet flies at its drift speed: <v_n> close to u cos, and static temperature below stagnation.
 #[test]
 fn jets_drift() {
-    let jet = Jet { mach: 6.0, cone_angle: 1e-3 };
+    let jet = Jet { speed: JetSpeed::Mach(6.0), cone_angle: 1e-3 };
     let mut source = orifice(vec![(0, 1.0)], Some(jet));
     source.temperature = Curve { points: vec![[0.0, 700.0]] };
     let newborns = inflow(&[source.clone()]).take_until(0.1);
@@ -168,7 +169,7 @@ fn jets_drift() {
 /// However often and wherever a run is cut, an inflow built anew and restored lets exactly the same particles in.
 #[test]
 fn a_restored_inflow_goes_on_to_the_bit() {
-    let jet = Some(Jet { mach: 1.5, cone_angle: 0.4 });
+    let jet = Some(Jet { speed: JetSpeed::Mach(1.5), cone_angle: 0.4 });
     let orifices = [
         orifice(vec![(0, 0.7), (1, 0.3)], None),
         orifice(vec![(1, 1.0)], jet),
@@ -217,4 +218,24 @@ fn a_foreign_state_of_the_inflow_is_refused() {
     broken.debts[0] = f64::NAN;
     assert_eq!(own.restore(&broken), Err(InflowStateError::Energy));
     assert_eq!(own, before);
+}
+
+/// A jet of a velocity is the jet of its Mach number, whatever the heat capacities; no gas is faster than all its enthalpy
+/// makes it.
+#[test]
+fn a_jet_of_a_velocity_is_that_of_its_mach_number() {
+    for mixture in [vec![(0, 1.0)], vec![(0, 0.5), (1, 0.2), (2, 0.3)], vec![(2, 1.0)]].map(Mixture) {
+        for mach in [0.2, 1.0, 6.0] {
+            let [drift, temperature] = jet_state(JetSpeed::Mach(mach), 700.0, &mixture, &gases()).unwrap();
+            let speed = JetSpeed::Velocity(drift);
+            let [same, found] = jet_state(speed, 700.0, &mixture, &gases()).unwrap();
+            assert!(same == drift && (found / temperature - 1.0).abs() < 1e-9, "{found} {temperature}");
+            assert!((jet_mach(speed, 700.0, &mixture, &gases()) / mach - 1.0).abs() < 1e-9);
+        }
+        let enthalpy = thermo::molar_enthalpy(&mixture, &gases(), 700.0) / thermo::molar_mass(&mixture, &gases());
+        let fastest = (2.0 * enthalpy).sqrt();
+        assert_eq!(jet_state(JetSpeed::Velocity(1.001 * fastest), 700.0, &mixture, &gases()), None);
+        assert_eq!(jet_mach(JetSpeed::Velocity(1.001 * fastest), 700.0, &mixture, &gases()), f64::INFINITY);
+        assert!(jet_mach(JetSpeed::Velocity(0.999 * fastest), 700.0, &mixture, &gases()) > 20.0);
+    }
 }

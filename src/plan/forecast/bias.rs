@@ -3,7 +3,7 @@
 
 use super::course::{Course, Moment};
 use crate::gas::{State, kinetics, value_inside};
-use crate::scene::{Method, Orifice};
+use crate::scene::{Jet, Method, Orifice};
 
 /// f at which the specification's rules of resolution are made (section 6).
 const USUAL_OCCUPANCY: f64 = 0.12;
@@ -107,11 +107,9 @@ fn thrust_of(orifice: &Orifice, course: &Course, time: f64) -> f64 {
     let temperature = crate::gas::value_held(&orifice.temperature, time);
     let thermal = kinetics::thermal_square(temperature, molar_mass);
     // Without a jet normal speeds have the Maxwell distribution of speeds: their mean is cbar.
-    let speed = match &orifice.jet {
-        Some(jet) => {
-            let gamma = crate::gas::thermo::heat_capacity_ratio(&orifice.mixture, gases, temperature);
-            jet.mach * (gamma * thermal / (1.0 + 0.5 * (gamma - 1.0) * jet.mach * jet.mach)).sqrt()
-        }
+    let drift = |jet: &Jet| crate::gas::jet_state(jet.speed, temperature, &orifice.mixture, gases);
+    let speed = match orifice.jet.as_ref().and_then(drift) {
+        Some([drift, _]) => drift,
         None => kinetics::mean_speed(thermal),
     };
     value_inside(&orifice.mass_flow, time) * speed

@@ -26,7 +26,7 @@ prop_compose! {
         friction in prop::option::of(0.0..=1.0f64),
         state in (1e-3..1e9f64, 1.0..1e4f64),
         flow in prop::collection::vec((1e-6..1.0f64, 0.0..10.0f64), 2..9),
-        jet in prop::option::of((1e-3..20.0f64, 0.0..89.9f64)),
+        jet in prop::option::of((prop::bool::ANY, 1e-3..20.0f64, 0.0..89.9f64)),
         model in (prop::option::of(1u64..1 << 28), prop::option::of(1e-9..1.0f64), prop::option::of(1u32..9)),
         cap in prop::option::of(prop::option::of(1e-3..10.0f64)),
         output in (1u32..1_000_000, 0u32..100_000),
@@ -69,8 +69,9 @@ prop_compose! {
              temperature = {:?}\ngas = {mixture}\n",
             edge[0], points.join(", "), state.1
         );
-        if let Some((mach, angle)) = jet {
-            text += &format!("jet = {{ mach = {mach:?}, cone_angle = {angle:?} }}\n");
+        if let Some((mach, speed, angle)) = jet {
+            let key = if mach { "mach" } else { "velocity" };
+            text += &format!("jet = {{ {key} = {speed:?}, cone_angle = {angle:?} }}\n");
         }
         text += "[[surface]]\nname = 's'\nwall = 'box'\nface = '-z'\n[model]\ncollision_number = 20\n";
         if let Some(n) = model.0 { text += &format!("particles = {n}\n"); }

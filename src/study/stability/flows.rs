@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::gas::CONTINUUM_COEFFICIENT;
 use crate::gpu::Device;
-use crate::scene::{DiameterCap, Jet, Method};
+use crate::scene::{DiameterCap, Jet, JetSpeed, Method};
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::study::verify::filling::{energy_error, enthalpy};
@@ -140,7 +140,7 @@ pub(super) fn mach(device: &Device, method: Method, mach: f64, effort: Effort) -
     scene.output.rows = 10;
     scene.output.snapshots = 0;
     for orifice in &mut scene.orifices {
-        orifice.jet = Some(Jet { mach, cone_angle: CONE });
+        orifice.jet = Some(Jet { speed: JetSpeed::Mach(mach), cone_angle: CONE });
     }
     let model = model_from("jet", scene)?;
     let run = run(device, &model, Options::default())?;

@@ -5,7 +5,8 @@
 //! reference), fixed before any run; a run must know its quantity three times better than that, or it says nothing and
 //! counts as a failure. Seeds are fixed, so an outcome is the same every time on one adapter.
 //!
-//! The same functions serve the tests, which also show that each check can fail.
+//! The same functions serve the tests (`tests/verification/`), which also show of the cases that they run that the check can
+//! fail.
 
 mod at_once;
 pub mod collisions;

@@ -1,0 +1,30 @@
+//! Law: a time step that is far too long makes a run wrong, never one that loses something. Held at up to four collision
+//! times, every method that collides keeps particles, mass and energy, has finite states, and was warned of at planning.
+
+use corpuscle::output::AuditLimits;
+use corpuscle::simulation::Options;
+
+use crate::equilibrium_box::EquilibriumBox;
+use crate::whole_run::run;
+
+#[test]
+fn steps_that_are_too_long_lose_nothing() {
+    for method in ["closest-approach", "hard-sphere", "cell"] {
+        for step_over_tau in [0.1, 1.0, 4.0] {
+            let gas = EquilibriumBox { method, step_over_tau, steps: 96, ..EquilibriumBox::default() };
+            let model = gas.model().expect("a box");
+            let run = run(&model, Options { hold_step: true, ..Options::default() });
+            let audit = &run.outcome.audit;
+            let case = format!("{method} at x = {step_over_tau}");
+            println!("{case}: energy {:+.1e}, {} collisions", audit.energy_error(), run.outcome.collisions);
+            assert_eq!(run.outcome.steps, 96, "{case}: the step was not held");
+            assert!(run.outcome.collisions > 0, "{case}");
+            assert_eq!((audit.particles_inside, audit.particles_outside), (1000, 0), "{case}");
+            assert_eq!(audit.verdict(&AuditLimits::default()), Vec::<String>::new(), "{case}");
+            let states = run.outcome.particles.iter();
+            assert!(states.flat_map(|p| p.velocity).chain([audit.energy_end as f32]).all(f32::is_finite), "{case}");
+            let warned = model.plan.warnings.iter().any(|warning| warning.contains("the time step"));
+            assert_eq!(warned, step_over_tau > 2.0 || method != "cell" && step_over_tau > 0.5, "{case}");
+        }
+    }
+}
