@@ -31,11 +31,12 @@ const CASE: &str = "CORPUSCLE_TEST_CASE";
 const PATIENCE: Duration = Duration::from_secs(300);
 
 const SCENES: [&str; 3] = ["tank", "box", "effusion"];
-const MODES: [&str; 3] = ["off", "initial", "dynamic"];
+const MODES: [&str; 4] = ["off", "initial", "dynamic", "forced"];
 /// Scene, mode, ranks: each of them once at least.
-const SOME: [(&str, &str, usize); 5] = [
+const SOME: [(&str, &str, usize); 6] = [
     ("tank", "dynamic", 2),
     ("tank", "initial", 4),
+    ("tank", "forced", 3),
     ("box", "off", 3),
     ("effusion", "dynamic", 3),
     ("box", "dynamic", 1),
@@ -117,6 +118,8 @@ fn of_rank(case: &str, comm: &dyn Communicator) -> Result<Run, SimulationError> 
     let mode = match mode {
         "off" => BalanceMode::Off,
         "initial" => BalanceMode::Initial,
+        // Cut anew at steps drawn at random.
+        "forced" => BalanceMode::Forced { seed: 1 },
         _ => BalanceMode::Dynamic,
     };
     let balance = BalanceOptions { mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };

@@ -11,6 +11,7 @@ pub const TESTS: &[(&str, fn())] = &[
     ("a_panic_ends_all_with_its_rank_and_message", panic_ends_all),
     ("a_dead_process_ends_all", death_ends_all),
     ("differing_facts_are_told", differing_facts_are_told),
+    ("ranks_of_different_scenes_stop_at_the_start", different_scenes_stop),
 ];
 
 struct Ended {
@@ -21,11 +22,17 @@ struct Ended {
 
 /// Launches so many ranks in a role, and waits for the end.
 fn mpirun(ranks: usize, role: &str, environment: &[(&str, &str)]) -> Ended {
-    let mut child = Command::new("mpirun")
+    let mut command = Command::new("mpirun");
+    command
         .args(["--bind-to", "none", "-n", &ranks.to_string()])
         .arg(std::env::current_exe().unwrap())
         .env(ROLE, role)
-        .envs(environment.iter().copied())
+        .envs(environment.iter().copied());
+    ended(command, &format!("{ranks} ranks in the role `{role}`"))
+}
+
+fn ended(mut command: Command, who: &str) -> Ended {
+    let mut child = command
         .env("RUST_BACKTRACE", "0")
         // More ranks than cores, also as root.
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
@@ -52,7 +59,7 @@ fn mpirun(ranks: usize, role: &str, environment: &[(&str, &str)]) -> Ended {
         // Far beyond what a slow machine needs: the ranks wait for each other.
         if begun.elapsed() > Duration::from_secs(120) {
             child.kill().unwrap();
-            panic!("{ranks} ranks in the role `{role}` hang");
+            panic!("{who} hang");
         }
         std::thread::sleep(Duration::from_millis(20));
     };
@@ -94,4 +101,22 @@ fn differing_facts_are_told() {
     let expected = "rank 0: all know: the ranks disagree on the number of particles: \
                     rank 0 has `10000`, rank 2 has `20000`";
     assert!(ended.stderr.contains(expected), "{}", ended.stderr);
+}
+
+/// Also where one of them would not wait for the others.
+fn different_scenes_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = include_str!("../../scenes/box.toml");
+    let uniform = text.replace("occupancy = 0.1", "method = \"control-volume\"").replace("particles = 8000\n", "");
+    let mut command = Command::new("mpirun");
+    command.args(["--bind-to", "none"]).current_dir(folder.path());
+    for (name, text) in [("particles.toml", text), ("uniform.toml", &uniform)] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let colon = if name.starts_with('p') { None } else { Some(":") };
+        command.args(colon).args(["-n", "1", env!("CARGO_BIN_EXE_corpuscle"), "run", name]);
+    }
+    let ended = ended(command, "ranks of different scenes");
+    assert_eq!(ended.code, Some(3), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("the ranks disagree on the scene"), "{}", ended.stderr);
+    assert!(!folder.path().join("results").exists(), "nothing was begun");
 }
