@@ -24,6 +24,8 @@ enum Fault {
     LoseParticles,
     /// All particles come as slots that hold none.
     EmptyParticles,
+    /// All particles come with another speed along x, by up to a quarter.
+    AlterParticles,
     /// Its first update names a ghost that is not there.
     AlterId,
     /// It never comes.
@@ -59,13 +61,13 @@ impl Faulty<'_> {
         let fits = match self.fault {
             Fault::None => false,
             Fault::LoseMessage => true,
-            Fault::LoseParticles | Fault::EmptyParticles => !updates,
+            Fault::LoseParticles | Fault::EmptyParticles | Fault::AlterParticles => !updates,
             _ => updates,
         };
         if !fits {
             return Some(message);
         }
-        let all = [Fault::LoseUpdates, Fault::AlterUpdates, Fault::EmptyParticles];
+        let all = [Fault::LoseUpdates, Fault::AlterUpdates, Fault::EmptyParticles, Fault::AlterParticles];
         self.done.set(!all.contains(&self.fault));
         match self.fault {
             Fault::LoseMessage => return None,
@@ -75,6 +77,11 @@ impl Faulty<'_> {
                 let records = message.len() - SEAL;
                 let particles = message[..records].chunks_exact_mut(size_of::<GpuParticle>());
                 particles.for_each(|particle| particle[TAG..TAG + 4].fill(0xff));
+            }
+            Fault::AlterParticles => {
+                let records = message.len() - SEAL;
+                let particles = message[..records].chunks_exact_mut(size_of::<GpuParticle>());
+                particles.for_each(|particle| particle[VELOCITY + 2] ^= 0x20);
             }
             Fault::AlterId => message[TAG] ^= 1,
             Fault::None => {}
@@ -165,6 +172,9 @@ fn a_spoilt_message_is_seen() {
     // So many are missing that no run goes on.
     let fewer = outcome(Fault::EmptyParticles);
     assert!(fewer.is_err(), "{fewer:?}");
+    // Ranks that know other speeds of a particle both take it for theirs, or neither: the count after an interval is off.
+    let doubled = outcome(Fault::AlterParticles);
+    assert!(doubled.as_ref().is_err_and(|error| error.contains("particles are there")), "{doubled:?}");
     let missing = outcome(Fault::AlterId);
     assert!(missing.as_ref().is_err_and(|error| error.contains("updates of ghosts")), "{missing:?}");
     let stuck = outcome(Fault::LoseMessage);
