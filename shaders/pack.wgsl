@@ -1,15 +1,14 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
-// Exchange, part 1: particles to every device that owns their cell or needs them as ghosts.
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+// Exchange, part 1: which particles go to which devices: to every one that owns their cell or needs them as ghosts.
 //
-// Reads `border`, `particles`, `peers`, `shares`; writes `outbox` and `outbox_peer` and counts them (also beyond the
-// buffers' end: the host then makes them larger and packs again). One thread per entry of `border`. The
-// order of what is sent depends on the order of the threads; the receiver sorts.
+// Reads `border`, `particles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
+// buffer's end: the host then makes it larger and packs again) and adds to `peer_counts`. One thread per entry of
+// `border`. The order of what is sent depends on the order of the threads; the receiver sorts.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(33) var<storage, read> border: array<vec2<u32>>;
-@group(0) @binding(35) var<storage, read_write> outbox: array<Particle>;
-@group(0) @binding(36) var<storage, read_write> outbox_peer: array<u32>;
+@group(0) @binding(54) var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -19,7 +18,8 @@ fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     }
     let cell = global_cell(border[entry].y);
     let place = vec3<i32>(cell);
-    let particle = particles[border[entry].x];
+    let index = border[entry].x;
+    let particle = particles[index];
     let middle = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt)));
     var reach = 0;
     if (step.depth > 0u) {
@@ -34,10 +34,9 @@ fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             if (!own && from_box2(middle, cell, peers[p].low, peers[p].high) >= reach * reach) {
                 continue;
             }
-            let k = atomicAdd(&counters[COUNT_OUTBOX], 1u);
-            if (k < arrayLength(&outbox_peer)) {
-                outbox[k] = particle;
-                outbox_peer[k] = p;
+            let k = append(LIST_OUTBOX);
+            if (k < arrayLength(&sendings)) {
+                sendings[k] = Sending(index, p, atomicAdd(&peer_counts[p], 1u));
             }
         }
     }

@@ -1,20 +1,18 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
 // Update, part 1: the particles that the rounds since the last exchange have changed, to every device
 // that needs them as ghosts. (It may have others near its border, as newborns or as its own of the step before: no chain
 // leads to those, so what becomes of them changes nothing.)
 //
-// Reads `changed`, `sorted`, `flights`, `cells`, `middles`, `peers`, `shares`; writes `updates_out`, counts them (also beyond the
-// buffer's end: the host then makes it larger and packs again) and clears the marks in `layers`. One thread
-// per entry of `changed`. The receiver finds the ghost by cell and id, so order does not matter.
+// Reads `changed`, `cells`, `middles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
+// buffer's end: the host then makes it larger and packs again), adds to `peer_counts` and clears the marks in `layers`.
+// One thread per entry of `changed`. The receiver finds the ghost by cell and id, so order does not matter.
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(37) var<storage, read> changed: array<u32>;
-@group(0) @binding(38) var<storage, read_write> updates_out: array<Update>;
+@group(0) @binding(54) var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -29,9 +27,9 @@ fn pack_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     for (var p = 0u; p < step.near_peers; p++) {
         if (owns(peers[p], vec3<i32>(cell), i32(step.depth))
             && from_box2(middles[s], cell, peers[p].low, peers[p].high) < reach * reach) {
-            let k = atomicAdd(&counters[COUNT_UPDATES], 1u);
-            if (k < arrayLength(&updates_out)) {
-                updates_out[k] = Update(sorted[s], flights[s], cell_index(cell), p, 0u, 0u);
+            let k = append(LIST_UPDATES);
+            if (k < arrayLength(&sendings)) {
+                sendings[k] = Sending(s, p, atomicAdd(&peer_counts[p], 1u));
             }
         }
     }

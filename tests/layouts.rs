@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
-    GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle,
+    GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -68,7 +68,8 @@ fn twins() -> Vec<Twin> {
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
-        twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
+        twin!("Update", GpuUpdate, particle, flight, cell, pad, pad2, pad3),
+        twin!("Sending", GpuSending, index, peer, place),
         twin!("Peer", GpuPeer, low, pad, high, pad2),
         twin!("Part", GpuPart, place, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),

@@ -5,16 +5,16 @@
 // Lists 0 .. 8 are the pairs of the rounds (of the method `cell`, list 0 the cells that walls part); list ROUNDS counts the pairs that the rounds lost. Lists
 // LIST_RECHOOSE + r are the particles that choose again in round r >= 1. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
-// were asked for their choice; COUNT_OUTBOX and
-// COUNT_UPDATES count what is sent, COUNT_DROPPED the slots that hold no particle of this device or its halo.
+// were asked for their choice; LIST_OUTBOX and
+// LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo.
 const LIST_PARTED: u32 = 0;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
 const LIST_BORDER: u32 = 12;
 const LIST_CHANGED: u32 = 13;
-const COUNT_OUTBOX: u32 = 14;
-const COUNT_UPDATES: u32 = 15;
+const LIST_OUTBOX: u32 = 14;
+const LIST_UPDATES: u32 = 15;
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
 const COUNT_DROPPED: u32 = 31;
@@ -26,8 +26,8 @@ const GROUP_LIMIT: u32 = 65535;
 @group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
 @group(0) @binding(19) var<storage, read_write> dispatches: array<atomic<u32>>;
 
-// (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs,
-// is given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
+// (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs, and `pack`, over
+// the border, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
 //
 // The place of a new entry; makes sure that the list's dispatch covers it.
 fn append(list: u32) -> u32 {

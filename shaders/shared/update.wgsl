@@ -5,10 +5,9 @@ struct Update {
     flight: Flight,
     // Its cell in the global grid (`cell_index`).
     cell: u32,
-    // Entry of `peers`.
-    peer: u32,
     pad: u32,
     pad2: u32,
+    pad3: u32,
 }
 
 // Another device: the cells it owns. Its ghosts are in `step.depth` layers around them (halo.wgsl).

@@ -66,9 +66,13 @@ struct SweepPlan {
     moments: Vec<Moment>,
 }
 
+/// The states of a count, and how many steps of the run each stands for.
+type Emulations = Vec<(f64, Emulated)>;
+
 /// What an emulation found.
 struct Emulation {
     adapter: String,
+    /// On the fewest devices.
     particles: u64,
     costs: Costs,
     points: Vec<Point>,
@@ -224,46 +228,74 @@ impl SweepPlan {
         let halo = HaloOptions { ghosts: halo.ghosts.or(Some(Ghosts::Asked)), ..halo };
         let effort = Effort { intervals: self.raw.emulation.intervals as usize, by, halo };
         let pairs = self.pairs(&self.devices);
-        let mut of_pairs: Vec<Vec<(f64, Emulated)>> = vec![Vec::new(); pairs.len()];
-        let mut particles = 0;
-        for at in 0..self.moments.len().max(1) {
-            let moment = self.moments.get(at);
-            let scene = moment.map_or(&self.scene, |moment| &moment.model.scene);
-            // A device alone has its intervals as they are: it exchanges nothing from which a step could be told.
-            let alone = model_of(path, scene.clone())?;
-            let mut among = model_of(path, scene.clone())?;
-            among.plan.steps_per_interval = EMULATED_STEPS;
-            particles = among.plan.particles;
-            let steps = match moment {
-                Some(_) => weights(&self.moments)[at],
-                None => among.plan.estimated_steps,
-            };
-            let name = moment.map_or_else(|| "the start".to_owned(), Moment::name);
-            let set_up = |model: &Model, ranks: usize| -> Result<Setup, CliError> {
-                let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
-                let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
-                // Cuts of the start of the run are made by the gas of then.
-                Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
-            };
-            let several = self.devices.iter().any(|&devices| devices > 1);
-            let shared = several.then(|| set_up(&among, 2)).transpose()?;
-            for (&(devices, strategy), states) in pairs.iter().zip(&mut of_pairs) {
-                let model = if devices == 1 { &alone } else { &among };
-                let own = if devices == 1 { Some(set_up(model, 1)?) } else { None };
-                let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
-                let run = moment.map(|moment| &moment.run);
-                let state = State { name: name.clone(), model, run, steps };
-                tracing::info!("{name}: {devices} subdomains, {}", strategy.title());
-                states.push((steps, emulate(&state, device, setup, devices, strategy, &effort)?));
+        let mut of_pairs: Vec<Emulations> = vec![Vec::new(); pairs.len()];
+        let mut particles = Vec::new();
+        // Where each device has its own particles, a count has a scene of its own.
+        let one = model_of(path, self.scene.clone())?.plan.particles;
+        let groups: Vec<&[usize]> =
+            if self.raw.runs.weak { self.devices.chunks(1).collect() } else { vec![&self.devices] };
+        let mut first = 0;
+        for group in groups {
+            let held = self.raw.runs.weak.then(|| one * group[0] as u64);
+            let of_group = self.pairs(group);
+            for at in 0..self.moments.len().max(1) {
+                let of_pairs = &mut of_pairs[first..][..of_group.len()];
+                particles.push(self.emulate_state(device, at, held, &of_group, &effort, of_pairs)?);
             }
+            first += of_group.len();
         }
         let costs = Costs::fit(of_pairs.iter().flatten().flat_map(|(_, emulated)| &emulated.shares));
-        let points = of_pairs.iter().filter_map(|states| {
+        let points = of_pairs.iter().zip(&pairs).filter_map(|(states, &(devices, _))| {
             let states: Vec<(f64, &Emulated)> = states.iter().map(|(steps, state)| (*steps, state)).collect();
-            point(&states, &costs, &network, &gpu)
+            let particles = if self.raw.runs.weak { one * devices as u64 } else { particles[0] };
+            point(&states, particles as f64, &costs, &network, &gpu)
         });
         let adapter = device.adapter().info.name.clone();
-        Ok(Emulation { adapter, particles, costs, points: points.collect() })
+        Ok(Emulation { adapter, particles: particles[0], costs, points: points.collect() })
+    }
+
+    /// Emulates one state, `held` particles of it if not as many as it has, for these counts and strategies; returns
+    /// how many particles it has.
+    fn emulate_state(
+        &self,
+        device: &Device,
+        at: usize,
+        held: Option<u64>,
+        pairs: &[(usize, Strategy)],
+        effort: &Effort,
+        of_pairs: &mut [Emulations],
+    ) -> Result<u64, CliError> {
+        let path = &self.raw.scene.scene;
+        let moment = self.moments.get(at);
+        let mut scene = moment.map_or(&self.scene, |moment| &moment.model.scene).clone();
+        scene.model.particles = held.or(scene.model.particles);
+        // A device alone has its intervals as they are: it exchanges nothing from which a step could be told.
+        let alone = model_of(path, scene.clone())?;
+        let mut among = model_of(path, scene)?;
+        among.plan.steps_per_interval = EMULATED_STEPS;
+        let steps = match moment {
+            Some(_) => weights(&self.moments)[at],
+            None => among.plan.estimated_steps,
+        };
+        let name = moment.map_or_else(|| "the start".to_owned(), Moment::name);
+        let set_up = |model: &Model, ranks: usize| -> Result<Setup, CliError> {
+            let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
+            let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
+            // Cuts of the start of the run are made by the gas of then.
+            Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
+        };
+        let several = pairs.iter().any(|&(devices, _)| devices > 1);
+        let shared = several.then(|| set_up(&among, 2)).transpose()?;
+        for (&(devices, strategy), states) in pairs.iter().zip(of_pairs) {
+            let model = if devices == 1 { &alone } else { &among };
+            let own = if devices == 1 { Some(set_up(model, 1)?) } else { None };
+            let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
+            let run = moment.map(|moment| &moment.run);
+            let state = State { name: name.clone(), model, run, steps };
+            tracing::info!("{name}: {devices} subdomains, {}", strategy.title());
+            states.push((steps, emulate(&state, device, setup, devices, strategy, effort)?));
+        }
+        Ok(among.plan.particles)
     }
 
     fn text(&self, measured: &[Measured], emulated: Option<&Emulation>) -> String {
@@ -318,11 +350,12 @@ impl SweepPlan {
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "\n## Modelled: work alone\n\nSubdomains of {} particles, measured one at a time on {adapter}: {} intervals \
+            "\n## Modelled: work alone\n\nSubdomains of {} particles{}, measured one at a time on {adapter}: {} intervals \
              of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state. Speed-up \
              of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
              a wall test {:.2} of a particle, as fitted to the device times.\n\n{}",
             grouped(*particles),
+            if self.raw.runs.weak { " on the fewest devices, as many more as there are more devices" } else { "" },
             raw.intervals,
             self.states(),
             relative(costs.candidate),
@@ -332,21 +365,23 @@ impl SweepPlan {
         let _ = write!(
             text,
             "\n## Modelled: time, with the fixed costs of {adapter}\n\nFor {steps:.0} steps: the slowest subdomain's own \
-             time (measured alone), and {} us per exchange and {} GB/s (assumed) for the messages that were \
-             exchanged.\n\n{}",
+             time (measured alone), and {} us per exchange, {} us per message and {} GB/s (assumed) for the messages \
+             that were exchanged.\n\n{}",
             raw.latency_us,
+            raw.message_us,
             raw.bandwidth_gbs,
-            report::time_table(points),
+            report::time_table(points, measured),
         );
         let _ = write!(
             text,
             "\n## Modelled: time on an assumed GPU\n\nThe work above, and as assumed:\n\n| per mean particle | per pass | \
-             host's wait per exchange | exchange | bandwidth |\n|--:|--:|--:|--:|--:|\n| {} ns | {} us | {} us | {} us | \
-             {} GB/s |\n\n{}",
+             host's wait per exchange | exchange | message | bandwidth |\n|--:|--:|--:|--:|--:|--:|\n| {} ns | {} us | {} us | \
+             {} us | {} us | {} GB/s |\n\n{}",
             raw.gpu_particle_ns,
             raw.gpu_pass_us,
             raw.gpu_wait_us,
             raw.latency_us,
+            raw.message_us,
             raw.bandwidth_gbs,
             report::gpu_table(points),
         );
@@ -358,7 +393,8 @@ impl SweepPlan {
 }
 
 fn assumed(raw: &EmulationArguments) -> (Network, Gpu) {
-    let network = Network { latency: 1e-6 * raw.latency_us, bandwidth: 1e9 * raw.bandwidth_gbs };
+    let network =
+        Network { latency: 1e-6 * raw.latency_us, overhead: 1e-6 * raw.message_us, bandwidth: 1e9 * raw.bandwidth_gbs };
     let gpu = Gpu { unit: 1e-9 * raw.gpu_particle_ns, pass: 1e-6 * raw.gpu_pass_us, wait: 1e-6 * raw.gpu_wait_us };
     (network, gpu)
 }
@@ -367,6 +403,7 @@ fn check(raw: &SweepArguments) -> Result<(), CliError> {
     let emulation = &raw.emulation;
     let times = [
         ("--latency-us", emulation.latency_us),
+        ("--message-us", emulation.message_us),
         ("--gpu-particle-ns", emulation.gpu_particle_ns),
         ("--gpu-pass-us", emulation.gpu_pass_us),
         ("--gpu-wait-us", emulation.gpu_wait_us),

@@ -86,6 +86,27 @@ impl Device {
         }
     }
 
+    /// Writes parts into a buffer one after the other, from `offset`, with one copy on the way; done before the next
+    /// submission. Offset and lengths are multiples of 4 bytes.
+    ///
+    /// # Errors
+    /// If they do not fit the buffer, or the device has no memory for the copy.
+    pub fn write_joined(&self, buffer: &wgpu::Buffer, offset: u64, parts: &[Vec<u8>]) -> Result<(), GpuError> {
+        let bytes = parts.iter().map(|part| part.len() as u64).sum();
+        let Some(size) = wgpu::BufferSize::new(bytes) else {
+            return Ok(());
+        };
+        let view = self.queue().write_buffer_with(buffer, offset, size);
+        let refused = || GpuError::Trouble { reason: format!("a write of {bytes} bytes at {offset} was refused") };
+        let mut view = view.ok_or_else(refused)?;
+        let mut at = 0;
+        for part in parts {
+            view.slice(at..at + part.len()).copy_from_slice(part);
+            at += part.len();
+        }
+        Ok(())
+    }
+
     /// Starts to map a staging buffer that `submission` fills.
     pub fn read_later(&self, staging: wgpu::Buffer, submission: wgpu::SubmissionIndex) -> Readback {
         let (sender, receiver) = mpsc::channel();

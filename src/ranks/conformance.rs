@@ -14,6 +14,7 @@ pub const CHECKS: &[Check] = &[
     ("messages between two ranks keep their order", order),
     ("messages may be empty", empty),
     ("messages may be 50 MB long, both ways at once", large),
+    ("messages of any length may follow each other", lengths),
     ("all can send to all before anyone receives", all_pairs),
     ("random patterns of messages arrive whole", random_pattern),
     ("sums wrap and maxima are exact", reduction),
@@ -126,6 +127,23 @@ fn large(comm: &dyn Communicator) -> Result<(), String> {
     }
     told(comm.send(other, bytes(comm.rank(), other, 0, LENGTH)))?;
     same_bytes("a large message", &told(comm.receive(other))?, &bytes(other, comm.rank(), 0, LENGTH))
+}
+
+/// Lengths that grow, stay and shrink by a lot, sent before any of them is received.
+fn lengths(comm: &dyn Communicator) -> Result<(), String> {
+    const LENGTHS: [usize; 12] = [0, 4094, 4095, 4096, 4097, 1_000_000, 1_300_000, 1_300_000, 7, 0, 90_000_000, 5000];
+    let other = 1 - comm.rank().min(1);
+    if comm.size() < 2 || comm.rank() > 1 {
+        return Ok(());
+    }
+    for (k, &length) in LENGTHS.iter().enumerate() {
+        told(comm.send(other, bytes(comm.rank(), other, k, length)))?;
+    }
+    for (k, &length) in LENGTHS.iter().enumerate() {
+        let expected = bytes(other, comm.rank(), k, length);
+        same_bytes(&format!("message {k} of a growing row"), &told(comm.receive(other))?, &expected)?;
+    }
+    Ok(())
 }
 
 fn all_pairs(comm: &dyn Communicator) -> Result<(), String> {

@@ -8,6 +8,7 @@
 //! reduction travel in messages of one size for all, together with the lengths; what does not fit follows once
 //! the lengths are known to agree. Short reductions are non-blocking as a whole, long ones in their head.
 
+mod channel;
 mod pending;
 
 use super::environment::Launcher;
@@ -19,15 +20,15 @@ use ::mpi::environment::{Universe, is_finalized};
 use ::mpi::point_to_point::Source;
 use ::mpi::topology::{Communicator as _, SimpleCommunicator};
 use ::mpi::{Count, Rank, Tag, Threading};
+use channel::{Inbox, LONG_MESSAGE, MESSAGE, Room, parts};
 use pending::{Operation, PendingReduction, PendingSend};
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::io::Write;
 use std::marker::PhantomData;
 use std::panic;
 use std::thread;
 
-const MESSAGE: Tag = 0;
 const GATHERED: Tag = 1;
 /// Words of a reduction's head, of sums and of maxima each.
 const HEAD: usize = 64;
@@ -39,6 +40,10 @@ const PANICKED: i32 = 101;
 /// Fields are dropped in order: what is under way first, MPI last.
 pub(super) struct Mpi {
     sends: RefCell<Vec<PendingSend>>,
+    /// By source, of those from whom a message was received.
+    inboxes: RefCell<HashMap<usize, Inbox>>,
+    /// By destination.
+    rooms: RefCell<Vec<Room>>,
     tickets: Tickets,
     under_way: RefCell<VecDeque<UnderWay>>,
     rank: usize,
@@ -76,6 +81,8 @@ impl Mpi {
         let node = world.split_shared(world.rank());
         Ok(Mpi {
             sends: RefCell::default(),
+            inboxes: RefCell::default(),
+            rooms: RefCell::new(vec![Room::first(); size]),
             tickets: Tickets::default(),
             under_way: RefCell::default(),
             rank,
@@ -142,12 +149,19 @@ impl Communicator for Mpi {
 
     fn send(&self, dest: usize, message: Vec<u8>) -> Result<(), RankError> {
         check_other(self.rank, dest, self.size)?;
-        self.start_send(dest, MESSAGE, message)
+        let (message, after) = parts(&mut self.rooms.borrow_mut()[dest], within_limit(message)?);
+        self.start_send(dest, MESSAGE, message)?;
+        after.map_or(Ok(()), |message| self.start_send(dest, LONG_MESSAGE, message))
     }
 
     fn receive(&self, source: usize) -> Result<Vec<u8>, RankError> {
         check_other(self.rank, source, self.size)?;
-        Ok(self.receive_tagged(source, MESSAGE))
+        let rank = source as Rank;
+        let mut inboxes = self.inboxes.borrow_mut();
+        let inbox = inboxes.entry(source).or_insert_with(|| Inbox::open(&self.world, rank));
+        let message = inbox.next(&self.world, rank, || self.receive_tagged(source, LONG_MESSAGE));
+        self.sends.borrow_mut().retain_mut(|send| !send.done());
+        Ok(message)
     }
 
     fn start_reduction(&self, mut sums: Vec<u64>, mut maxima: Vec<u64>) -> Result<Reduction, RankError> {

@@ -4,9 +4,9 @@
 //!
 //! ```text
 //! work      = max_r (c_p particles_r + c_c candidates_r + c_w walls_r) / u
-//! time      = max_r own_r  +  max_r (stages_r latency + bytes_r / bandwidth)
+//! time      = max_r own_r  +  max_r (stages_r latency + messages_r overhead + bytes_r / bandwidth)
 //! GPU time  = max_r work_r x (time per unit) + passes x (time per pass)
-//!             + max_r (stages_r (latency + wait) + bytes_r / bandwidth)
+//!             + max_r (stages_r (latency + wait) + messages_r overhead + bytes_r / bandwidth)
 //! ```
 //!
 //! c are the device seconds per particle, candidate and wall test, fitted to all subdomains of the sweep together with
@@ -24,6 +24,8 @@ use super::emulation::{Emulated, Share};
 pub struct Network {
     /// s, of an exchange with all neighbours.
     pub latency: f64,
+    /// s, of each message in it besides.
+    pub overhead: f64,
     /// Bytes per second of one device.
     pub bandwidth: f64,
 }
@@ -103,6 +105,8 @@ pub struct Point {
     pub strategy: Strategy,
     /// Steps of the run.
     pub steps: f64,
+    /// On all devices together.
+    pub particles: f64,
     /// Of the fullest subdomain; `None` on one device, which counts nothing. In particles, and in units of work.
     pub owned: Option<f64>,
     pub work: Option<f64>,
@@ -122,7 +126,13 @@ pub struct Point {
 }
 
 /// The mean step of the states, each for so many steps of the run. None of the states: `None`.
-pub fn point(states: &[(f64, &Emulated)], costs: &Costs, network: &Network, gpu: &Gpu) -> Option<Point> {
+pub fn point(
+    states: &[(f64, &Emulated)],
+    particles: f64,
+    costs: &Costs,
+    network: &Network,
+    gpu: &Gpu,
+) -> Option<Point> {
     let steps: f64 = states.iter().map(|(steps, _)| steps).sum();
     let (_, first) = states.first()?;
     let mean = |of: &dyn Fn(&Emulated) -> f64| states.iter().map(|(k, state)| k * of(state)).sum::<f64>() / steps;
@@ -133,7 +143,12 @@ pub fn point(states: &[(f64, &Emulated)], costs: &Costs, network: &Network, gpu:
     let sum = |state: &Emulated, of: &dyn Fn(&Share) -> f64| state.shares.iter().map(of).sum::<f64>();
     let per_device = |state: &Emulated, of: &dyn Fn(&Share) -> f64| sum(state, of) / state.shares.len() as f64;
     let sent = |state: &Emulated, wait: f64| {
-        most(state, |share| share.stages * (network.latency + wait) + share.bytes / network.bandwidth)
+        let of = |share: &Share| {
+            share.stages * (network.latency + wait)
+                + share.messages * network.overhead
+                + share.bytes / network.bandwidth
+        };
+        most(state, of)
     };
     let own = mean(&|state| most(state, |share| share.own_seconds));
     let messages = mean(&|state| sent(state, 0.0));
@@ -146,6 +161,7 @@ pub fn point(states: &[(f64, &Emulated)], costs: &Costs, network: &Network, gpu:
         devices: first.shares.len(),
         strategy: first.strategy,
         steps,
+        particles,
         owned,
         work,
         halo: counts(&|state| sum(state, &|share| share.particles))
@@ -180,7 +196,7 @@ mod tests {
     }
 
     const COSTS: Costs = Costs { particle: 2e-6, candidate: 0.0, wall: 0.0, step: 0.0, unit: 2e-6 };
-    const NETWORK: Network = Network { latency: 1e-3, bandwidth: 1e6 };
+    const NETWORK: Network = Network { latency: 1e-3, overhead: 1e-4, bandwidth: 1e6 };
     const GPU: Gpu = Gpu { unit: 1e-6, pass: 1e-5, wait: 1e-4 };
 
     fn close(found: f64, expected: f64) {
@@ -191,31 +207,31 @@ mod tests {
     #[test]
     fn a_step_takes_the_slowest_subdomain_and_the_costliest_messages() {
         let state = emulated(vec![share(1000.0, 0.5, 1000.0), share(3000.0, 0.25, 4000.0)]);
-        let point = point(&[(10.0, &state)], &COSTS, &NETWORK, &GPU).unwrap();
+        let point = point(&[(10.0, &state)], 4000.0, &COSTS, &NETWORK, &GPU).unwrap();
         close(point.own, 0.5);
-        close(point.messages, 3e-3 + 4e-3);
-        close(point.time, 0.507);
+        close(point.messages, 3e-3 + 6e-4 + 4e-3);
+        close(point.time, 0.5076);
         close(point.work.unwrap(), 3000.0);
         close(point.owned.unwrap(), 2400.0);
         close(point.work_imbalance.unwrap(), 1.5);
         close(point.halo.unwrap(), 0.25);
-        close(point.gpu.unwrap(), 3e-3 + 2e-4 + 3.0 * 1.1e-3 + 4e-3);
+        close(point.gpu.unwrap(), 3e-3 + 2e-4 + 3.0 * 1.1e-3 + 6e-4 + 4e-3);
     }
 
     #[test]
     fn states_count_by_the_steps_that_they_stand_for() {
         let (long, short) = (emulated(vec![share(100.0, 0.1, 0.0)]), emulated(vec![share(500.0, 0.9, 0.0)]));
-        let point = point(&[(30.0, &long), (10.0, &short)], &COSTS, &NETWORK, &GPU).unwrap();
+        let point = point(&[(30.0, &long), (10.0, &short)], 100.0, &COSTS, &NETWORK, &GPU).unwrap();
         close(point.own, 0.3);
         close(point.work.unwrap(), 200.0);
         close(point.steps, 40.0);
-        assert!(super::point(&[], &COSTS, &NETWORK, &GPU).is_none());
+        assert!(super::point(&[], 0.0, &COSTS, &NETWORK, &GPU).is_none());
     }
 
     #[test]
     fn a_device_alone_counts_nothing_and_has_its_time() {
         let alone = emulated(vec![Share { own_seconds: 0.5, ..Share::default() }]);
-        let point = point(&[(1.0, &alone)], &COSTS, &NETWORK, &GPU).unwrap();
+        let point = point(&[(1.0, &alone)], 1.0, &COSTS, &NETWORK, &GPU).unwrap();
         assert_eq!((point.work, point.owned, point.gpu, point.time), (None, None, None, 0.5));
     }
 

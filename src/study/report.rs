@@ -60,11 +60,13 @@ fn strategies<T: Placed>(all: &[T]) -> Vec<Strategy> {
     found
 }
 
-/// The first count's value over this one's, with the same strategy.
+/// The first count's value over this one's, with the same strategy, where both have as many particles; by as much more
+/// as this one has more.
 fn speed_up(points: &[Point], of: &dyn Fn(&Point) -> Option<f64>, point: &Point) -> Option<f64> {
     // One device counts no work: then the fewest that does.
-    let base = counts(points).into_iter().find_map(|devices| at(points, devices, point.strategy).and_then(of))?;
-    Some(base / of(point)?)
+    let base = counts(points).into_iter().filter_map(|devices| at(points, devices, point.strategy));
+    let (value, particles) = base.filter_map(|base| Some((of(base)?, base.particles))).next()?;
+    Some(value / of(point)? * (point.particles / particles))
 }
 
 const CSV_HEADER: &str = "kind,devices,balance,turns,steps,seconds,seconds_min,seconds_max,ms_per_step,\
@@ -199,12 +201,19 @@ pub fn work_table(points: &[Point]) -> String {
     pivot(points, &[("owned particles, ", &owned), ("work with halo, ", &work), ("work, fullest over mean, ", &excess)])
 }
 
-/// Modelled from times measured alone: the time of the run, and its speed-up.
-pub fn time_table(points: &[Point]) -> String {
+/// Modelled from times measured alone: the time of the run, and its speed-up; beside it, where there are real runs, what
+/// they would have taken for as many steps.
+pub fn time_table(points: &[Point], measured: &[Measured]) -> String {
     let faster = |point: &Point| dash(speed_up(points, &|p| Some(p.time), point), |x| format!("{x:.2}"));
     let share = |point: &Point| format!("{:.0} %", 100.0 * point.messages / point.time);
     let seconds = |point: &Point| figures(point.time * point.steps);
-    pivot(points, &[("s, ", &seconds), ("speed-up, ", &faster), ("of it messages, ", &share)])
+    let real = |point: &Point| {
+        let run = at(measured, point.devices, point.strategy);
+        dash(run.map(|run| run.seconds[0] / run.steps.max(1) as f64 * point.steps), figures)
+    };
+    let modelled: [Quantity<'_, Point>; 3] = [("s, ", &seconds), ("speed-up, ", &faster), ("of it messages, ", &share)];
+    let beside: [Quantity<'_, Point>; 1] = [("measured: s, ", &real)];
+    pivot(points, &[&modelled[..], if measured.is_empty() { &[] } else { &beside[..] }].concat())
 }
 
 /// Modelled on an assumed GPU.
@@ -297,6 +306,7 @@ mod tests {
             devices,
             strategy,
             steps: 1000.0,
+            particles: 5e5,
             owned: work.map(|work| 0.8 * work),
             work,
             halo: work.map(|_| 0.25),
@@ -348,10 +358,18 @@ mod tests {
         let work = work_table(&all);
         let last: Vec<&str> = work.lines().last().unwrap().split('|').map(str::trim).collect();
         assert_eq!(last[1..8], ["24", "1.50", "2.00", "1.50", "2.00", "1.200", "1.200"]);
-        let time = time_table(&all);
+        let time = time_table(&all, &[]);
         let last: Vec<&str> = time.lines().last().unwrap().split('|').map(str::trim).collect();
         assert_eq!(last[1..8], ["24", "400", "400", "1.50", "1.25", "25 %", "25 %"]);
         assert!(gpu_table(&all).contains("2.00"));
+        // Real runs stand beside, for as many steps.
+        let time = time_table(&all, &[measured(24, Strategy::Dynamic, 43.0, 1.0)]);
+        let last: Vec<&str> = time.lines().last().unwrap().split('|').map(str::trim).collect();
+        assert_eq!(last[7..10], ["25 %", "-", "430"], "{time}");
+        // Twice the particles in the same time are twice as fast.
+        let mut weak = all.clone();
+        weak[2..].iter_mut().for_each(|point| point.particles *= 2.0);
+        assert_eq!(speed_up(&weak, &|p| p.work, &weak[3]), Some(4.0));
         // A count without work is no base for it.
         let mut with_one = vec![point(1, Strategy::Off, None, 5.0)];
         with_one.extend(all);

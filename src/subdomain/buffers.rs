@@ -6,8 +6,8 @@ use super::cell_table::CellTable;
 use super::constants::Features;
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuTriangle, GpuUpdate, GpuVent,
-    GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate,
+    GpuVent, GpuWeights, GpuZone,
 };
 use super::walls::Walls;
 
@@ -172,8 +172,12 @@ pub struct ExchangeBuffers {
     /// Updates.
     pub update_room: u64,
     pub peers: wgpu::Buffer,
+    /// Who goes to which peer, particles or updates; how many go to each, zero between uses; and where each one's
+    /// message begins, with the end of the last behind them.
+    pub sendings: wgpu::Buffer,
+    pub peer_counts: wgpu::Buffer,
+    pub peer_starts: wgpu::Buffer,
     pub outbox: wgpu::Buffer,
-    pub outbox_peer: wgpu::Buffer,
     pub updates_out: wgpu::Buffer,
     pub updates_in: wgpu::Buffer,
     pub cuts: wgpu::Buffer,
@@ -197,8 +201,10 @@ impl ExchangeBuffers {
             room: room.particles,
             update_room: room.updates,
             peers: device.storage::<GpuPeer>("peers", room.peers)?,
+            sendings: device.storage::<GpuSending>("sendings", room.particles.max(room.updates))?,
+            peer_counts: device.storage::<u32>("peer_counts", room.peers)?,
+            peer_starts: device.storage::<u32>("peer_starts", room.peers + 1)?,
             outbox: device.storage::<GpuParticle>("outbox", room.particles)?,
-            outbox_peer: device.storage::<u32>("outbox_peer", room.particles)?,
             updates_out: device.storage::<GpuUpdate>("updates_out", room.updates)?,
             updates_in: device.storage::<GpuUpdate>("updates_in", room.received)?,
             cuts: device.storage::<[u32; 4]>("cuts", room.cuts)?,
@@ -350,7 +356,7 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
+            ("settle" | "pack", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             ("receive", "dispatches") => &fixed.rechoose_dispatches,
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
@@ -382,8 +388,10 @@ impl<'a> Buffers<'a> {
             (_, "asked") => &particle.asked,
             (_, "origins") => &particle.origins,
             (_, "peers") => &exchange.peers,
+            (_, "sendings") => &exchange.sendings,
+            (_, "peer_counts") => &exchange.peer_counts,
+            (_, "peer_starts") => &exchange.peer_starts,
             (_, "outbox") => &exchange.outbox,
-            (_, "outbox_peer") => &exchange.outbox_peer,
             (_, "updates_out") => &exchange.updates_out,
             (_, "updates_in") => &exchange.updates_in,
             (_, "cuts") => &exchange.cuts,

@@ -1,7 +1,8 @@
 //! What a subdomain sends to others and takes from them: particles at the start of a step, and what the
 //! rounds did to the ghosts.
 //!
-//! Messages are the bytes of [`GpuParticle`]s and [`GpuUpdate`]s, in no particular order: the receiver sorts the
+//! Messages are the bytes of [`GpuParticle`]s and [`GpuUpdate`]s, in no particular order; the device puts those to one
+//! peer together (`shaders/shared/sendings.wgsl`), and the host looks at none of them. The receiver sorts the
 //! former by (cell, id) with its own particles, and finds the ghosts of the latter by cell and id.
 
 use crate::gpu::{Device, Readback, Recording};
@@ -31,18 +32,52 @@ impl Guess {
     }
 }
 
-/// A copy of an outbox on its way to the host, and for how many entries it has room.
+/// A copy of an outbox on its way to the host: how many entries are in the copy, and peers in its header.
 pub struct Outgoing {
     readback: Readback,
     entries: u64,
+    peers: usize,
 }
 
 /// Bytes for each peer, in the order of the peers.
 pub type Messages = Vec<Vec<u8>>;
 
-const HEADER: u64 = 4 * counters::LISTS as u64;
+/// Room that every message has behind it, for what its sender may add.
+const SPARE: usize = 16;
+/// The lengths of the lists, and behind them where each message begins.
+const LISTS: u64 = 4 * counters::LISTS as u64;
 const PARTICLE: u64 = size_of::<GpuParticle>() as u64;
 const UPDATE: u64 = size_of::<GpuUpdate>() as u64;
+
+/// What is before the entries of an outbox.
+struct Header {
+    lists: Vec<u32>,
+    /// Entries, where each peer's begin and where the last one's end.
+    starts: Vec<u32>,
+}
+
+impl Header {
+    fn bytes(peers: usize) -> u64 {
+        LISTS + 4 * (peers as u64 + 1)
+    }
+
+    /// The header of a copy, and the messages that it holds if the copy holds them all.
+    fn and_messages(bytes: &[u8], peers: usize, size: u64) -> (Header, Messages) {
+        let (header, entries) = bytes.split_at(Header::bytes(peers) as usize);
+        let (lists, starts) = header.split_at(LISTS as usize);
+        let header =
+            Header { lists: bytemuck::pod_collect_to_vec(lists), starts: bytemuck::pod_collect_to_vec(starts) };
+        let message = |ends: &[u32]| {
+            let [begin, end] = [ends[0], ends[1]].map(|entry| (u64::from(entry) * size) as usize);
+            let found = entries.get(begin..end).unwrap_or_default();
+            let mut message = Vec::with_capacity(found.len() + SPARE);
+            message.extend_from_slice(found);
+            message
+        };
+        let messages = header.starts.windows(2).map(message).collect();
+        (header, messages)
+    }
+}
 
 impl Subdomain {
     /// Packs the particles that others need.
@@ -53,17 +88,32 @@ impl Subdomain {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             let offset = self.offset(device, step, 0);
-            let list = counters::BORDER as u32;
-            kernels.pack.dispatch_indirect(rec.phase("exchange"), offset, &self.fixed.dispatches, list);
+            let pass = rec.phase("exchange");
+            kernels.pack.dispatch_indirect(pass, offset, &self.fixed.dispatches, counters::BORDER as u32);
+            kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
+            kernels.fill.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, counters::OUTBOX as u32);
         }
         let entries = self.outbox_guess.0.min(self.exchange.room);
-        let staging = self.staging_of(device, HEADER + entries * (4 + PARTICLE))?;
+        let staging = self.copy_outbox(rec, entries, PARTICLE, |exchange| &exchange.outbox)?;
+        let readback = rec.device().read_later(staging, rec.submit());
+        Ok(Outgoing { readback, entries, peers: self.place.peers.len() })
+    }
+
+    /// Copies the lists' lengths, the messages' starts and the first entries that go out.
+    fn copy_outbox(
+        &mut self,
+        rec: &mut Recording<'_>,
+        entries: u64,
+        size: u64,
+        outbox: impl Fn(&ExchangeBuffers) -> &wgpu::Buffer,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let header = Header::bytes(self.place.peers.len());
+        let staging = self.staging_of(rec.device(), header + entries * size)?;
         let encoder = rec.encoder();
-        encoder.copy_buffer_to_buffer(&self.fixed.counters, 0, &staging, 0, HEADER);
-        encoder.copy_buffer_to_buffer(&self.exchange.outbox_peer, 0, &staging, HEADER, entries * 4);
-        encoder.copy_buffer_to_buffer(&self.exchange.outbox, 0, &staging, HEADER + entries * 4, entries * PARTICLE);
-        let submission = rec.submit();
-        Ok(Outgoing { readback: device.read_later(staging, submission), entries })
+        encoder.copy_buffer_to_buffer(&self.fixed.counters, 0, &staging, 0, LISTS);
+        encoder.copy_buffer_to_buffer(&self.exchange.peer_starts, 0, &staging, LISTS, header - LISTS);
+        encoder.copy_buffer_to_buffer(outbox(&self.exchange), 0, &staging, header, entries * size);
+        Ok(staging)
     }
 
     /// The packed particles, once the device is done.
@@ -77,23 +127,13 @@ impl Subdomain {
         outgoing: Outgoing,
     ) -> Result<Messages, GpuError> {
         let device = rec.device();
-        let peers = self.place.peers.len();
-        let entries = outgoing.entries as usize;
-        let ((header, messages), staging) = outgoing.readback.finish(device, |bytes| {
-            let header = header_of(bytes);
-            let count = (header[counters::OUTBOX] as usize).min(entries);
-            let to = &bytes[HEADER as usize..HEADER as usize + 4 * count];
-            let particles = &bytes[HEADER as usize + 4 * entries..];
-            let mut messages = vec![Vec::new(); peers];
-            for (peer, particle) in to.chunks_exact(4).zip(particles.chunks_exact(PARTICLE as usize)) {
-                messages[u32::from_le_bytes([peer[0], peer[1], peer[2], peer[3]]) as usize].extend(particle);
-            }
-            (header, messages)
-        })?;
+        let (entries, peers) = (outgoing.entries, outgoing.peers);
+        let read = |bytes: &[u8]| Header::and_messages(bytes, peers, PARTICLE);
+        let ((header, messages), staging) = outgoing.readback.finish(device, read)?;
         self.spare_staging.push(staging);
-        let count = u64::from(header[counters::OUTBOX]);
+        let count = u64::from(header.lists[counters::OUTBOX]);
         self.outbox_guess.follow(count);
-        if count > entries as u64 {
+        if count > entries {
             // More than was copied, or than there was room for: once more, with room for all.
             if count > self.exchange.room {
                 self.make_exchange_room(device, |room| room.particles = count + count / 4)?;
@@ -103,7 +143,7 @@ impl Subdomain {
             return self.packed(rec, step, outgoing);
         }
         let slots = step.count + step.newborns;
-        step.total = slots - header[counters::DROPPED];
+        step.total = slots - header.lists[counters::DROPPED];
         Ok(messages)
     }
 
@@ -121,7 +161,7 @@ impl Subdomain {
         let slots = u64::from(step.count) + u64::from(step.newborns);
         let arrivals = messages.iter().map(|message| message.len() as u64 / PARTICLE).sum::<u64>();
         self.make_room(device, slots - u64::from(self.count) + arrivals, 0, 0)?;
-        device.write(&self.particle.particles, slots * PARTICLE, &messages.concat());
+        device.write_joined(&self.particle.particles, slots * PARTICLE, messages)?;
         step.arrivals = arrivals as u32;
         step.total += step.arrivals;
         self.write_parameters(device, step);
@@ -134,24 +174,27 @@ impl Subdomain {
     /// # Errors
     /// If the device has no memory for the copy.
     pub fn pack_updates(&mut self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) -> Result<Outgoing, GpuError> {
-        let device = rec.device();
-        if let Some(kernels) = self.kernels.exchange.as_ref().and_then(|kernels| kernels.updates.as_ref()) {
-            let offset = self.offset(device, step, round);
-            let (list, sizes) = (counters::CHANGED as u32, &self.fixed.rechoose_dispatches);
-            kernels.pack.dispatch_indirect(rec.phase("update"), offset, sizes, list);
+        if let Some((kernels, updates)) =
+            self.kernels.exchange.as_ref().and_then(|kernels| Some((kernels, kernels.updates.as_ref()?)))
+        {
+            let offset = self.offset(rec.device(), step, round);
+            let pass = rec.phase("update");
+            let sizes = &self.fixed.rechoose_dispatches;
+            updates.pack.dispatch_indirect(pass, offset, sizes, counters::CHANGED as u32);
+            kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
+            updates.fill.dispatch_indirect(pass, offset, &self.fixed.dispatches, counters::UPDATES as u32);
         }
         let entries = self.update_guess.0.min(self.exchange.update_room);
-        let staging = self.staging_of(device, HEADER + entries * UPDATE)?;
-        let encoder = rec.encoder();
-        encoder.copy_buffer_to_buffer(&self.fixed.counters, 0, &staging, 0, HEADER);
-        encoder.copy_buffer_to_buffer(&self.exchange.updates_out, 0, &staging, HEADER, entries * UPDATE);
+        let staging = self.copy_outbox(rec, entries, UPDATE, |exchange| &exchange.updates_out)?;
         // The lists start anew after the exchange.
+        let encoder = rec.encoder();
         for list in [counters::CHANGED, counters::UPDATES] {
             encoder.clear_buffer(&self.fixed.counters, 4 * list as u64, Some(4));
         }
         encoder.clear_buffer(&self.fixed.rechoose_dispatches, 12 * counters::CHANGED as u64, Some(4));
-        let submission = rec.submit();
-        Ok(Outgoing { readback: device.read_later(staging, submission), entries })
+        encoder.clear_buffer(&self.fixed.dispatches, 12 * counters::UPDATES as u64, Some(4));
+        let readback = rec.device().read_later(staging, rec.submit());
+        Ok(Outgoing { readback, entries, peers: self.place.peers.len() })
     }
 
     /// The packed updates for the near peers, once the device is done.
@@ -166,30 +209,23 @@ impl Subdomain {
         outgoing: Outgoing,
     ) -> Result<Messages, GpuError> {
         let device = rec.device();
-        let near = self.place.near;
-        let entries = outgoing.entries as usize;
-        let ((changed, count, messages), staging) = outgoing.readback.finish(device, |bytes| {
-            let header = header_of(bytes);
-            let (changed, count) = (header[counters::CHANGED], header[counters::UPDATES]);
-            let mut messages = vec![Vec::new(); near];
-            let updates = bytes[HEADER as usize..].chunks_exact(UPDATE as usize);
-            for update in updates.take((count as usize).min(entries)) {
-                let peer = bytemuck::pod_read_unaligned::<GpuUpdate>(update).peer;
-                messages[peer as usize].extend(update);
-            }
-            (changed, u64::from(count), messages)
-        })?;
+        let (entries, peers) = (outgoing.entries, outgoing.peers);
+        let read = |bytes: &[u8]| Header::and_messages(bytes, peers, UPDATE);
+        let ((header, mut messages), staging) = outgoing.readback.finish(device, read)?;
         self.spare_staging.push(staging);
+        let count = u64::from(header.lists[counters::UPDATES]);
         self.update_guess.follow(count);
-        if count > entries as u64 {
+        if count > entries {
             // More than was copied, or than there was room for: once more, with room for all.
-            self.fill_list(device, counters::CHANGED, changed);
+            self.fill_list(device, counters::CHANGED, header.lists[counters::CHANGED]);
             if count > self.exchange.update_room {
                 self.make_exchange_room(device, |room| room.updates = count + count / 4)?;
             }
             let outgoing = self.pack_updates(rec, step, round)?;
             return self.packed_updates(rec, step, round, outgoing);
         }
+        // Nothing goes to those that are not near.
+        messages.truncate(self.place.near);
         Ok(messages)
     }
 
@@ -214,9 +250,8 @@ impl Subdomain {
         }
         // The first entry says how many follow.
         let count = GpuUpdate { cell: updates as u32, ..GpuUpdate::default() };
-        let mut bytes = bytemuck::bytes_of(&count).to_vec();
-        bytes.extend(messages.iter().flatten());
-        device.write(&self.exchange.updates_in, 0, &bytes);
+        device.write(&self.exchange.updates_in, 0, &[count]);
+        device.write_joined(&self.exchange.updates_in, UPDATE, messages)?;
         if let Some(kernels) = self.kernels.exchange.as_ref().and_then(|kernels| kernels.updates.as_ref()) {
             let offset = self.offset(device, step, round);
             kernels.receive.dispatch(rec.phase("update"), offset, threads(device, updates));
@@ -296,8 +331,4 @@ impl Subdomain {
         device.write(&self.exchange.peers, 0, &peers);
         self.rebind(device)
     }
-}
-
-fn header_of(bytes: &[u8]) -> Vec<u32> {
-    bytemuck::pod_collect_to_vec(&bytes[..HEADER as usize])
 }

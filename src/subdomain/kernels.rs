@@ -52,6 +52,8 @@ pub struct CellKernels<K> {
 /// On a device among others.
 pub struct ExchangeKernels<K> {
     pub pack: K,
+    pub message_starts: K,
+    pub fill: K,
     pub updates: Option<UpdateKernels<K>>,
     pub weigh: K,
 }
@@ -59,6 +61,7 @@ pub struct ExchangeKernels<K> {
 /// What the rounds did to ghosts.
 pub struct UpdateKernels<K> {
     pub pack: K,
+    pub fill: K,
     pub receive: K,
 }
 
@@ -101,8 +104,14 @@ impl<K> Kernels<K> {
         let exchange = if features.halo {
             Some(ExchangeKernels {
                 pack: make("pack")?,
+                message_starts: make("message_starts")?,
+                fill: make("fill_outbox")?,
                 updates: if features.rounds {
-                    Some(UpdateKernels { pack: make("pack_updates")?, receive: make("receive")? })
+                    Some(UpdateKernels {
+                        pack: make("pack_updates")?,
+                        fill: make("fill_updates")?,
+                        receive: make("receive")?,
+                    })
                 } else {
                     None
                 },

@@ -192,9 +192,18 @@ pub struct GpuUpdate {
     pub particle: GpuParticle,
     pub flight: GpuFlight,
     pub cell: u32,
-    pub peer: u32,
     pub pad: u32,
     pub pad2: u32,
+    pub pad3: u32,
+}
+
+/// `Sending` of `shaders/shared/sendings.wgsl`, which no host reads.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuSending {
+    pub index: u32,
+    pub peer: u32,
+    pub place: u32,
 }
 
 /// `Peer` of `shaders/shared/update.wgsl`.

@@ -35,8 +35,8 @@ pub use domain::{Domain, DomainInput};
 pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
-    GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle,
+    GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
 pub use place::{Cells, Ghosts, Place};

@@ -89,6 +89,24 @@ fn a_weak_sweep_holds_the_particles_of_a_device() {
     assert!((per_step(1) - 2000.0).abs() < 1.0 && (per_step(2) - 4000.0).abs() < 2.0, "{:?}", table.0);
 }
 
+/// Emulated too, each device has as many particles as one device of the scene, and a speed-up is that of their number.
+#[test]
+fn an_emulated_weak_sweep_holds_the_particles_of_a_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--devices", "2,4", "--balance", "dynamic", "--balance-by", "particles", "--intervals", "1"];
+    let text = finished(folder.path(), &[&options[..], &["--weak", "--emulate"]].concat());
+    assert!(text.contains("as many more as there are more devices"), "{text}");
+    let table = Table::of(folder.path());
+    assert_eq!(table.cases(), [("modelled", "2", "dynamic"), ("modelled", "4", "dynamic")]);
+    let owned = [1, 2].map(|row| table.value(row, "owned_max"));
+    for (owned, row) in owned.into_iter().zip(1..) {
+        let mean = owned / table.value(row, "owned_imbalance");
+        assert!((mean - 2000.0).abs() < 2.0, "{mean}");
+    }
+    let expected = 2.0 * owned[0] / owned[1];
+    assert!((table.value(2, "owned_speed_up") - expected).abs() < 1e-9 * expected && expected > 1.5, "{expected}");
+}
+
 #[test]
 fn an_emulation_says_what_is_measured_and_what_is_modelled() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,7 +119,8 @@ fn an_emulation_says_what_is_measured_and_what_is_modelled() {
         "## Measured",
         "## Modelled: work alone",
         "## Modelled: time, with the fixed costs of",
-        "100 us per exchange and 0.5 GB/s (assumed)",
+        "100 us per exchange, 1 us per message and 0.5 GB/s (assumed)",
+        "measured: s, ",
         "## Modelled: time on an assumed GPU",
         "## The model beside real runs",
     ] {
@@ -147,7 +166,8 @@ fn what_cannot_be_swept_is_refused_with_the_reason() {
     }
     refused(&["--devices", "1", "--balance", "sometimes"], 2, "'sometimes'");
     refused(&["--devices", "1", "--repeat", "0"], 2, "--repeat");
-    refused(&["--devices", "1", "--weak", "--emulate"], 2, "cannot be used with");
+    refused(&["--devices", "1", "--weak", "--from", "here"], 2, "cannot be used with");
+    refused(&["--devices", "1", "--emulate", "--message-us=-1"], 2, "--message-us -1");
     refused(&["--devices", "1", "--validate", "1"], 2, "--emulate");
     refused(&["--devices", "1", "--latency-us", "3"], 2, "--emulate");
     refused(&["--devices", "4", "--emulate", "--validate", "2"], 2, "--launcher");

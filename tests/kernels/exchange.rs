@@ -1,4 +1,5 @@
-//! `bin`, `pack`, `pack_updates` and `receive` on a device among others: exactly.
+//! `bin`, `pack`, `pack_updates`, `message_starts`, `fill_outbox`, `fill_updates` and `receive` on a device among others:
+//! exactly.
 
 use std::collections::BTreeSet;
 
@@ -91,28 +92,31 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
         strays += u32::from(!theirs && !local.own.holds(cell));
     }
     expected.sort_unstable();
-    for room in [expected.len().next_multiple_of(4), 400] {
+    for room in [expected.len(), 400] {
         let mut rig = Rig::new(&world);
         rig.put("particles", &particles);
         rig.put("border", &border.iter().map(|&(i, cell)| [i as u32, local.index(cell)]).collect::<Vec<_>>());
         rig.put("peers", &local.peers());
         let unwritten = GpuParticle { tag: NOBODY, ..GpuParticle::default() };
         rig.put("outbox", &vec![unwritten; COUNT * 4]);
-        rig.put("outbox_peer", &vec![NOBODY; room]);
+        // (Buffers are rounded up to 16 bytes, which may be one sending more.)
+        put_sendings(&mut rig, room);
         rig.set_counter(LIST_BORDER, border.len() as u32);
         rig.step(GpuStep { count: COUNT as u32, ..local.step() });
         rig.run("pack", border.len() + 64);
-        assert_eq!(rig.counter(COUNT_OUTBOX) as usize, expected.len());
+        assert_eq!(rig.counter(LIST_OUTBOX) as usize, expected.len());
         assert_eq!(rig.counter(STRAYS), strays);
-        let peers: Vec<u32> = rig.get("outbox_peer", room);
+        let starts = message_starts(&rig, local.others.len());
+        rig.run("fill_outbox", expected.len() + 64);
         let sent: Vec<GpuParticle> = rig.get("outbox", COUNT * 4);
-        let written = room.min(expected.len());
+        let written = starts[local.others.len()] as usize;
+        assert_eq!(written, expected.len().min(room + usize::from(room % 4 == 1)));
         assert!(sent[written..].iter().all(|particle| *particle == unwritten));
         for particle in &sent[..written] {
             assert!(particles.contains(particle), "whole");
         }
-        let mut found: Vec<(u32, u32)> =
-            peers[..written].iter().zip(&sent).map(|(&peer, particle)| (peer, particle.tag)).collect();
+        let peers = (0..local.others.len()).flat_map(|p| vec![p as u32; (starts[p + 1] - starts[p]) as usize]);
+        let mut found: Vec<(u32, u32)> = peers.zip(&sent).map(|(peer, particle)| (peer, particle.tag)).collect();
         found.sort_unstable();
         if room >= expected.len() {
             assert_eq!(found, expected);
@@ -122,6 +126,41 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
     }
     // The check can fail: there are strays, movers, and particles for two.
     assert!(strays > 20 && movers > 100 && expected.len() > movers && expected.len() > 400);
+}
+
+/// Buffers for so many sendings.
+fn put_sendings(rig: &mut Rig, room: usize) {
+    rig.put("sendings", &vec![[0u32; 3]; room]);
+    rig.put("peer_counts", &[0u32; 64]);
+    rig.put("peer_starts", &[7u32; 64]);
+}
+
+/// Where each of the messages begins, and where the last one ends; the counts are zero afterwards.
+fn message_starts(rig: &Rig, peers: usize) -> Vec<u32> {
+    rig.run_groups("message_starts", [1, 1, 1]);
+    assert_eq!(rig.get::<u32>("peer_counts", 64), vec![0; 64]);
+    let starts: Vec<u32> = rig.get("peer_starts", peers + 2);
+    assert_eq!((starts[0], starts[peers + 1]), (0, 7), "peers and no more");
+    assert!(starts[..=peers].is_sorted());
+    starts[..=peers].to_vec()
+}
+
+/// Messages begin at the exclusive prefix sums of the counts, for any number of peers.
+#[test]
+fn messages_begin_at_the_prefix_sums() {
+    let world = World::plain();
+    let mut stream = Stream::new(54);
+    for peers in [1usize, 2, 127, 128, 129, 383] {
+        let counts: Vec<u32> = (0..peers).map(|_| stream.below(1000)).collect();
+        let mut rig = Rig::new(&world);
+        rig.put("peer_counts", &counts);
+        rig.put("peer_starts", &vec![u32::MAX; peers + 1]);
+        rig.step(GpuStep { count: 1, peers: peers as u32, ..GpuStep::default() });
+        rig.run_groups("message_starts", [1, 1, 1]);
+        let expected: Vec<u32> = (0..=peers).map(|p| counts[..p].iter().sum()).collect();
+        assert_eq!(rig.get::<u32>("peer_starts", peers + 1), expected);
+        assert_eq!(rig.get::<u32>("peer_counts", peers), vec![0; peers]);
+    }
 }
 
 /// A crowd in the order of the bins: the cell of each, and where each bin starts.
@@ -160,7 +199,7 @@ fn updates_go_to_those_who_have_the_ghost() {
         // The third other has no ghosts of this device.
         for (peer, _) in (0..2).zip(&local.others).filter(|(_, other)| other.away(cells[k]) <= local.depth) {
             let (particle, flight) = (particles[k], flights[k]);
-            let update = GpuUpdate { particle, flight, cell: local.index(cells[k]), peer, pad: 0, pad2: 0 };
+            let update = GpuUpdate { particle, flight, cell: local.index(cells[k]), ..GpuUpdate::default() };
             expected.push((peer, particle.tag, update));
         }
     }
@@ -175,16 +214,22 @@ fn updates_go_to_those_who_have_the_ghost() {
         rig.put("changed", &changed);
         rig.put("peers", &local.peers());
         rig.put("updates_out", &vec![GpuUpdate::default(); room]);
+        put_sendings(&mut rig, room);
         rig.set_counter(LIST_CHANGED, changed.len() as u32);
         rig.step(GpuStep { count: COUNT as u32, ..local.step() });
         rig.run("pack_updates", COUNT);
-        assert_eq!(rig.counter(COUNT_UPDATES) as usize, expected.len());
-        let mut found: Vec<GpuUpdate> = rig.get("updates_out", room.min(expected.len()));
-        found.sort_unstable_by_key(|update| (update.peer, update.particle.tag));
+        assert_eq!(rig.counter(LIST_UPDATES) as usize, expected.len());
+        let starts = message_starts(&rig, local.others.len());
+        rig.run("fill_updates", expected.len() + 64);
+        let written: Vec<GpuUpdate> = rig.get("updates_out", room.min(expected.len()));
+        let to = |k: usize| starts.partition_point(|&start| start as usize <= k) as u32 - 1;
+        let mut found: Vec<(u32, u32, GpuUpdate)> =
+            written.iter().enumerate().map(|(k, update)| (to(k), update.particle.tag, *update)).collect();
+        found.sort_unstable_by_key(|entry| (entry.0, entry.1));
         if room > 50 {
-            assert_eq!(found, expected.iter().map(|entry| entry.2).collect::<Vec<_>>());
+            assert_eq!(found, expected);
         } else {
-            assert!(found.iter().all(|update| expected.iter().any(|entry| entry.2 == *update)));
+            assert!(found.iter().all(|entry| expected.contains(entry)));
         }
         let layers: Vec<u32> = rig.get("layers", COUNT);
         let listed = |s: usize| changed.binary_search(&(s as u32)).is_ok();

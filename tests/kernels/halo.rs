@@ -142,11 +142,15 @@ fn all_that_a_chain_of_neighbours_joins_are_sent() {
         rig.put("border", &crowd.border());
         rig.put("peers", &crowd.peers());
         rig.put("outbox", &vec![GpuParticle::default(); COUNT]);
-        rig.put("outbox_peer", &vec![NOBODY; COUNT]);
+        rig.put("sendings", &vec![[0u32; 3]; COUNT]);
+        rig.put("peer_counts", &[0u32; 4]);
+        rig.put("peer_starts", &[0u32; 4]);
         rig.set_counter(LIST_BORDER, COUNT as u32);
         rig.step(crowd.step(depth));
         rig.run("pack", COUNT);
-        let sent: Vec<GpuParticle> = rig.get("outbox", rig.counter(COUNT_OUTBOX) as usize);
+        rig.run_groups("message_starts", [1, 1, 1]);
+        rig.run("fill_outbox", COUNT);
+        let sent: Vec<GpuParticle> = rig.get("outbox", rig.counter(LIST_OUTBOX) as usize);
         let sent: BTreeSet<u32> = sent.iter().map(|particle| particle.tag).collect();
 
         let cells = crowd.world.cells();
@@ -161,10 +165,15 @@ fn all_that_a_chain_of_neighbours_joins_are_sent() {
         rig.put("changed", &(0..COUNT as u32).collect::<Vec<_>>());
         rig.put("peers", &crowd.peers());
         rig.put("updates_out", &vec![GpuUpdate::default(); COUNT]);
+        rig.put("sendings", &vec![[0u32; 3]; COUNT]);
+        rig.put("peer_counts", &[0u32; 4]);
+        rig.put("peer_starts", &[0u32; 4]);
         rig.set_counter(LIST_CHANGED, COUNT as u32);
         rig.step(crowd.step(depth));
         rig.run("pack_updates", COUNT);
-        let told: Vec<GpuUpdate> = rig.get("updates_out", rig.counter(COUNT_UPDATES) as usize);
+        rig.run_groups("message_starts", [1, 1, 1]);
+        rig.run("fill_updates", COUNT);
+        let told: Vec<GpuUpdate> = rig.get("updates_out", rig.counter(LIST_UPDATES) as usize);
         let told: BTreeSet<u32> = told.iter().map(|update| update.particle.tag).collect();
 
         let around = (0..COUNT).filter(|&s| crowd.near.away(crowd.cell[s]) <= depth).count();

@@ -7,6 +7,7 @@
 #[allow(dead_code)] // Each test binary uses its own part.
 #[path = "../invariance/bits.rs"]
 mod bits;
+mod midway;
 #[allow(dead_code)]
 #[path = "../invariance/scenes.rs"]
 mod scenes;
@@ -25,21 +26,25 @@ use corpuscle::ranks::{Communicator, from_environment};
 use corpuscle::simulation::{BalanceMode, BalanceOptions, Model, Options, Setup, Simulation, SimulationError};
 use whole_run::{Run, Witness, device, run};
 
+const MIDWAY: &str = "-midway";
 /// Says what a rank runs.
 const CASE: &str = "CORPUSCLE_TEST_CASE";
 /// Far beyond what a slow machine needs.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-const SCENES: [&str; 3] = ["tank", "box", "effusion"];
+/// `midway`: from a state in the middle of the run.
+const SCENES: [&str; 5] = ["tank", "box", "effusion", "tank-midway", "box-midway"];
 const MODES: [&str; 4] = ["off", "initial", "dynamic", "forced"];
 /// Scene, mode, ranks: each of them once at least.
-const SOME: [(&str, &str, usize); 6] = [
+const SOME: [(&str, &str, usize); 8] = [
     ("tank", "dynamic", 2),
     ("tank", "initial", 4),
     ("tank", "forced", 3),
     ("box", "off", 3),
     ("effusion", "dynamic", 3),
     ("box", "dynamic", 1),
+    ("tank-midway", "dynamic", 3),
+    ("box-midway", "off", 2),
 ];
 
 fn main() -> ExitCode {
@@ -61,12 +66,16 @@ fn main() -> ExitCode {
         if !words.iter().all(|word| name.contains(word.as_str())) {
             continue;
         }
-        let expected = alone.entry(scene).or_insert_with(|| told(&run(&model(scene), Options::default())));
+        let expected = alone.entry(scene).or_insert_with(|| match scene.strip_suffix(MIDWAY) {
+            Some(scene) => told(&midway::go_on_alone(&model(scene), &device())),
+            None => told(&run(&model(scene), Options::default())),
+        });
         let found = mpirun(ranks, &format!("{scene} {mode}"));
         assert_eq!(&found, expected, "{name}");
         println!("test {name} ... ok");
     }
     if words.is_empty() {
+        assert_ne!(alone.get("tank"), alone.get("tank-midway"), "the check can fail: fewer rows, other counts");
         let other = mpirun(2, "other off");
         assert_ne!(Some(&other), alone.get("box"), "the check can fail: another seed gives other bits");
     }
@@ -123,10 +132,14 @@ fn of_rank(case: &str, comm: &dyn Communicator) -> Result<Run, SimulationError> 
         _ => BalanceMode::Dynamic,
     };
     let balance = BalanceOptions { mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
-    let (model, device) = (model(scene), device());
+    let options = Options { balance, ..Options::default() };
+    let device = device();
+    if let Some(scene) = scene.strip_suffix(MIDWAY) {
+        return midway::go_on(&model(scene), &device, comm, options);
+    }
+    let model = model(scene);
     let setup = Setup::new(&model, &device, comm.size(), None)?;
     let mut witness = Witness::default();
-    let options = Options { balance, ..Options::default() };
     let outcome = Simulation::among(&model, &device, &setup, comm, options)?.run(&mut witness)?;
     Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })
 }

@@ -54,8 +54,19 @@ fn cut(text: &str, steps: u64) -> Cut {
     Cut { model, state, particles, time, step }
 }
 
+/// Probes of some hundred particles each: before the vent's far wall, and beside the inner box.
+const PROBES: &str = r#"
+[[probe]]
+name = "far end"
+region = { box = { min = [0.25, -0.2, -0.18], max = [0.4, 0.2, 0.18] } }
+
+[[probe]]
+name = "near end"
+region = { box = { min = [0.0, 0.07, -0.18], max = [0.24, 0.2, 0.18] } }
+"#;
+
 fn tank_text(particles: u64) -> String {
-    let text = include_str!("../../scenes/tank.toml");
+    let text = format!("{}{PROBES}", include_str!("../../scenes/tank.toml"));
     text.replace("particles = 1000000", &format!("particles = {particles}")).replace("rows = 100", "rows = 1000")
 }
 

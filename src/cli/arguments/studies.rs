@@ -52,7 +52,7 @@ pub struct RealRunArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,
     /// So many times the particles on so many devices: hold the particles of each device
-    #[arg(long, conflicts_with = "emulate")]
+    #[arg(long)]
     pub weak: bool,
 }
 
@@ -71,6 +71,9 @@ pub struct EmulationArguments {
     /// Assumed: microseconds of an exchange with all neighbours
     #[arg(long, requires = "emulate", value_name = "US", default_value_t = 5.0)]
     pub latency_us: f64,
+    /// Assumed: microseconds of each message in an exchange, beside those of the exchange
+    #[arg(long, requires = "emulate", value_name = "US", default_value_t = 1.0)]
+    pub message_us: f64,
     /// Assumed: gigabytes per second that a device sends
     #[arg(long, requires = "emulate", value_name = "GB/S", default_value_t = 10.0)]
     pub bandwidth_gbs: f64,

@@ -21,6 +21,26 @@ impl Request {
         flag != 0
     }
 
+    /// Waits for a receive, and how many bytes came.
+    fn wait_for_bytes(&mut self) -> usize {
+        let mut count: Count = 0;
+        // SAFETY: as for `done`; a status is plain data that MPI fills, and the message consists of bytes.
+        unsafe {
+            let mut status: ffi::MPI_Status = std::mem::zeroed();
+            ffi::MPI_Wait(&mut self.0, &mut status);
+            ffi::MPI_Get_count(&status, ffi::RSMPI_UINT8_T, &mut count);
+        }
+        usize::try_from(count).unwrap_or(0)
+    }
+
+    /// Gives a receive up; it is complete, one way or the other, once it has been waited for.
+    fn cancel(&mut self) {
+        if !self.done() {
+            // SAFETY: as for `done`, and the request is not null, since it is not complete.
+            unsafe { ffi::MPI_Cancel(&mut self.0) };
+        }
+    }
+
     fn wait(&mut self) {
         // SAFETY: as for `done`; a completed request is null, for which this returns at once.
         unsafe { ffi::MPI_Wait(&mut self.0, ffi::RSMPI_STATUS_IGNORE) };
@@ -62,6 +82,48 @@ impl PendingSend {
 
     pub(super) fn done(&mut self) -> bool {
         self.request.done()
+    }
+}
+
+/// Memory that waits for a message. The request is dropped first, then the memory; a message that never comes is
+/// not waited for.
+pub(super) struct PendingReceive {
+    request: Request,
+    memory: Vec<u8>,
+}
+
+impl PendingReceive {
+    /// For a message of at most `room` bytes, which is short enough to be counted; MPI ends all ranks at a longer one.
+    pub(super) fn start(world: &SimpleCommunicator, source: Rank, tag: Tag, room: usize) -> PendingReceive {
+        let mut memory = vec![0u8; room];
+        // SAFETY: null requests are constants of MPI.
+        let mut request = Request(unsafe { ffi::RSMPI_REQUEST_NULL });
+        // SAFETY: the memory has that many bytes and stays where it is, untouched, until the request is complete.
+        unsafe {
+            ffi::MPI_Irecv(
+                memory.as_mut_ptr().cast(),
+                memory.len() as Count,
+                ffi::RSMPI_UINT8_T,
+                source,
+                tag,
+                world.as_raw(),
+                &mut request.0,
+            );
+        }
+        PendingReceive { request, memory }
+    }
+
+    /// The message; nothing waits afterwards.
+    pub(super) fn wait(&mut self) -> Vec<u8> {
+        let bytes = self.request.wait_for_bytes();
+        self.memory.truncate(bytes);
+        std::mem::take(&mut self.memory)
+    }
+}
+
+impl Drop for PendingReceive {
+    fn drop(&mut self) {
+        self.request.cancel();
     }
 }
 

@@ -1,0 +1,25 @@
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl sendings.wgsl
+// Update, part 3: what the rounds did to each particle, to its place in the message to its peer.
+//
+// Reads `sendings`, `peer_starts`, `sorted`, `flights`, `cells`; writes `updates_out`. One thread per sending that
+// found room.
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
+@group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(27) var<storage, read> cells: array<u32>;
+@group(0) @binding(38) var<storage, read_write> updates_out: array<Update>;
+@group(0) @binding(55) var<storage, read> peer_starts: array<u32>;
+
+@compute @workgroup_size(WORKGROUP)
+fn fill_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear(id, groups);
+    if (k >= min(atomicLoad(&counters[LIST_UPDATES]), arrayLength(&sendings))) {
+        return;
+    }
+    let s = sendings[k].index;
+    let place = peer_starts[sendings[k].peer] + sendings[k].place;
+    if (place < arrayLength(&updates_out)) {
+        updates_out[place] = Update(sorted[s], flights[s], cell_index(cell_of(cells[s])), 0u, 0u, 0u);
+    }
+}

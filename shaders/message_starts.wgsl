@@ -1,0 +1,38 @@
+//! uses: step.wgsl
+// Exchange and update, part 2: where each peer's message begins among all that is sent.
+//
+// Reads `peer_counts` and leaves zeros there; writes their exclusive prefix sums and, behind them, the sum of all to
+// `peer_starts`. One workgroup; each thread takes one contiguous share of the peers.
+
+override SCAN_THREADS: u32 = 128;
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(54) var<storage, read_write> peer_counts: array<u32>;
+@group(0) @binding(55) var<storage, read_write> peer_starts: array<u32>;
+
+var<workgroup> shares: array<u32, SCAN_THREADS>;
+
+@compute @workgroup_size(SCAN_THREADS)
+fn message_starts(@builtin(local_invocation_index) thread: u32) {
+    let share = (step.peers + SCAN_THREADS - 1u) / SCAN_THREADS;
+    let begin = min(thread * share, step.peers);
+    let end = min(begin + share, step.peers);
+    var sum = 0u;
+    for (var p = begin; p < end; p++) {
+        sum += peer_counts[p];
+    }
+    shares[thread] = sum;
+    workgroupBarrier();
+    var before = 0u;
+    for (var k = 0u; k < thread; k++) {
+        before += shares[k];
+    }
+    for (var p = begin; p < end; p++) {
+        peer_starts[p] = before;
+        before += peer_counts[p];
+        peer_counts[p] = 0u;
+    }
+    if (thread == SCAN_THREADS - 1u) {
+        peer_starts[step.peers] = before;
+    }
+}
