@@ -14,7 +14,7 @@ use std::{env, fs, process};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
-const CAPABILITIES: Capabilities = Capabilities::empty();
+pub const CAPABILITIES: Capabilities = Capabilities::empty();
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];

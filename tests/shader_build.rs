@@ -118,3 +118,20 @@ fn files_that_use_each_other_end() {
     ]);
     assert_eq!(build::kernels(dir.path()).unwrap().0.len(), 1);
 }
+
+/// The kernels that only a bench compiles are as valid as the step's.
+#[test]
+fn the_kernels_of_the_benches_are_valid() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/kernels");
+    let mut found = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let module = naga::front::wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{}: {}", path.display(), error.emit_to_string(&text)));
+        let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), build::CAPABILITIES);
+        validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", path.display()));
+        found += module.entry_points.len();
+    }
+    assert!(found >= 6);
+}

@@ -367,7 +367,7 @@ mod tests {
         let last: Vec<&str> = time.lines().last().unwrap().split('|').map(str::trim).collect();
         assert_eq!(last[7..10], ["25 %", "-", "430"], "{time}");
         // Twice the particles in the same time are twice as fast.
-        let mut weak = all.clone();
+        let mut weak = all;
         weak[2..].iter_mut().for_each(|point| point.particles *= 2.0);
         assert_eq!(speed_up(&weak, &|p| p.work, &weak[3]), Some(4.0));
         // A count without work is no base for it.

@@ -7,33 +7,34 @@ use corpuscle::subdomain::GpuParticle;
 
 use crate::whole_run::{Run, Witness};
 
-/// Steps before the state.
-const BEFORE: u64 = 96;
-
-#[derive(Default)]
-struct Cutter(Option<(RunState, Vec<GpuParticle>)>);
+/// Cuts a run after so many steps, at the end of an interval.
+struct Cutter {
+    after: u64,
+    state: Option<(RunState, Vec<GpuParticle>)>,
+}
 
 impl Observer for Cutter {
     fn request(&mut self, steps: u64) -> Request {
-        if steps >= BEFORE { Request::CheckpointAndStop } else { Request::None }
+        if steps >= self.after { Request::CheckpointAndStop } else { Request::None }
     }
 
     fn checkpoint(&mut self, moment: &Moment<'_>) -> Result<(), SimulationError> {
-        self.0 = Some((moment.state.clone(), moment.own.to_vec()));
+        self.state = Some((moment.state.clone(), moment.own.to_vec()));
         Ok(())
     }
 }
 
-/// What is left of a run after its first steps, on these ranks.
+/// What is left of a run after so many steps, on these ranks.
 pub fn go_on(
     model: &Model,
+    after: u64,
     device: &Device,
     comm: &dyn Communicator,
     options: Options<'_>,
 ) -> Result<Run, SimulationError> {
-    let mut cutter = Cutter::default();
+    let mut cutter = Cutter { after, state: None };
     Simulation::new(model, device, Options::default())?.run(&mut cutter)?;
-    let (state, particles) = cutter.0.expect("a state");
+    let (state, particles) = cutter.state.expect("a state");
     let setup = Setup::with_particles(model, device, comm.size(), particles)?;
     let mut witness = Witness::default();
     let outcome = Simulation::resume(model, device, &setup, comm, options, &state)?.run(&mut witness)?;
@@ -41,6 +42,6 @@ pub fn go_on(
 }
 
 /// The same on one process.
-pub fn go_on_alone(model: &Model, device: &Device) -> Run {
-    go_on(model, device, &Solo::new(), Options::default()).expect("a run")
+pub fn go_on_alone(model: &Model, after: u64, device: &Device) -> Run {
+    go_on(model, after, device, &Solo::new(), Options::default()).expect("a run")
 }

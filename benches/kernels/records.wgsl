@@ -1,0 +1,30 @@
+// A particle as one record of eight words: `fly` moves it where it is, `gather` puts it into another order.
+
+override WORKGROUP: u32 = 64;
+override COUNT: u32;
+
+struct Particle {
+    position: vec3<u32>,
+    tag: u32,
+    velocity: vec3<f32>,
+    spin: f32,
+}
+
+@group(0) @binding(0) var<storage, read> order: array<u32>;
+@group(0) @binding(1) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> ordered: array<Particle>;
+
+@compute @workgroup_size(WORKGROUP)
+fn fly(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < COUNT) {
+        let moved = bitcast<vec3<u32>>(vec3<i32>(particles[id.x].velocity));
+        particles[id.x].position += moved;
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < COUNT) {
+        ordered[id.x] = particles[order[id.x]];
+    }
+}
