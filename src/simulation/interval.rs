@@ -175,6 +175,8 @@ pub struct Machine<'a, 'b> {
     pub timer: Option<&'a PhaseTimer>,
     /// Steps per submission.
     pub batch: u32,
+    /// Whether neighbour lists are made long enough for the first step before it runs.
+    pub fit_lists: bool,
 }
 
 impl Machine<'_, '_> {
@@ -187,6 +189,9 @@ impl Machine<'_, '_> {
             && decomposition.is_scattered()
         {
             decomposition.apply(device, self.subdomain, self.exchange)?;
+        }
+        if self.fit_lists {
+            self.subdomain.fit_lists(device, interval.dt, &interval.tables)?;
         }
         let before = self.subdomain.remember(device, spare)?;
         let newborns = Newborns {

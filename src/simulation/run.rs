@@ -81,6 +81,8 @@ pub struct Simulation<'a> {
     /// No particles from here on.
     switched: bool,
     submitted: usize,
+    /// Nothing has been submitted to this device yet.
+    fresh: bool,
     spare: Vec<wgpu::Buffer>,
     next_row: f64,
     next_snapshot: u32,
@@ -172,6 +174,7 @@ impl<'a> Simulation<'a> {
             switching: Switching::new(model)?,
             switched: false,
             submitted: 0,
+            fresh: true,
             spare: Vec::new(),
             next_row: plan.end_time / f64::from(scene.output.rows.max(1)),
             next_snapshot: 0,
@@ -447,6 +450,7 @@ impl<'a> Simulation<'a> {
     fn submit(&mut self, interval: Interval) -> Result<(), SimulationError> {
         let batch = self.options.batch.unwrap_or(self.model.plan.steps_per_interval);
         let spare = self.spare.pop();
+        let fit_lists = std::mem::take(&mut self.fresh) && !self.options.lists_start_short;
         let mut machine = Machine {
             plan: &self.model.plan,
             device: self.device,
@@ -455,6 +459,7 @@ impl<'a> Simulation<'a> {
             decomposition: self.decomposition.as_mut(),
             timer: self.timer.as_ref(),
             batch,
+            fit_lists,
         };
         let flying = machine.submit(interval, spare)?;
         // The one before is done, or nearly: its sums are formed while this one runs.

@@ -10,6 +10,7 @@ pub const CHANGED: usize = 13;
 pub const OUTBOX: usize = 14;
 pub const UPDATES: usize = 15;
 pub const DROPPED: usize = 31;
+pub const MOST_NEIGHBOURS: usize = 36;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
@@ -50,7 +51,7 @@ impl Counters {
             collisions: (u64::from(words[32]) | (u64::from(words[33]) << 32)) - u64::from(words[44]),
             lost: words[34],
             sampled: words[35],
-            most_neighbours: words[36],
+            most_neighbours: words[MOST_NEIGHBOURS],
             outside: words[37],
             overshoot: words[38],
             truncated: words[39],

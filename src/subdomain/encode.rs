@@ -5,6 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::{CHUNK, step_stride};
 use super::constants::{Features, WORKGROUP};
+use super::counters;
 use super::kernels::CollisionKernels;
 use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuStep, GpuVent};
 use super::nearness;
@@ -150,6 +151,39 @@ impl Subdomain {
         }
         device.write(&self.fixed.step, 0, &bytes);
         Ok(slots)
+    }
+
+    /// Makes the neighbour lists as long as the first step of an interval wants them, and some longer, by a search among
+    /// the particles that are here: a run begins with gas of any density, and lists that are found too short
+    /// only afterwards cost the intervals under way. Changes nothing else.
+    ///
+    /// # Errors
+    /// If the device fails, or has no room for such lists.
+    pub fn fit_lists(&mut self, device: &Device, dt: f64, tables: &Tables) -> Result<(), GpuError> {
+        if !self.domain.features.rounds || self.count == 0 {
+            return Ok(());
+        }
+        device.write(&self.fixed.shares, 0, &tables.shares);
+        let near2 = nearness::near2(&self.domain.plan, tables.halvings);
+        let slot = StepSlot { dt: dt as f32, near2, ..self.at_rest(device) };
+        self.write_parameters(device, &slot);
+        let mut rec = Recording::new(device);
+        self.kernels.reset.dispatch(rec.phase("lists"), 0, [1, 1, 1]);
+        self.bin(&mut rec, &slot);
+        self.scan(&mut rec, &slot);
+        self.sort(&mut rec, &slot);
+        self.neighbours(&mut rec, &slot);
+        rec.submit();
+        let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
+        let mut encoder = device.encoder();
+        encoder.clear_buffer(&self.fixed.counters, 0, None);
+        device.submit(encoder);
+        // Where particles lie outside of the own cells and the halo, `sorted` has gaps: then the intervals tell.
+        let wanted = words[counters::MOST_NEIGHBOURS];
+        if words[counters::DROPPED] > 0 || wanted == 0 {
+            return Ok(());
+        }
+        self.make_room(device, 0, 0, wanted + wanted / 8)
     }
 
     /// Starts a step of a device among others, whose number of particles is known only now.

@@ -52,7 +52,16 @@ impl Way {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
         let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
         let halo = HaloOptions { rounds: self.halo_rounds, ghosts: self.ghosts };
-        Options { batch: self.batch, halo, balance, stop_after_steps: self.stop, ..Options::default() }
+        // Lists that grow on the way: those of one device fit from the start.
+        let lists_start_short = true;
+        Options {
+            batch: self.batch,
+            halo,
+            balance,
+            stop_after_steps: self.stop,
+            lists_start_short,
+            ..Options::default()
+        }
     }
 }
 

@@ -196,7 +196,7 @@ fn lists_that_grow_among_ranks_change_no_bit() {
     let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1)];
     let model = dense(1);
     let runs = same(&model, &ways);
-    assert!(runs.iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
+    assert!(runs[1..].iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
     // In steps that density cuts, in which pairs meet nearer than a cell's edge.
     assert!(runs[0].outcome.steps > (model.scene.end_time / model.plan.time_step).round() as u64, "no step was cut");
 }
