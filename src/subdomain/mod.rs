@@ -152,8 +152,13 @@ impl Subdomain {
         if !self.domain.features.rounds || self.count == 0 {
             return Ok(0.0);
         }
-        let lengths: Vec<u32> = device.read(&self.particle.neighbour_count, self.count as usize)?;
+        let lengths = self.list_lengths(device)?;
         Ok(lengths.iter().map(|&length| f64::from(length)).sum::<f64>() / lengths.len() as f64)
+    }
+
+    /// Entries of each particle's neighbour list in the last step.
+    fn list_lengths(&self, device: &Device) -> Result<Vec<u32>, GpuError> {
+        device.read(&self.particle.neighbour_count, self.count as usize)
     }
 
     /// Other cells and peers, from the next step on, whose exchange moves the particles there.
