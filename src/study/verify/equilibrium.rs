@@ -29,24 +29,9 @@ pub fn temperatures(particles: &[GpuParticle], gas: u8, mass: f64) -> [f64; 2] {
 /// # Errors
 /// If the run fails.
 pub fn mixture(device: &Device, method: &str, rounds: u32, step_over_tau: f64, steps: u32) -> Result<Run, StudyError> {
-    mixture_of(device, method, 4000, rounds, step_over_tau, steps)
-}
-
-/// The same of so many particles.
-///
-/// # Errors
-/// If the run fails.
-pub fn mixture_of(
-    device: &Device,
-    method: &str,
-    particles: u64,
-    rounds: u32,
-    step_over_tau: f64,
-    steps: u32,
-) -> Result<Run, StudyError> {
     let gas = EquilibriumBox {
         method,
-        particles,
+        particles: 4000,
         rounds,
         step_over_tau,
         steps,

@@ -12,13 +12,19 @@ use super::statistics::mean_and_error;
 use super::tube::{LENGTH, SOD, Slice, Tube, counting_noise, mean_differences};
 use super::{Check, Curves, Effort, Findings, run};
 
-/// The profile at the end of a run with this setting, and the model.
+/// The profile at the end of a run with this setting, and the model. Occupancy and step are of all particles in `volume` (m3),
+/// or of the mean state.
 ///
 /// # Errors
 /// If the run fails.
-pub fn profile(device: &Device, tube: &Tube, setting: &Setting) -> Result<(Model, Vec<Slice>), StudyError> {
+pub fn profile(
+    device: &Device,
+    tube: &Tube,
+    setting: &Setting,
+    volume: Option<f64>,
+) -> Result<(Model, Vec<Slice>), StudyError> {
     let setting = Setting { particles: Some(tube.particles), ..*setting };
-    let model = model_with("tube", tube.scene()?, &setting, None)?;
+    let model = model_with("tube", tube.scene()?, &setting, volume)?;
     let particles = run(device, &model, Options::default())?.outcome.particles;
     let profile = tube.profile(&model, tube.end, &particles).unwrap_or_default();
     Ok((model, profile))
@@ -51,7 +57,7 @@ pub fn against(
 ) -> Result<(Vec<Check>, Vec<Slice>), StudyError> {
     let (_, occupancy, limits) = LIMITS[limits];
     let setting = Setting { method: Some(method), occupancy, ..Setting::default() };
-    let (_, profile) = profile(device, &Tube { particles, gamma, ..SOD }, &setting)?;
+    let (_, profile) = profile(device, &Tube { particles, gamma, ..SOD }, &setting, None)?;
     let (found, noise) = (mean_differences(&profile), counting_noise(&profile));
     let scale = (particles as f64 / PARTICLES).powf(POWER);
     let check = |k: usize| {
@@ -107,7 +113,8 @@ fn widened(model: &Model, tube: &Tube) -> f64 {
 /// If the run fails.
 pub fn expanded(device: &Device, particles: u64, method: Method) -> Result<Check, StudyError> {
     let tube = Tube { particles, ..VACUUM };
-    let (model, profile) = profile(device, &tube, &Setting { method: Some(method), ..Setting::default() })?;
+    let setting = Setting { method: Some(method), ..Setting::default() };
+    let (model, profile) = profile(device, &tube, &setting, None)?;
     let [found, _] = mean_differences(&profile);
     let [(noise, error), _] = counting_noise(&profile);
     let quantity = format!("{}: mean |rho - exact|, N = {particles}", method.name());

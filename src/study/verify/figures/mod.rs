@@ -22,7 +22,7 @@ use crate::study::StudyError;
 pub const FIGURES: &[Case] = &[
     Case {
         name: "lost-collisions",
-        law: "the specification's table of collisions over theory by rounds and step, and what few rounds do to temperatures",
+        law: "the specification's table of collisions over theory by rounds and step",
         run: lost::collisions,
     },
     Case {
@@ -44,11 +44,6 @@ pub const FIGURES: &[Case] = &[
         name: "free-flight",
         law: "what the method none has wrong when a gas is compressed, and when a tank is filled: exact for free flight",
         run: flights::wrong,
-    },
-    Case {
-        name: "small-difference",
-        law: "discharge at p2/p1 = .8 over choked isentropic flow, by Knudsen number of the hole's radius",
-        run: openings::small_difference,
     },
     Case {
         name: "constant-vent",
