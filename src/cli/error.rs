@@ -10,6 +10,7 @@ use crate::ranks::RankError;
 use crate::scene::SceneError;
 use crate::simulation::{ModelError, RefineError, SimulationError};
 use crate::study::StudyError;
+use crate::study::verify::page::PageError;
 
 pub const BAD_INPUT: u8 = 2;
 pub const DEVICE_TROUBLE: u8 = 3;
@@ -38,6 +39,9 @@ pub enum CliError {
     SchemaJson(#[from] serde_json::Error),
     #[error("cannot write to standard output: {0}")]
     StandardOutput(std::io::Error),
+    #[error("{}: {error}", path.display())]
+    #[diagnostic(help("without --keep the page is written anew, with the cases that are run"))]
+    Page { path: PathBuf, error: PageError },
     #[error("there is no verb `{asked}`; there are: {}", known.join(", "))]
     UnknownVerb { asked: String, known: Vec<String> },
     #[error(transparent)]
@@ -159,6 +163,7 @@ impl CliError {
             | CliError::Check { .. }
             | CliError::PlanWarnings { .. }
             | CliError::Output(_)
+            | CliError::Page { .. }
             | CliError::Checkpoint(_)
             | CliError::Refine(_)
             | CliError::RefinedOntoItself { .. }

@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::gpu::Device;
 use crate::output::{OutputError, line_chart};
 use crate::study::StudyError;
-use crate::study::verify::{CASES, Case, Effort, Findings, report, run_cases};
+use crate::study::verify::page::Page;
+use crate::study::verify::{CASES, Case, Effort, Findings, all_cases, report, run_cases};
 
 use super::CliError;
 use super::arguments::VerifyArguments;
@@ -16,7 +17,12 @@ use super::terminal::say;
 const FIGURES: &str = "figures";
 
 pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
-    let cases = chosen(&raw.cases)?;
+    let cases = chosen(&raw)?;
+    // A page that cannot be kept is told before any case.
+    let before = match &raw.markdown {
+        Some(path) if raw.keep => Some(kept(path)?),
+        _ => None,
+    };
     if raw.list {
         let widest = cases.iter().map(|case| case.name.len()).max().unwrap_or(0);
         let lines: String = cases.iter().map(|case| format!("{:<widest$}  {}\n", case.name, case.law)).collect();
@@ -46,9 +52,12 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
         let reasons: Vec<(&Case, String)> = failed.iter().map(|(case, error)| (*case, error.to_string())).collect();
         let driver = format!("{} {}", info.driver, info.driver_info);
         let device = format!("{} ({})", info.name, driver.trim());
-        let page = report::page(&outcomes, &reasons, &command(&raw), &device, FIGURES);
+        let mut page = Page::new(&outcomes, &reasons, &command(&raw), &device, FIGURES);
+        if let Some(before) = before {
+            page = page.in_place_of(before).map_err(|error| CliError::Page { path: path.clone(), error })?;
+        }
         let io = |action, path: &Path, source| OutputError::Io { action, path: path.to_path_buf(), source };
-        fs::write(path, page).map_err(|source| io("write", path, source))?;
+        fs::write(path, page.text()).map_err(|source| io("write", path, source))?;
         let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
         fs::create_dir_all(&figures).map_err(|source| io("create", &figures, source))?;
         for chart in outcomes.iter().flat_map(|(_, found)| &found.charts) {
@@ -70,14 +79,27 @@ fn worst(errors: Vec<CliError>) -> Result<(), CliError> {
     errors.into_iter().max_by_key(CliError::exit_code).map_or(Ok(()), Err)
 }
 
-/// The named ones, all if none is named.
-fn chosen(names: &[String]) -> Result<Vec<&'static Case>, CliError> {
-    let known = || CASES.iter().map(|case| case.name.to_owned()).collect();
+/// The named ones; of none those of laws, and the others where there is time for them.
+fn chosen(raw: &VerifyArguments) -> Result<Vec<&'static Case>, CliError> {
+    let known = || all_cases().map(|case| case.name.to_owned()).collect();
     let of_name = |name: &String| {
         let unknown = || CliError::UnknownCase { asked: name.clone(), known: known() };
-        CASES.iter().find(|case| case.name == name).ok_or_else(unknown)
+        all_cases().find(|case| case.name == name).ok_or_else(unknown)
     };
-    if names.is_empty() { Ok(CASES.iter().collect()) } else { names.iter().map(of_name).collect() }
+    match raw.cases.as_slice() {
+        [] if raw.full || raw.list => Ok(all_cases().collect()),
+        [] => Ok(CASES.iter().collect()),
+        names => names.iter().map(of_name).collect(),
+    }
+}
+
+fn kept(path: &Path) -> Result<Page, CliError> {
+    let text = fs::read_to_string(path).map_err(|source| OutputError::Io {
+        action: "read",
+        path: path.to_path_buf(),
+        source,
+    })?;
+    Page::read(&text).map_err(|error| CliError::Page { path: path.to_path_buf(), error })
 }
 
 /// As it would be typed.

@@ -113,10 +113,23 @@ pub const LIMITS: &[Limit] = &[
     ),
     limit_of(Quantity::Occupancy, None, AtMost(0.3), "it costs search time and buys no resolution"),
     // Carnahan and Starling: 1 % at f = .0025.
-    limit_of(Quantity::Occupancy, Some(Method::HardSphere), AtMost(0.0025), "rigid spheres press harder than a gas"),
+    limit_of(
+        Quantity::Occupancy,
+        Some(Method::HardSphere),
+        AtMost(0.0025),
+        "rigid spheres press harder than a gas, and flow faster",
+    ),
     limit_of(Quantity::Knudsen, None, AtMost(0.1), "its flow is off by 7 % or more"),
     // Measured at the occupancy of plans: 21 % too little at .1, 41 % at .3; taken as proportional below.
     limit_of(Quantity::Knudsen, Some(Method::Cell), AtMost(0.03), "its flow is off by 7 % or more"),
+    // Measured at f = .03: 24 % too much at .1, where the others hold. What rigid spheres press harder drives the flow; no
+    // Knudsen number mends it.
+    limit_of(
+        Quantity::Knudsen,
+        Some(Method::HardSphere),
+        AtMost(0.1),
+        "its flow is off by 7 % or more; within the limit, too, where rigid spheres press harder than a gas",
+    ),
     limit_of(
         Quantity::Knudsen,
         Some(Method::None),

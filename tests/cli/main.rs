@@ -160,8 +160,18 @@ fn reference_cases_are_listed_run_and_judged() {
     let page = folder.path().join("page.md");
     let text = printed(&["verify", "filling", "--markdown", page.to_str().unwrap()]);
     assert!(text.contains("2 of 2 pass") && text.lines().count() == 4, "{text}");
-    let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("corpuscle verify filling --quick") && page.contains("2 of 2 pass"), "{page}");
+    let first = fs::read_to_string(&page).unwrap();
+    assert!(first.contains("corpuscle verify filling --quick") && first.contains("2 of 2 pass"), "{first}");
+    // Another case beside what the page has.
+    printed(&["verify", "virial", "--markdown", page.to_str().unwrap(), "--keep"]);
+    let both = fs::read_to_string(&page).unwrap();
+    assert!(
+        both.contains("3 of 3 pass")
+            && first.lines().filter(|line| line.starts_with('|')).all(|row| both.contains(row))
+    );
+    fs::write(&page, "# Something else\n").unwrap();
+    let (code, _, err) = outcome(&["verify", "virial", "--markdown", page.to_str().unwrap(), "--keep"]);
+    assert!(code == 2 && err.contains("page.md: line 1") && err.contains("`# Accuracy`"), "{err}");
     let (code, _, err) = outcome(&["verify", "pressure"]);
     assert!(code == 2 && err.contains("`pressure`") && err.contains("wall-pressure"), "{err}");
 }

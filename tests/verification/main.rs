@@ -18,6 +18,7 @@ mod mixing;
 mod orifice;
 mod piston;
 mod planner;
+mod reference_cases;
 mod statistics;
 mod switch;
 mod two_chambers;

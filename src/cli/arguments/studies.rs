@@ -91,7 +91,7 @@ pub struct EmulationArguments {
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub struct VerifyArguments {
-    /// The cases to run; all if none is named
+    /// The cases to run; unless named all, with --quick those of laws, not of the specification's figures
     #[arg(value_name = "CASE")]
     pub cases: Vec<String>,
     /// As much as minutes allow (the default)
@@ -109,6 +109,9 @@ pub struct VerifyArguments {
     /// Also write the table as a page in Markdown
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub markdown: Option<PathBuf>,
+    /// Keep what the page has of the cases that are not run; it must be of this device
+    #[arg(long, requires = "markdown")]
+    pub keep: bool,
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,

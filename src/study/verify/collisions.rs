@@ -191,10 +191,75 @@ pub fn collision_rate_within(device: &Device, gas: &EquilibriumBox<'_>, limit: f
     })
 }
 
+/// The virial of a method: the sum of r . (g' - g) over that of |r| |g' - g|, over the pairs whose one collision of a step was
+/// with each other, and how many they were. r is that at the time of closest approach, of f64 from the states before
+/// the step; section 8 asks for 1e-6.
+///
+/// # Errors
+/// If the run fails.
+pub fn virial(device: &Device, gas: &EquilibriumBox<'_>) -> Result<(f64, usize), StudyError> {
+    let mut model = gas.model()?;
+    model.plan.collision_limit = 1.0;
+    let margin = gas.wall_layer();
+    let mut before: Vec<Option<GpuParticle>> = Vec::new();
+    let (mut sum, mut size, mut pairs) = (0.0, 0.0, 0usize);
+    watched(device, &mut model, Options::default(), |model, particles, flights| {
+        let mut after = vec![None; particles.len()];
+        for (particle, (id, flight)) in particles.iter().zip(flights) {
+            after[*id as usize] = Some((*particle, *flight));
+        }
+        let met = |id: u32| after[id as usize].filter(|(_, flight)| flight.collided() == 1);
+        for id in (0..particles.len() as u32).filter(|_| !before.is_empty()) {
+            let Some((own, flight)) = met(id) else { continue };
+            let other = flight.partner & GpuParticle::ID_MASK;
+            let inside = |particle: &GpuParticle| {
+                model.plan.grid.to_metres(particle.position).iter().all(|x| *x > margin && *x < EDGE - margin)
+            };
+            if other <= id || other as usize >= particles.len() {
+                continue;
+            }
+            let Some((partner, _)) = met(other).filter(|(_, flight)| flight.partner & GpuParticle::ID_MASK == id)
+            else {
+                continue;
+            };
+            if let (Some(i), Some(j)) = (before[id as usize], before[other as usize])
+                && inside(&i)
+                && inside(&j)
+            {
+                let places = [i, j].map(|particle| model.plan.grid.to_metres(particle.position));
+                let apart = std::array::from_fn::<f64, 3, _>(|k| places[1][k] - places[0][k]);
+                let relative = |i: &GpuParticle, j: &GpuParticle| {
+                    std::array::from_fn::<f64, 3, _>(|k| f64::from(j.velocity[k]) - f64::from(i.velocity[k]))
+                };
+                let (g, after) = (relative(&i, &j), relative(&own, &partner));
+                let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                let time = -dot(apart, g) / dot(g, g);
+                let miss = std::array::from_fn::<f64, 3, _>(|k| apart[k] + g[k] * time);
+                let change = std::array::from_fn::<f64, 3, _>(|k| after[k] - g[k]);
+                sum += dot(miss, change);
+                size += (dot(miss, miss) * dot(change, change)).sqrt();
+                pairs += 1;
+            }
+        }
+        before = after.into_iter().map(|entry| entry.map(|(particle, _)| particle)).collect();
+    })?;
+    Ok((sum / size, pairs))
+}
+
+/// In single steps of gas at rest, away from walls.
+pub(super) fn virials(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
+    let steps = if effort == Effort::Quick { 30 } else { 120 };
+    let gas = EquilibriumBox { particles: 4000, step_over_tau: 0.2, steps, ..EquilibriumBox::default() };
+    let (found, pairs) = virial(device, &gas)?;
+    let quantity = format!("closest-approach: r.(g'-g) over its size, {pairs} pairs");
+    // Without pairs it is no number, and does not pass.
+    Ok(vec![Check::of(quantity, 0.0, (found, 0.0), 1e-6)].into())
+}
+
 /// The specification's table of lost collisions, section 2: rounds, x, rate over theory (good to .01). The first is
 /// that of all collisions.
 const RATES: [(u32, f64, f64, f64); 5] =
-    [(3, 0.1, 1.0, 0.015), (1, 0.2, 0.814, 0.02), (2, 0.2, 0.947, 0.02), (3, 0.2, 0.982, 0.02), (4, 0.5, 0.970, 0.02)];
+    [(3, 0.1, 1.0, 0.015), (1, 0.2, 0.814, 0.02), (2, 0.2, 0.947, 0.02), (3, 0.2, 0.982, 0.02), (4, 0.2, 0.994, 0.02)];
 
 pub(super) fn rates(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let count = if effort == Effort::Quick { 3 } else { RATES.len() };
@@ -203,7 +268,9 @@ pub(super) fn rates(device: &Device, effort: Effort) -> Result<Findings, StudyEr
         let gas = EquilibriumBox { particles: 8000, rounds, step_over_tau, steps, ..EquilibriumBox::default() };
         let rate = collision_rate(device, &gas)?;
         let quantity = format!("closest-approach: R = {rounds}, x = {step_over_tau}");
-        Ok(Check::of(quantity, expected, (rate.core, rate.error), tolerance))
+        // In other steps than asked for it would be the rate of another x.
+        let error = if rate.outcome.steps == u64::from(steps) { rate.error } else { f64::NAN };
+        Ok(Check::of(quantity, expected, (rate.core, error), tolerance))
     };
     RATES[..count].iter().map(check).collect()
 }

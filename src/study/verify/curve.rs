@@ -104,5 +104,5 @@ pub(super) fn filling(device: &Device, effort: Effort) -> Result<Findings, Study
     let chart = Curves::new("filling-curve", title, "ms", "K")
         .line("particles", measured.collect())
         .reference("control volume", expected.collect());
-    Ok(Findings { checks, charts: vec![chart] })
+    Ok(Findings { charts: vec![chart], ..checks.into() })
 }

@@ -103,7 +103,7 @@ pub(super) fn heat(device: &Device, effort: Effort) -> Result<Findings, StudyErr
     let chart = Curves::new("heat-loss", title, "ms", "K")
         .line("by the heat that is gone", found.collect())
         .reference("exponential", exact.collect());
-    Ok(Findings { checks: vec![check], charts: vec![chart] })
+    Ok(Findings { charts: vec![chart], ..vec![check].into() })
 }
 
 /// Choked isentropic flow over p sqrt(M / (R T)), gamma 1.4.

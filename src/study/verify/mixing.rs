@@ -91,5 +91,5 @@ pub(super) fn mixing(device: &Device, effort: Effort) -> Result<Findings, StudyE
         .line("nitrogen", line(&|m| m.temperature[0]))
         .line("argon", line(&|m| m.temperature[1]))
         .reference("of the energies", line(&|_| common_temperature()));
-    Ok(Findings { checks, charts: vec![chart] })
+    Ok(Findings { charts: vec![chart], ..checks.into() })
 }

@@ -8,7 +8,7 @@ use super::{Case, Check, Curves, Findings, Verdict};
 
 /// Columns of the table: case, quantity, reference, measured, standard error, tolerance, verdict.
 const WIDTHS: [usize; 7] = [15, 44, 10, 12, 10, 10, 8];
-const TITLES: [&str; 7] = ["case", "quantity", "reference", "measured", "std error", "tolerance", "verdict"];
+pub(super) const TITLES: [&str; 7] = ["case", "quantity", "reference", "measured", "std error", "tolerance", "verdict"];
 
 /// The titles above the lines of [`lines`].
 pub fn head() -> String {
@@ -25,7 +25,7 @@ pub fn failed(case: &Case, why: &str) -> String {
     format!("{:<width$} failed: {}\n", case.name, one_line(why), width = WIDTHS[0])
 }
 
-fn one_line(text: &str) -> String {
+pub(super) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
@@ -38,6 +38,10 @@ pub fn passed(outcomes: &[(&Case, Findings)]) -> (usize, usize) {
 /// The same in words, and how many cases failed before they had any.
 pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
     let (passed, all) = passed(outcomes);
+    in_words(passed, all, failed)
+}
+
+pub(super) fn in_words(passed: usize, all: usize, failed: usize) -> String {
     match failed {
         0 => format!("{passed} of {all} pass"),
         1 => format!("{passed} of {all} pass, 1 case failed"),
@@ -45,50 +49,12 @@ pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
     }
 }
 
-/// A page with all cases, their laws and what came of them; the failed with the reason. `command`: what made it, `device`:
-/// where; `figures`: the folder with the charts, from the page.
-pub fn page(
-    outcomes: &[(&Case, Findings)],
-    failed: &[(&Case, String)],
-    command: &str,
-    device: &str,
-    figures: &str,
-) -> String {
-    let mut page = format!(
-        "# Accuracy\n\n\
-         Reference cases and what a run gave for them, as printed by\n\n```sh\n{command}\n```\n\n\
-         on {device}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
-         a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n"
-    );
-    let _ = writeln!(page, "{}.\n\n| {} |", summary(outcomes, failed.len()), TITLES.join(" | "));
-    page += "|---|---|--:|--:|--:|--:|---|\n";
-    for (case, found) in outcomes {
-        for check in &found.checks {
-            let _ = writeln!(page, "| {} |", cells(case, check).map(|cell| cell.replace('|', "\\|")).join(" | "));
-        }
-    }
-    if !failed.is_empty() {
-        page += "\n## What failed\n\n";
-    }
-    for (case, why) in failed {
-        let _ = writeln!(page, "- `{}`: {}.", case.name, one_line(why));
-    }
-    page += "\n## The laws\n\n";
-    for (case, _) in outcomes {
-        let _ = writeln!(page, "- `{}`: {}.", case.name, case.law);
-    }
-    for chart in outcomes.iter().flat_map(|(_, found)| &found.charts) {
-        let _ = writeln!(page, "\n![{}]({figures}/{})", chart.title, file(chart));
-    }
-    page
-}
-
 /// The name of the file that a chart is drawn into.
 pub fn file(chart: &Curves) -> String {
     format!("accuracy-{}.svg", chart.name)
 }
 
-fn cells(case: &Case, check: &Check) -> [String; 7] {
+pub(super) fn cells(case: &Case, check: &Check) -> [String; 7] {
     let error = if check.error == 0.0 { "exact".to_owned() } else { figure(check.error, 4) };
     [
         case.name.to_owned(),
@@ -116,6 +82,7 @@ fn line(cells: &[String; 7]) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::CASES;
+    use super::super::page::Page;
     use super::*;
 
     /// The page has a row for each check and says how many pass; bars in a quantity do not end its cell.
@@ -124,9 +91,9 @@ mod tests {
         let good = Check::of("mean |x|", 1.0, (1.01, 0.001), 0.02);
         let bad = Check { measured: 1.03, ..good.clone() };
         let chart = Curves::new("wall-pressure", "Pressure".into(), "f", "p");
-        let found = Findings { checks: vec![good, bad], charts: vec![chart] };
+        let found = Findings { charts: vec![chart], ..vec![good, bad].into() };
         let failed = [(&CASES[1], "no\n  room".to_owned())];
-        let page = page(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures");
+        let page = Page::new(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures").text();
         assert!(page.contains("1 of 2 pass, 1 case failed."), "{page}");
         assert!(page.contains(&format!("\n- `{}`: no room.\n", CASES[1].name)), "{page}");
         assert!(

@@ -1,4 +1,4 @@
-//! Waves in a closed tube: Sod's problem and expansion into a vacuum against exact solutions, and the speed of sound.
+//! A closed tube with gas left and right of its middle, and the exact solution for it (`sod.rs`, `sound.rs`).
 //!
 //! The tube is 1 m long and square, with specular walls, so that on average all is a function of x and t. In units of
 //! the tube's length, the density and sqrt(p/rho) on the left the cases are those of the literature.
@@ -6,23 +6,22 @@
 use std::f64::consts::PI;
 
 use crate::gas::{Fluid, Riemann};
-use crate::gpu::Device;
 use crate::scene::Scene;
-use crate::simulation::{Model, Options};
+use crate::simulation::Model;
 use crate::study::StudyError;
 use crate::subdomain::GpuParticle;
 
 use super::gas_box::GAS_CONSTANT;
+use super::scene_of;
 use super::witness::model_from;
-use super::{Check, Curves, Effort, Findings, run, scene_of};
 
 /// m.
-const LENGTH: f64 = 1.0;
+pub const LENGTH: f64 = 1.0;
 const MOLAR_MASS: f64 = 0.028;
 const TEMPERATURE: f64 = 300.0;
 const PRESSURE: f64 = 101_325.0;
 /// Slices in which the gas is compared.
-const BINS: usize = 50;
+pub const BINS: usize = 50;
 
 /// Gas left and right of the middle of a tube.
 #[derive(Debug, Clone, Copy)]
@@ -102,13 +101,15 @@ impl Tube {
         let slice = |bin: usize| {
             // The mean of the solution over the slice, of the velocity by mass.
             let fine = 200;
-            let (mut density, mut momentum) = (0.0, 0.0);
+            let (mut density, mut momentum, mut pressure) = (0.0, 0.0, 0.0);
             for k in 0..fine {
                 let x = (bin as f64 + (f64::from(k) + 0.5) / f64::from(fine)) / BINS as f64 - 0.5;
                 let state = exact.at(x / time);
                 density += state.density / f64::from(fine);
                 momentum += state.density * state.velocity / f64::from(fine);
+                pressure += state.pressure / f64::from(fine);
             }
+            let per_particle = |variance: f64| if density > 0.0 { (variance / unit).sqrt() } else { 0.0 };
             Slice {
                 x: (bin as f64 + 0.5) / BINS as f64,
                 density: [numbers[bin] / unit, density],
@@ -116,6 +117,7 @@ impl Tube {
                     if numbers[bin] > 0.0 { velocities[bin] / numbers[bin] } else { 0.0 },
                     if density > 0.0 { momentum / density } else { 0.0 },
                 ],
+                scatter: [per_particle(density), per_particle(pressure / density.powi(2))],
             }
         };
         Some((0..BINS).map(slice).collect())
@@ -142,10 +144,24 @@ pub struct Slice {
     pub x: f64,
     pub density: [f64; 2],
     pub velocity: [f64; 2],
+    /// Standard deviations that counting independent particles gives the two: rho n particles in a slice, n of the
+    /// density of the left, have the density to sqrt(rho/n) and the velocity to sqrt(T/(rho n)).
+    pub scatter: [f64; 2],
+}
+
+/// What counting noise makes of the mean |difference| of a profile: mean and standard deviation, of density and velocity.
+/// |z| of a normal variate has the mean sqrt(2/pi) and the variance 1 - 2/pi.
+pub fn counting_noise(profile: &[Slice]) -> [(f64, f64); 2] {
+    let count = profile.len() as f64;
+    [0, 1].map(|k| {
+        let mean = profile.iter().map(|slice| slice.scatter[k]).sum::<f64>() / count;
+        let square: f64 = profile.iter().map(|slice| slice.scatter[k].powi(2)).sum();
+        ((2.0 / PI).sqrt() * mean, ((1.0 - 2.0 / PI) * square).sqrt() / count)
+    })
 }
 
 /// Mean |difference| of density and velocity.
-fn mean_differences(profile: &[Slice]) -> [f64; 2] {
+pub fn mean_differences(profile: &[Slice]) -> [f64; 2] {
     let mean = |of: fn(&Slice) -> [f64; 2]| {
         profile.iter().map(of).map(|[found, exact]| (found - exact).abs()).sum::<f64>() / profile.len() as f64
     };
@@ -154,172 +170,9 @@ fn mean_differences(profile: &[Slice]) -> [f64; 2] {
 
 pub const SOD: Tube = Tube { particles: 160_000, gamma: 1.4, right: [0.1, 0.8], width: 0.1, end: 0.2, snapshots: 0 };
 
-/// Mean |difference| of the density of a run at its end and the standard error that counting noise gives it; and that of
-/// the velocity.
-///
-/// # Errors
-/// If the run fails.
-pub fn shock_tube(device: &Device, tube: &Tube) -> Result<([f64; 2], f64), StudyError> {
-    let model = tube.model()?;
-    let run = run(device, &model, Options::default())?;
-    let errors = tube.errors(&model, tube.end, &run.outcome.particles).unwrap_or([f64::NAN; 2]);
-    Ok((errors, tube.noise(&model)))
-}
-
-/// At 160,000 particles and f = .1 the mean |difference| of the density is at most .024 (specification, section 8); it
-/// falls as N^-.26.
-fn sod_at(device: &Device, effort: Effort, gamma: f64, name: &'static str) -> Result<Findings, StudyError> {
-    let particles = if effort == Effort::Quick { 40_000 } else { 160_000 };
-    let tube = Tube { particles, gamma, ..SOD };
-    let limit = 0.024 * (particles as f64 / 160_000.0).powf(-0.26);
-    let model = tube.model()?;
-    let run = run(device, &model, Options::default())?;
-    let profile = tube.profile(&model, tube.end, &run.outcome.particles).unwrap_or_default();
-    let [density, _] = mean_differences(&profile);
-    let check = Check::of(format!("mean |rho - exact|, N = {particles}"), 0.0, (density, tube.noise(&model)), limit);
-    let line = |of: fn(&Slice) -> f64| profile.iter().map(|slice| [slice.x, of(slice)]).collect();
-    let title = format!("Sod's shock tube, gamma {gamma:.3}, {particles} particles");
-    let chart = Curves::new(name, title, "x over the length", "density and velocity, of the left")
-        .line("density", line(|slice| slice.density[0]))
-        .line("velocity", line(|slice| slice.velocity[0]))
-        .reference("exact", line(|slice| slice.density[1]))
-        .reference("exact", line(|slice| slice.velocity[1]));
-    Ok(Findings { checks: vec![check], charts: vec![chart] })
-}
-
-pub(super) fn sod(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    sod_at(device, effort, 1.4, "sod")
-}
-
-pub(super) fn sod_monatomic(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    sod_at(device, effort, 5.0 / 3.0, "sod-monatomic")
-}
-
-/// The same against the exact expansion, whose front is at 5.9 sqrt(p/rho), and long after it: energy is kept, so gas at
-/// rest has the temperature of the start again. 3 N/2 degrees of freedom know it to sqrt(2/(3N)).
-pub(super) fn expansion(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let particles = if effort == Effort::Quick { 20_000 } else { 160_000 };
-    let early = Tube { particles, right: [0.0, 1.0], end: 0.08, ..SOD };
-    let ([density, _], error) = shock_tube(device, &early)?;
-    let late = Tube { particles: 6000, end: 30.0, ..early };
-    let model = late.model()?;
-    let at_rest = run(device, &model, Options::default())?.outcome.particles;
-    let squares = at_rest.iter().flat_map(|particle| particle.velocity).map(|v| f64::from(v).powi(2));
-    let ratio = squares.sum::<f64>() / (3.0 * at_rest.len() as f64) / late.speed().powi(2);
-    Ok(vec![
-        Check::of(format!("mean |rho - exact|, N = {particles}"), 0.0, (density, error), 0.024),
-        Check::of("temperature at rest over that of the start", 1.0, (ratio, (2.0 / 18_000.0f64).sqrt()), 0.04),
-    ]
-    .into())
-}
-
-/// The frequency of the first mode over pi c / L, and its standard error, from the mean of cos(pi x / L) over the
-/// particles, which follows a damped cosine.
-///
-/// # Errors
-/// If the run fails.
-pub fn standing_wave(device: &Device, particles: u64) -> Result<(f64, f64), StudyError> {
-    // .74 of the pressure, isentropic: some 20 % of the density.
-    let (gamma, pressure): (f64, f64) = (1.4, 0.74);
-    let temperature = pressure.powf((gamma - 1.0) / gamma);
-    // Two periods at the speed of sound of the mean state.
-    let sound = (gamma * (0.5 * (1.0 + temperature))).sqrt();
-    let tube = Tube { particles, right: [pressure, temperature], end: 4.0 / sound, snapshots: 80, ..SOD };
-    let model = tube.model()?;
-    let run = run(device, &model, Options::default())?;
-    let mode = |particles: &[GpuParticle]| {
-        let of = |p: &GpuParticle| (PI * model.plan.grid.to_metres(p.position)[0] / LENGTH).cos();
-        particles.iter().map(of).sum::<f64>() / particles.len() as f64
-    };
-    let series: Vec<(f64, f64)> =
-        run.snapshots.iter().map(|(time, particles)| (time * tube.speed() / LENGTH, mode(particles))).collect();
-    // Of the gas mixed: its energy is that of the start.
-    let mean = (1.0 + pressure) / (1.0 + pressure / temperature);
-    let [frequency, damping] = fit(&series, PI * sound);
-    // Damping slows a mode: omega^2 = omega_0^2 - damping^2.
-    let free = frequency.hypot(damping);
-    // Counting noise sqrt(1/(2 N)) of the mode, not correlated between quarter periods: of a cosine of amplitude a over a
-    // span T known at M moments the frequency's error is sqrt(24/M) / T x noise / a.
-    let amplitude = series.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
-    let noise = (0.5 / particles as f64).sqrt();
-    let error = (24.0f64 / 8.0).sqrt() / tube.end * noise / amplitude;
-    Ok((free / (PI * (gamma * mean).sqrt()), error / frequency))
-}
-
-/// Frequency and damping of e^(-b t) (A cos w t + B sin w t) + C nearest to a series, A, B and C being the best for
-/// each: by a search on ever finer grids.
-fn fit(series: &[(f64, f64)], guess: f64) -> [f64; 2] {
-    let misfit = |w: f64, b: f64| {
-        let columns = |t: f64| [(-b * t).exp() * (w * t).cos(), (-b * t).exp() * (w * t).sin(), 1.0];
-        let mut matrix = [[0.0; 4]; 3];
-        for &(t, value) in series {
-            let c = columns(t);
-            for row in 0..3 {
-                for column in 0..3 {
-                    matrix[row][column] += c[row] * c[column];
-                }
-                matrix[row][3] += c[row] * value;
-            }
-        }
-        let best = solved(matrix);
-        series.iter().map(|&(t, v)| (v - columns(t).iter().zip(best).map(|(c, a)| c * a).sum::<f64>()).powi(2)).sum()
-    };
-    let (mut center, mut reach) = ([guess, 0.05 * guess], [0.2 * guess, 0.05 * guess]);
-    for _ in 0..12 {
-        let mut best = (f64::INFINITY, center);
-        for i in -6..=6 {
-            for k in -6..=6 {
-                let at = [center[0] + reach[0] * f64::from(i) / 6.0, center[1] + reach[1] * f64::from(k) / 6.0];
-                let found: f64 = misfit(at[0], at[1]);
-                if found < best.0 {
-                    best = (found, at);
-                }
-            }
-        }
-        center = best.1;
-        reach = reach.map(|r| 0.5 * r);
-    }
-    center
-}
-
-/// Gauss elimination of three equations with pivots on the diagonal.
-fn solved(mut m: [[f64; 4]; 3]) -> [f64; 3] {
-    for pivot in 0..3 {
-        for row in pivot + 1..3 {
-            let factor = m[row][pivot] / m[pivot][pivot];
-            let above = m[pivot];
-            m[row].iter_mut().zip(above).for_each(|(entry, above)| *entry -= factor * above);
-        }
-    }
-    let mut x = [0.0; 3];
-    for row in (0..3).rev() {
-        let known: f64 = (row + 1..3).map(|k| m[row][k] * x[k]).sum();
-        x[row] = (m[row][3] - known) / m[row][row];
-    }
-    x
-}
-
-pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    // One per cent is the specification's, section 8; a third of it takes 200,000 particles, and fewer know less.
-    let (particles, tolerance) = if effort == Effort::Quick { (32_000, 0.03) } else { (240_000, 0.01) };
-    let quantity = format!("frequency, N = {particles}");
-    Ok(vec![Check::of(quantity, 1.0, standing_wave(device, particles)?, tolerance)].into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A damped cosine's frequency and damping are found, also with an offset and some noise.
-    #[test]
-    fn the_fit_finds_frequency_and_damping() {
-        let value = |t: f64, k: usize| {
-            0.1 * (-0.4 * t).exp() * (3.7 * t).cos() + 0.01 + 1e-4 * f64::from((k * 7919 % 13) as u32) / 13.0
-        };
-        let series: Vec<(f64, f64)> = (0..80).map(|k| (0.05 * k as f64, value(0.05 * k as f64, k))).collect();
-        let [frequency, damping] = fit(&series, 3.9);
-        assert!((frequency - 3.7).abs() < 5e-3 && (damping - 0.4).abs() < 1e-2, "{frequency} {damping}");
-    }
 
     /// The exact profile itself has no error, and a shifted one has.
     #[test]
@@ -328,5 +181,13 @@ mod tests {
         let state = exact.at(0.0);
         assert!((state.density - 0.42632).abs() < 1e-4, "between the fan and the contact");
         assert!(Tube { right: [0.0, 1.0], ..SOD }.exact().unwrap().at(5.9).density < 1e-9);
+    }
+
+    /// Fifty slices of a hundred particles at rest: 8 % and 6 % / sqrt(50) of the density.
+    #[test]
+    fn counting_noise_is_that_of_normal_variates() {
+        let slice = Slice { x: 0.5, density: [1.0; 2], velocity: [0.0; 2], scatter: [0.1, 0.1] };
+        let [(mean, error), _] = counting_noise(&[slice; 50]);
+        assert!((mean - 0.079_79).abs() < 1e-5 && (error - 0.060_28 / 50f64.sqrt()).abs() < 1e-5, "{mean} {error}");
     }
 }

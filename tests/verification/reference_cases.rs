@@ -1,0 +1,68 @@
+//! The cases of `corpuscle verify` that no other test here runs, as `--quick` runs them: every row passes. And that such
+//! rows can fail: gas without collisions is no continuum, and does not pass as one.
+
+use corpuscle::scene::Method;
+use corpuscle::study::verify::{CASES, Check, Effort, Verdict, collisions, sod};
+
+use crate::equilibrium_box::EquilibriumBox;
+use crate::whole_run::device;
+
+/// Runs a case and expects every row to pass.
+fn passes(name: &str) {
+    let case = CASES.iter().find(|case| case.name == name).expect("a case of this name");
+    let found = case.run(&device(), Effort::Quick).expect("a run");
+    assert!(!found.checks.is_empty());
+    for check in &found.checks {
+        println!("{check:?}");
+        assert_eq!(check.verdict(), Verdict::Pass, "{name}: {check:?}");
+    }
+}
+
+fn fails(check: &Check) {
+    println!("{check:?}");
+    assert_eq!(check.verdict(), Verdict::Fail, "{check:?}");
+}
+
+#[test]
+fn a_collision_at_closest_approach_has_no_virial() {
+    passes("virial");
+    // Rigid spheres are pushed apart along what parts them.
+    let gas = EquilibriumBox { method: "hard-sphere", particles: 4000, steps: 20, ..EquilibriumBox::default() };
+    let (found, pairs) = collisions::virial(&device(), &gas).expect("a run");
+    println!("rigid spheres: {found} of {pairs} pairs");
+    assert!(pairs > 100 && found.abs() > 0.1, "{found} of {pairs} pairs");
+}
+
+#[test]
+fn shock_tubes_are_those_of_the_exact_solution() {
+    passes("sod");
+    // Free flight has a mean |difference| of .06 in the density and .16 in the velocity (specification, section 2).
+    let (checks, _) = sod::against(&device(), 40_000, 1.4, Method::None, 0).expect("a run");
+    checks.iter().for_each(fails);
+}
+
+#[test]
+fn monatomic_shock_tubes_are_those_of_the_exact_solution() {
+    passes("sod-monatomic");
+}
+
+#[test]
+fn expansion_into_a_vacuum_is_that_of_the_exact_solution() {
+    passes("expansion");
+    fails(&sod::expanded(&device(), 40_000, Method::None).expect("a run"));
+}
+
+#[test]
+fn a_standing_wave_has_the_speed_of_sound() {
+    passes("sound");
+}
+
+#[test]
+fn vortices_decay_with_the_viscosity_of_the_method() {
+    passes("viscosity");
+}
+
+#[test]
+fn a_chamber_empties_between_isentropically_and_by_effusion() {
+    passes("blow-down");
+}
