@@ -6,7 +6,7 @@
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(35) var<storage, read_write> outbox: array<Particle>;
-@group(0) @binding(55) var<storage, read> peer_starts: array<u32>;
+@group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn fill_outbox(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

@@ -9,7 +9,7 @@
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(38) var<storage, read_write> updates_out: array<Update>;
-@group(0) @binding(55) var<storage, read> peer_starts: array<u32>;
+@group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn fill_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

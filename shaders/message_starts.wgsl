@@ -7,8 +7,8 @@
 override SCAN_THREADS: u32 = 128;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(54) var<storage, read_write> peer_counts: array<u32>;
-@group(0) @binding(55) var<storage, read_write> peer_starts: array<u32>;
+@group(0) @binding(56) var<storage, read_write> peer_counts: array<u32>;
+@group(0) @binding(57) var<storage, read_write> peer_starts: array<u32>;
 
 var<workgroup> shares: array<u32, SCAN_THREADS>;
 

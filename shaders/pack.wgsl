@@ -8,7 +8,7 @@
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(33) var<storage, read> border: array<vec2<u32>>;
-@group(0) @binding(54) var<storage, read_write> peer_counts: array<atomic<u32>>;
+@group(0) @binding(56) var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

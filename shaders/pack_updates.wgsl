@@ -12,7 +12,7 @@
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(37) var<storage, read> changed: array<u32>;
-@group(0) @binding(54) var<storage, read_write> peer_counts: array<atomic<u32>>;
+@group(0) @binding(56) var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
