@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuTriangle, GpuUpdate,
-    GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuStep, GpuStillGas,
+    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -71,6 +71,7 @@ fn twins() -> Vec<Twin> {
         twin!("Update", GpuUpdate, particle, flight, cell, peer, pad, pad2),
         twin!("Peer", GpuPeer, low, pad, high, pad2),
         twin!("Part", GpuPart, place, volume),
+        twin!("StillGas", GpuStillGas, points, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
     ]
 }
