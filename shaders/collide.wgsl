@@ -1,13 +1,14 @@
-//! uses: step.wgsl grid.wgsl local.wgsl dsmc.wgsl cell_gas.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl
 // The collisions of the method `cell`, in cells that no wall parts.
 //
-// Reads `cell_start`, `cell_volume`, `newborns`; reads and writes `sorted`, appends the cells that walls part to
-// `parted`, and among other devices leaves the number of a cell's candidates with its first particle, in
+// Reads `cell_start`, `cell_volume`, `newborns`, `motions`; reads and writes `sorted`, appends the cells that walls part
+// to `parted`, those that moving walls may touch to `moved`, and among other devices leaves the number of a cell's candidates with its first particle, in
 // `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids.
 // Collisions are at the start of the step, where positions hold and no particle has met a wall.
 
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(51) var<storage, read_write> parted: array<u32>;
+@group(0) @binding(54) var<storage, read_write> moved: array<u32>;
 
 var<workgroup> collisions: atomic<u32>;
 
@@ -16,6 +17,17 @@ fn member(begin: u32, k: u32, part: u32) -> u32 {
 }
 
 fn hidden(i: Particle, j: Particle) -> bool {
+    return false;
+}
+
+fn moves(c: vec3<u32>) -> bool {
+    if (MOVING) {
+        for (var m = 0u; m < MOTIONS; m++) {
+            if (in_motion(c, motion_of(m))) {
+                return true;
+            }
+        }
+    }
     return false;
 }
 
@@ -31,10 +43,13 @@ fn collide(
         let bin_end = cell_start[bin + 1u];
         var candidates = 0u;
         if (bin_end > begin + 1u) {
-            let cell = cell_index(cell_of(bin));
+            let place = cell_of(bin);
+            let cell = cell_index(place);
             let entry = cell_volume[cell];
             let end = last_of(begin, bin_end);
-            if ((entry & PARTED) != 0u) {
+            if (moves(place)) {
+                moved[append_group(LIST_MOVED)] = bin;
+            } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;
             } else if (end > begin + 1u) {
                 let done = collide_members(begin, end - begin, bitcast<f32>(entry), cell, 0u);

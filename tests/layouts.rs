@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle,
-    GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
+    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 use naga::{Module, TypeInner};
 
@@ -72,6 +72,7 @@ fn twins() -> Vec<Twin> {
         twin!("Sending", GpuSending, index, peer, place),
         twin!("Peer", GpuPeer, low, pad, high, pad2),
         twin!("Part", GpuPart, place, volume),
+        twin!("StillGas", GpuStillGas, points, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
     ]
 }

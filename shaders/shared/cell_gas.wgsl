@@ -10,6 +10,13 @@ struct Part {
 // them in `cell_parts`.
 const PARTED: u32 = 0x80000000;
 
+// The gas that walls at rest leave of a cell that moving walls may touch: which points of its lattice are gas, a bit for
+// each, and the volume, m3.
+struct StillGas {
+    points: vec3<u32>,
+    volume: f32,
+}
+
 @group(0) @binding(50) var<storage, read> cell_volume: array<u32>;
 
 fn parts_of(entry: u32) -> u32 {

@@ -2,12 +2,14 @@
 // the list. (On a device that executes untaken branches under a mask, rare heavy branches would cost
 // every thread.) The order of a list depends on the order of the threads; entries are independent.
 
-// Lists 0 .. 8 are the pairs of the rounds (of the method `cell`, list 0 the cells that walls part); list ROUNDS counts the pairs that the rounds lost. Lists
+// Lists 0 .. 8 are the pairs of the rounds (of the method `cell`, list 0 the cells that walls part, list 1 those
+// that moving walls touch); list ROUNDS counts the pairs that the rounds lost. Lists
 // LIST_RECHOOSE + r are the particles that choose again in round r >= 1. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
 // were asked for their choice; LIST_OUTBOX and
 // LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo.
 const LIST_PARTED: u32 = 0;
+const LIST_MOVED: u32 = 1;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
@@ -37,5 +39,13 @@ fn append(list: u32) -> u32 {
         atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
         atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
     }
+    return k;
+}
+
+// The same for a list whose entries have a workgroup each.
+fn append_group(list: u32) -> u32 {
+    let k = atomicAdd(&counters[list], 1u);
+    atomicMax(&dispatches[3u * list], min(k + 1u, GROUP_LIMIT));
+    atomicMax(&dispatches[3u * list + 1u], k / GROUP_LIMIT + 1u);
     return k;
 }

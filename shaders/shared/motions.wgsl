@@ -26,3 +26,8 @@ const MOST_MOTIONS: u32 = 4;
 fn motion_of(m: u32) -> Motion {
     return motions[step.slot * MOST_MOTIONS + m];
 }
+
+// Whether a moving wall may touch a cell in this step.
+fn in_motion(c: vec3<u32>, motion: Motion) -> bool {
+    return all(c >= motion.low) && all(c <= motion.high);
+}

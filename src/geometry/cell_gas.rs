@@ -6,10 +6,13 @@
 //! A volume below [`LEAST`] of a cell is not known and counts as that: the gas of such cells is less than that share of
 //! the cells that walls cut, and collides too rarely there.
 //!
-//! Of a cell with a wall that can part two of its points, [`POINTS`] points of a lattice are tried. Points of the gas
+//! Of a cell with a wall that can part two of its points, [`CELL_POINTS`] points of a lattice are tried. Points of the gas
 //! that see each other, directly or by way of others, are one part; its volume is its share of the points. Where a part
 //! is not convex (around the edge of a plate) some pairs of it do not see each other and will not collide: its volume
 //! is made smaller by the share of the pairs that do, so that the number of collisions stays that of its gas.
+//!
+//! Where walls move, the device divides the cells that they may touch anew in each step (`shaders/collide_moved.wgsl`), by
+//! the same points; [`still_points`] tells it which of them the walls at rest leave.
 
 use glam::DVec3;
 
@@ -21,8 +24,8 @@ use super::{CellClass, FixedTriangle, Grid, TriangleGrid, Vessel};
 pub const LEAST: f64 = 1.0 / 1974.0;
 
 /// A rank-1 lattice: its points differ in every coordinate.
-const POINTS: u64 = 89;
-const GENERATOR: [u64; 3] = [1, 33, 21];
+pub const CELL_POINTS: u64 = 89;
+pub const CELL_GENERATOR: [u64; 3] = [1, 33, 21];
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellGas {
@@ -64,15 +67,45 @@ pub fn cell_gas(
     CellGas { volume, parted: cut.into_iter().zip(found).collect() }
 }
 
+/// Which points of the lattice are gas, a bit for each, of each cell (x fastest) in boxes of cells (the first and the
+/// last); none of other cells. `triangles` are on the same grid.
+pub fn still_points(vessel: &Vessel, grid: &Grid, triangles: &TriangleGrid, boxes: &[[[u32; 3]; 2]]) -> Vec<[u32; 3]> {
+    let nx = grid.cells[0] as usize;
+    let nxy = nx * grid.cells[1] as usize;
+    let place = |cell: usize| [(cell % nx) as u32, (cell % nxy / nx) as u32, (cell / nxy) as u32];
+    let inside = |at: [u32; 3]| {
+        boxes.iter().any(|[low, high]| (0..3).all(|axis| at[axis] >= low[axis] && at[axis] <= high[axis]))
+    };
+    let points_of = |cell: usize, gas: &dyn Fn([f64; 3]) -> bool| {
+        let mut bits = [0; 3];
+        for (i, share) in lattice() {
+            let at = std::array::from_fn(|k| grid.origin[k] + (f64::from(place(cell)[k]) + share[k]) * grid.cell);
+            bits[i / 32] |= u32::from(gas(at)) << (i % 32);
+        }
+        bits
+    };
+    map(triangles.class.len(), |cell, _| match triangles.class[cell] {
+        _ if !inside(place(cell)) => [0; 3],
+        CellClass::Clear | CellClass::Gas => points_of(cell, &|_| true),
+        CellClass::Cut => points_of(cell, &|at| vessel.is_gas(at)),
+        CellClass::Solid => [0; 3],
+    })
+}
+
+/// The points of a cell and their numbers, in its edges.
+fn lattice() -> impl Iterator<Item = (usize, [f64; 3])> {
+    let share = |i: u64| CELL_GENERATOR.map(|g| ((i * g % CELL_POINTS) as f64 + 0.5) / CELL_POINTS as f64);
+    (0..CELL_POINTS).map(move |i| (i as usize, share(i)))
+}
+
 fn parts_of(vessel: &Vessel, grid: &Grid, cell: usize, volume: f64, walls: &[&FixedTriangle]) -> Vec<CellPart> {
     let [nx, ny] = [grid.cells[0] as usize, grid.cells[1] as usize];
     let corner = DVec3::new((cell % nx) as f64, (cell / nx % ny) as f64, (cell / nx / ny) as f64);
     let edge = f64::from(1u32 << grid.cell_bits);
     let metres = |p: DVec3| (DVec3::from(grid.origin) + p * grid.quantum()).to_array();
     // In quanta, as the triangles.
-    let points: Vec<DVec3> = (0..POINTS)
-        .map(|i| GENERATOR.map(|g| ((i * g % POINTS) as f64 + 0.5) / POINTS as f64))
-        .map(|share| (corner + DVec3::from(share)) * edge)
+    let points: Vec<DVec3> = lattice()
+        .map(|(_, share)| (corner + DVec3::from(share)) * edge)
         .filter(|&point| vessel.is_gas(metres(point)))
         .collect();
     if points.is_empty() {

@@ -22,7 +22,7 @@ mod triangle_grid;
 mod vessel;
 
 pub use blocks::block_volumes;
-pub use cell_gas::{CellGas, CellPart, cell_gas};
+pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
 pub use closed::check_closed;
 pub use error::GeometryError;
 pub use grid::{Grid, GridError};

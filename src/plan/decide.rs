@@ -5,6 +5,7 @@ use super::cap::diameter_cap;
 use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
+use super::longest::{Basis, possible_step};
 use super::motion;
 use super::population::{Population, openings, wanted};
 use super::render::significant;
@@ -31,7 +32,6 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut reasons = Vec::new();
     let method = method(scene, &mut reasons);
     let species = species(scene, measured, &mut reasons)?;
-    motion::check(scene, method)?;
     jets(scene, &species)?;
     switch(scene, method, &mut reasons)?;
     let amounts = Amounts::of(scene, &species, measured)?;
@@ -54,7 +54,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     motion::reasons(scene, measured, &mut reasons);
     let states = mean_states(scene, measured, &amounts, [initial_particles as f64, particles as f64]);
     let number_density = states[1].number_density;
-    let resolution = Resolution::choose(method, &scene.model, states, extreme, scene.end_time, &mut reasons)?;
+    let basis = Basis { method, request: &scene.model, measured, states, extreme, particles, end_time: scene.end_time };
+    let (request, shortened) = possible_step(&basis)?;
+    let resolution = Resolution::choose(method, &request, states, extreme, scene.end_time, &mut reasons)?;
     let diameter_cap = diameter_cap(scene, method, resolution.diameter, number_density, &mut reasons)?;
     let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
 
@@ -85,6 +87,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         openings: &openings,
     };
     let mut warnings = warnings(scene, measured, &decided);
+    warnings.extend(shortened);
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, &vents, measured));
     warnings.extend(motion::warnings(scene, &species, measured));

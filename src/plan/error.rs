@@ -99,9 +99,6 @@ pub enum PlanError {
         "leave out `diameter`, `rounds` or `particles` in [model]: one of them does not fit the vessel"
     ))]
     NoCandidate { particles: f64 },
-    #[error("wall `{wall}` moves, which the method `cell` cannot have yet: the gas volumes of its cells do not follow")]
-    #[diagnostic(help("choose `method = \"closest-approach\"` in [model]"))]
-    MotionInCells { wall: String },
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },

@@ -22,6 +22,7 @@ mod error;
 mod forecast;
 mod heat;
 mod limits;
+mod longest;
 mod motion;
 mod population;
 mod render;

@@ -1,9 +1,9 @@
-//! Walls that move, before the run: how hot they make the gas, and what is not there yet.
+//! Walls that move, before the run: how hot they make the gas.
 
 use super::render::significant;
-use super::{Measured, MeasuredMotion, PlanError, Reason};
+use super::{Measured, MeasuredMotion, Reason};
 use crate::gas::Species;
-use crate::scene::{GAS_CONSTANT, Method, Scene};
+use crate::scene::{GAS_CONSTANT, Scene};
 
 /// How many times as hot gas of temperature `hottest`, K, can get: compressed isentropically to the least volume, then by
 /// the shock that the fastest wall drives into it (Rankine and Hugoniot), by the gas in which each does most.
@@ -21,17 +21,6 @@ pub fn heating(scene: &Scene, motion: &MeasuredMotion, hottest: f64) -> f64 {
         compressed * shocked
     };
     scene.gases.iter().map(by).fold(1.0, f64::max)
-}
-
-/// # Errors
-/// If the method cannot have walls that move.
-pub fn check(scene: &Scene, method: Method) -> Result<(), PlanError> {
-    match scene.motions.first() {
-        Some(motion) if method == Method::Cell => {
-            Err(PlanError::MotionInCells { wall: scene.walls[motion.wall].name.clone() })
-        }
-        _ => Ok(()),
-    }
 }
 
 pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {

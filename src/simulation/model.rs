@@ -95,7 +95,7 @@ impl Model {
         if let Some(choice) = &self.choice {
             choice.explain(&mut plan);
         }
-        if let Some(memory) = Memory::of(&plan, AHEAD as u64) {
+        if let Some(memory) = Memory::of(&plan, AHEAD as u64, !self.moving.is_empty()) {
             let value = format!("{} MB", significant(memory.all / 1e6));
             let why = format!(
                 "on one device, all particles there: {} bytes per particle, {} per cell; more where lists of neighbours grow",

@@ -295,6 +295,11 @@ impl Moving {
         table
     }
 
+    /// Of each wall the box of cells that it may touch in the run: the first and the last.
+    pub fn swept_cells(&self, grid: &Grid) -> Vec<[[u32; 3]; 2]> {
+        self.bodies.iter().map(|body| cells_swept(body, grid, body.range)).collect()
+    }
+
     /// Where they are at one moment, s.
     pub fn at(&self, grid: &Grid, time: f64) -> Vec<GpuMotion> {
         self.bodies.iter().map(|body| GpuMotion { velocity: [0.0; 3], ..placed(body, grid, [time, time]) }).collect()
@@ -319,21 +324,30 @@ impl Moving {
 
 fn placed(body: &Body, grid: &Grid, [from, to]: [f64; 2]) -> GpuMotion {
     let between = [from, to].map(|time| displacement(&body.motion.course, time));
+    let [low, high] = cells_swept(body, grid, between);
+    GpuMotion {
+        moved: body.shift(between[0]).map(|way| (way / grid.quantum()).round() as i32),
+        first: body.triangles[0],
+        velocity: body.shift((between[1] - between[0]) / (to - from).max(f64::MIN_POSITIVE)).map(|v| v as f32),
+        end: body.triangles[1],
+        low,
+        high,
+        ..GpuMotion::default()
+    }
+}
+
+/// The first and the last cell of the box around what a wall sweeps between two displacements.
+fn cells_swept(body: &Body, grid: &Grid, between: [f64; 2]) -> [[u32; 3]; 2] {
     let (low, high) = body.sweep(between);
     let margin = 2.0 * Walls::tolerance(grid);
     let cell = |place: f64, axis: usize| {
         let last = f64::from(grid.cells[axis] - 1);
         ((place - grid.origin[axis]) / grid.cell).floor().clamp(0.0, last) as u32
     };
-    GpuMotion {
-        moved: body.shift(between[0]).map(|way| (way / grid.quantum()).round() as i32),
-        first: body.triangles[0],
-        velocity: body.shift((between[1] - between[0]) / (to - from).max(f64::MIN_POSITIVE)).map(|v| v as f32),
-        end: body.triangles[1],
-        low: std::array::from_fn(|axis| cell(low[axis] - margin, axis)),
-        high: std::array::from_fn(|axis| cell(high[axis] + margin, axis)),
-        ..GpuMotion::default()
-    }
+    [
+        std::array::from_fn(|axis| cell(low[axis] - margin, axis)),
+        std::array::from_fn(|axis| cell(high[axis] + margin, axis)),
+    ]
 }
 
 fn body(scene: &Scene, vessel: &Vessel, motion: &Motion) -> Result<Body, ModelError> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, region_bounds, region_contains};
+use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, region_bounds, region_contains, still_points};
 use crate::gpu::Device;
 use crate::scene::{Face, Method, Region};
 use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
@@ -72,10 +72,9 @@ impl Setup {
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts)
             .moving(&triangle_grid, |source| model.moving.motion_of(model.vessel.triangles[source].wall as usize));
-        let cells = if plan.method == Method::Cell {
-            CellTable::new(&cell_gas(&model.vessel, &plan.grid, &triangle_grid, parts), &plan.grid)?
-        } else {
-            CellTable::default()
+        let cells = match plan.method {
+            Method::Cell => cell_table(model, &still, &triangle_grid, parts)?,
+            _ => CellTable::default(),
         };
         let zones = zones(model);
         let tallied = Patches {
@@ -102,6 +101,23 @@ impl Setup {
             particles: Arc::new(particles),
         })
     }
+}
+
+/// The gas of the cells, as walls at rest leave it.
+fn cell_table(
+    model: &Model,
+    still: &Vessel,
+    triangles: &TriangleGrid,
+    parts: impl Fn(usize) -> bool + Sync,
+) -> Result<CellTable, SimulationError> {
+    let grid = &model.plan.grid;
+    if model.moving.is_empty() {
+        return Ok(CellTable::new(&cell_gas(&model.vessel, grid, triangles, parts), grid)?);
+    }
+    let still = still.clone().measured()?;
+    let gas = cell_gas(&still, grid, triangles, parts);
+    let points = still_points(&still, grid, triangles, &model.moving.swept_cells(grid));
+    Ok(CellTable::new(&gas, grid)?.moving(&gas, &points))
 }
 
 /// Without the walls that move: a block that one of them covers in part counts with all of its volume.

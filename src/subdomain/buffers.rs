@@ -40,6 +40,7 @@ pub struct DomainBuffers {
     pub zones: wgpu::Buffer,
     pub cell_volume: wgpu::Buffer,
     pub cell_parts: wgpu::Buffer,
+    pub still_gas: wgpu::Buffer,
 }
 
 impl DomainBuffers {
@@ -68,6 +69,7 @@ impl DomainBuffers {
             zones: device.storage_of("zones", zones)?,
             cell_volume: device.storage_of("cell_volume", &cells.volume)?,
             cell_parts: device.storage_of("cell_parts", &cells.parts)?,
+            still_gas: device.storage_of("still_gas", &cells.still)?,
         })
     }
 }
@@ -102,6 +104,8 @@ pub struct FixedBuffers {
     pub shares: wgpu::Buffer,
     /// The cells whose gas walls part, of a step.
     pub parted: wgpu::Buffer,
+    /// And those that moving walls may touch.
+    pub moved: wgpu::Buffer,
 }
 
 impl FixedBuffers {
@@ -109,7 +113,7 @@ impl FixedBuffers {
         device: &Device,
         words: TallyWords,
         step_slots: u64,
-        [coats, vents, parted, shares]: [u64; 4],
+        [coats, vents, parted, moved, shares]: [u64; 5],
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
@@ -125,6 +129,7 @@ impl FixedBuffers {
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
             motions: device.uniform("motions", (MOTION_ENTRIES * size_of::<GpuMotion>()) as u64)?,
             parted: device.storage::<u32>("parted", parted)?,
+            moved: device.storage::<u32>("moved", moved)?,
             shares: device.storage::<u32>("shares", shares.max(1))?,
         })
     }
@@ -369,8 +374,10 @@ impl<'a> Buffers<'a> {
             (_, "zones") => &domain.zones,
             (_, "cell_volume") => &domain.cell_volume,
             (_, "cell_parts") => &domain.cell_parts,
+            (_, "still_gas") => &domain.still_gas,
             (_, "shares") => &fixed.shares,
             (_, "parted") => &fixed.parted,
+            (_, "moved") => &fixed.moved,
             (_, "particles") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "choices") => &particle.bins,

@@ -2,7 +2,7 @@
 
 use crate::geometry::{CellGas, Grid};
 
-use super::layout::GpuPart;
+use super::layout::{GpuPart, GpuStillGas};
 
 /// The mark of a cell that walls part; below it the number of its parts (7 bits) and the first of them (24).
 const PARTED: u32 = 1 << 31;
@@ -15,6 +15,8 @@ pub struct CellTable {
     pub parts: Vec<GpuPart>,
     /// Cells that walls part.
     pub parted: u64,
+    /// Of each cell what walls at rest leave where moving walls may come; empty where none moves.
+    pub still: Vec<GpuStillGas>,
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,5 +47,11 @@ impl CellTable {
             }));
         }
         Ok(table)
+    }
+
+    /// For walls that move: `points` are those of `geometry::still_points`.
+    pub fn moving(self, gas: &CellGas, points: &[[u32; 3]]) -> CellTable {
+        let still = |(&points, &volume): (&[u32; 3], &f64)| GpuStillGas { points, volume: volume as f32 };
+        CellTable { still: points.iter().zip(&gas.volume).map(still).collect(), ..self }
     }
 }

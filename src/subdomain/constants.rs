@@ -1,6 +1,7 @@
 //! Values of the shaders' override constants: what specialises the kernels to a scene. Each is written
 //! once, here, from the plan.
 
+use crate::geometry::{CELL_GENERATOR, CELL_POINTS};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
@@ -17,9 +18,9 @@ const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
 /// And those of hits on walls.
 const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 
-/// Bounces of a flight in a step before it is cut short; between walls that close in on each other there are more.
-const MOST_BOUNCES: f64 = 32.0;
-const MOST_BOUNCES_MOVING: f64 = 1024.0;
+/// Bounces of a flight in a step before it is cut short: there are many in narrow gaps, between walls that close in on each
+/// other, and in steps that are too long.
+const MOST_BOUNCES: f64 = 1024.0;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -138,9 +139,12 @@ pub fn constants(
         ("COATS_AT", coats_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),
+        ("CELL_POINTS", CELL_POINTS as f64),
+        ("GENERATOR_Y", CELL_GENERATOR[1] as f64),
+        ("GENERATOR_Z", CELL_GENERATOR[2] as f64),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
-        ("MOST_BOUNCES", if features.moving { MOST_BOUNCES_MOVING } else { MOST_BOUNCES }),
+        ("MOST_BOUNCES", MOST_BOUNCES),
         ("IMPULSE_SCALE", scales.velocity),
         ("GASES", plan.gases.len() as f64),
         ("CHAMBERS", plan.chambers.len() as f64),

@@ -39,6 +39,8 @@ pub struct Domain {
     pub(super) zones: usize,
     /// Cells whose gas walls part.
     pub(super) parted_cells: u64,
+    /// Cells that moving walls may touch, at most.
+    pub(super) moved_cells: u64,
 }
 
 impl Domain {
@@ -75,6 +77,7 @@ impl Domain {
             blocks,
             zones: input.zones.len(),
             parted_cells: input.cells.parted,
+            moved_cells: input.cells.still.len() as u64,
         })
     }
 

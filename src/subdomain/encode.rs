@@ -78,6 +78,7 @@ impl StepSlot {
 
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
 const LIST_PARTED: u32 = 0;
+const LIST_MOVED: u32 = 1;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
@@ -364,6 +365,9 @@ impl Subdomain {
             kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
             if let Some(parted) = &kernels.parted {
                 parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
+            }
+            if let Some(moved) = &kernels.moved {
+                moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
             }
         }
     }

@@ -47,6 +47,8 @@ pub struct CellKernels<K> {
     pub collide: K,
     /// Of a scene whose walls part the gas of a cell.
     pub parted: Option<K>,
+    /// Of a scene whose walls move.
+    pub moved: Option<K>,
 }
 
 /// On a device among others.
@@ -83,6 +85,7 @@ impl<K> Kernels<K> {
             Some(CellKernels {
                 collide: make("collide")?,
                 parted: if features.parted { Some(make("collide_parted")?) } else { None },
+                moved: if features.moving { Some(make("collide_moved")?) } else { None },
             })
         } else {
             None

@@ -46,6 +46,16 @@ pub struct GpuPart {
     pub volume: f32,
 }
 
+/// `StillGas` of `shaders/shared/cell_gas.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuStillGas {
+    /// A bit for each point of the lattice.
+    pub points: [u32; 3],
+    /// m3.
+    pub volume: f32,
+}
+
 /// `Particle` of `shaders/shared/particle.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]

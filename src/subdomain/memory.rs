@@ -4,7 +4,7 @@ use crate::plan::Plan;
 use crate::scene::Method;
 
 use super::buffers::{BYTES_PER_BIN, FIRST_LIST, bytes_per_particle};
-use super::layout::GpuParticle;
+use super::layout::{GpuParticle, GpuStillGas};
 
 /// Bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,10 +20,12 @@ pub struct Memory {
 
 /// Start of the list of walls; class; whether a wall may part the gas there: bytes of a cell (`DomainBuffers`).
 const WALLS_OF_A_CELL: f64 = 4.0 + 2.0 / 8.0 + 1.0 / 8.0;
+/// What walls at rest leave of it, and its place in the list of those that moving walls touch.
+const MOVED_OF_A_CELL: f64 = size_of::<GpuStillGas>() as f64 + 4.0;
 
 impl Memory {
-    /// With so many copies of the particles under way; `None` of a plan that no device runs.
-    pub fn of(plan: &Plan, copies: u64) -> Option<Memory> {
+    /// With so many copies of the particles under way, and perhaps walls that move; `None` of a plan that no device runs.
+    pub fn of(plan: &Plan, copies: u64, moving: bool) -> Option<Memory> {
         if plan.method == Method::ControlVolume {
             return None;
         }
@@ -31,7 +33,11 @@ impl Memory {
         let state = size_of::<GpuParticle>() as u64;
         let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), FIRST_LIST) + copies * state;
         let sort = if collisions { BYTES_PER_BIN } else { 0.0 };
-        let volume = if plan.method == Method::Cell { 4.0 } else { 0.0 };
+        let volume = match plan.method {
+            Method::Cell if moving => 4.0 + MOVED_OF_A_CELL,
+            Method::Cell => 4.0,
+            _ => 0.0,
+        };
         let per_cell = sort + volume + WALLS_OF_A_CELL;
         let cells = plan.grid.cell_count() as f64;
         Some(Memory { per_particle, per_cell, all: plan.particles as f64 * per_particle as f64 + cells * per_cell })

@@ -35,8 +35,8 @@ pub use domain::{Domain, DomainInput};
 pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle,
-    GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
+    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
 pub use place::{Cells, Ghosts, Place};
@@ -88,7 +88,8 @@ impl Subdomain {
         let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(encode::uniforms(plan, features));
         let shares = if features.capped { block_counts(plan).iter().map(|&n| u64::from(n)).product() } else { 1 };
-        let tables = [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells, shares];
+        let tables =
+            [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells, domain.moved_cells, shares];
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);

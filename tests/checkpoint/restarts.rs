@@ -59,6 +59,9 @@ fn a_piston_goes_on_from_any_step() {
     scene.motions[0].course =
         corpuscle::scene::Course::Velocity(corpuscle::scene::Curve { points: vec![[0.0, 0.0], [6e-4, 60.0]] });
     restarts(&scene, 9, [2, 1, 3, 2]);
+    scene.model.method = Some(Method::Cell);
+    scene.model.time_step = Some(scene.end_time / 200.0);
+    restarts(&scene, 10, [1, 4, 2, 3]);
 }
 
 /// What it remembers of the rows, and what it has decided, is in the checkpoint.

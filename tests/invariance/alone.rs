@@ -85,6 +85,7 @@ fn pistons_have_the_same_bits_in_every_way() {
     let last = first.rows.last().expect("a row");
     assert!(last.motions.iter().all(|motion| motion.work != 0.0), "{:?}", last.motions);
     every_way(&model);
+    every_way(&by(Method::Cell, pistons()));
 }
 
 /// Walls that exchange heat draw random numbers, and follow the gas.

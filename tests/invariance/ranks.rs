@@ -96,6 +96,22 @@ fn pistons_have_the_same_bits_on_any_number_of_ranks() {
     same(&by(Method::None, pistons()), &[Way::new(3, Off, 1)]);
 }
 
+/// So is the room that they leave in a cell.
+#[test]
+fn pistons_in_cells_have_the_same_bits_on_any_number_of_ranks() {
+    let ways = [
+        Way::new(2, Dynamic, 1),
+        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 1) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(4, Forced { seed: 2 }, None) },
+    ];
+    // Steps of a dozen intervals.
+    let mut scene = pistons().scene;
+    scene.model.time_step = Some(scene.end_time / 400.0);
+    let runs = same(&by(Method::Cell, Model::new(scene).expect("a model")), &ways);
+    assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
+    assert!(runs[0].outcome.collisions > 1000);
+}
+
 /// When it switches follows from rows, which are the same.
 #[test]
 fn a_run_that_switches_has_the_same_bits_on_any_number_of_ranks() {

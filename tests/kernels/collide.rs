@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use corpuscle::geometry::{TriangleGrid, Vessel, cell_gas};
+use corpuscle::geometry::{CELL_GENERATOR, CELL_POINTS, TriangleGrid, Vessel, cell_gas};
 use corpuscle::scene::{GasSide, Shape};
-use corpuscle::subdomain::{CellTable, GpuGas, GpuParticle, GpuStep, Walls};
+use corpuscle::subdomain::{CellTable, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
 
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, dot, minus, norm};
@@ -12,28 +12,34 @@ use crate::rig::*;
 
 const COUNT: usize = 3000;
 const SPEED: f64 = 300.0;
-const DIAMETER: f64 = 2e-3;
+pub const DIAMETER: f64 = 2e-3;
 /// A particle collides in about one step of six: energies hardly change on the way.
-const DT: f32 = 2e-6;
-const MASSES: [f64; 2] = [1.0, 0.25];
+pub const DT: f32 = 2e-6;
+pub const MASSES: [f64; 2] = [1.0, 0.25];
 
-struct Cloud {
-    world: World,
-    table: CellTable,
+pub struct Cloud {
+    pub world: World,
+    pub table: CellTable,
     /// By (cell, id), and where each cell starts.
-    particles: Vec<GpuParticle>,
-    start: Vec<u32>,
+    pub particles: Vec<GpuParticle>,
+    pub start: Vec<u32>,
+    /// Where walls move.
+    pub motion: Option<GpuMotion>,
 }
 
 impl Cloud {
     fn new(seed: u32, walls: &[corpuscle::scene::Wall]) -> Cloud {
+        Cloud::of(seed, walls, COUNT)
+    }
+
+    pub fn of(seed: u32, walls: &[corpuscle::scene::Wall], count: usize) -> Cloud {
         let world = World::new(walls, 0.01);
         let vessel = Vessel::build(walls).unwrap();
         let triangles = TriangleGrid::build(&vessel, &world.grid, Walls::tolerance(&world.grid)).unwrap();
         let gas = cell_gas(&vessel, &world.grid, &triangles, |k| vessel.triangles[k].wall > 0);
         let table = CellTable::new(&gas, &world.grid).unwrap();
         let mut stream = Stream::new(seed);
-        let mut particles = world.particles(&mut stream, COUNT, SPEED);
+        let mut particles = world.particles(&mut stream, count, SPEED);
         particles.retain(|p| vessel.is_gas(world.grid.to_metres(p.position)));
         let cells = world.cells();
         let cell = |p: &GpuParticle| cells.index(cells.cell(p.position));
@@ -42,10 +48,10 @@ impl Cloud {
         for p in &particles {
             start[cell(p) as usize + 1..].iter_mut().for_each(|later| *later += 1);
         }
-        Cloud { world, table, particles, start }
+        Cloud { world, table, particles, start, motion: None }
     }
 
-    fn run(&self, step: GpuStep, seed: u32) -> Rig {
+    pub fn run(&self, step: GpuStep, seed: u32) -> Rig {
         let mut rig = Rig::new(&self.world);
         rig.constant("CROSS_SECTION", PI * DIAMETER * DIAMETER);
         rig.constant("SEED_LOW", f64::from(seed));
@@ -59,23 +65,44 @@ impl Cloud {
         rig.put("cell_parts", &self.table.parts);
         rig.put("parted", &vec![0u32; self.table.parted as usize + 1]);
         rig.put("neighbour_count", &vec![7u32; self.particles.len()]);
-        rig.step(GpuStep { count: self.particles.len() as u32, index: 3, dt: DT, ..step });
+        rig.put("moved", &vec![0u32; self.start.len()]);
+        rig.put("still_gas", &self.table.still);
+        rig.constant("CELL_POINTS", CELL_POINTS as f64);
+        rig.constant("GENERATOR_Y", CELL_GENERATOR[1] as f64);
+        rig.constant("GENERATOR_Z", CELL_GENERATOR[2] as f64);
+        if let Some(motion) = self.motion {
+            let mut table = [GpuMotion::default(); MOTION_ENTRIES];
+            table[0] = motion;
+            rig.uniform("motions", &table);
+            rig.constant("MOVING", 1.0);
+            rig.constant("MOTIONS", 1.0);
+        }
+        rig.step(GpuStep {
+            count: self.particles.len() as u32,
+            index: 3,
+            dt: if step.dt > 0.0 { step.dt } else { DT },
+            ..step
+        });
         rig.run("collide", self.start.len() - 1);
         let parted = rig.counter(0);
         if parted > 0 {
             rig.run("collide_parted", parted as usize);
         }
+        let moved = rig.counter(1);
+        if moved > 0 {
+            rig.run_groups("collide_moved", [moved, 1, 1]);
+        }
         rig
     }
 
     /// Particles of a cell.
-    fn cell(&self, cell: usize) -> std::ops::Range<usize> {
+    pub fn cell(&self, cell: usize) -> std::ops::Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize
     }
 }
 
 /// Momentum, energy, and the sizes that their rounding goes by.
-fn sums(particles: &[GpuParticle]) -> (Vector, f64, f64) {
+pub fn sums(particles: &[GpuParticle]) -> (Vector, f64, f64) {
     let (mut momentum, mut energy, mut size) = ([0.0; 3], 0.0, 0.0);
     for p in particles {
         let (mass, v) = (MASSES[usize::from(p.gas())], p.velocity.map(f64::from));
@@ -86,7 +113,7 @@ fn sums(particles: &[GpuParticle]) -> (Vector, f64, f64) {
     (momentum, energy, size)
 }
 
-fn first_step() -> GpuStep {
+pub fn first_step() -> GpuStep {
     GpuStep { newborn_first_id: u32::MAX, ..GpuStep::default() }
 }
 

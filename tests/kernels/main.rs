@@ -19,6 +19,7 @@ mod halo;
 mod lists;
 mod local;
 mod match_pairs;
+mod moved;
 mod neighbours;
 mod philox;
 mod rig;
@@ -41,6 +42,7 @@ fn every_kernel_has_its_test() {
         "ceiling_copy",
         "choose",
         "collide",
+        "collide_moved",
         "collide_parted",
         "inject",
         "lost",

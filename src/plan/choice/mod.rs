@@ -7,12 +7,13 @@
 
 mod cost;
 mod families;
+mod holes;
 mod report;
 
 use super::amounts::{Amounts, highest_temperature};
 use super::decide::mean_states;
 use super::error::{MOST_CELLS, MOST_PARTICLES};
-use super::forecast::{Candidate, ColumnForecast, Forecaster, Outlook, worst};
+use super::forecast::{Candidate, Cause, ColumnForecast, Forecaster, Outlook, worst};
 use super::heat::species;
 use super::resolution::{Extreme, Resolution};
 use super::{Measured, PlanError};
@@ -123,7 +124,12 @@ impl Chooser<'_> {
             return Ok(best);
         }
         let best_of_all = report::shortfall(&best);
-        Err(PlanError::Accuracy { asked: accuracy, floor: best.error, best: best_of_all, remedy: self.remedy(wish) })
+        Err(PlanError::Accuracy {
+            asked: accuracy,
+            floor: best.error,
+            best: best_of_all,
+            remedy: self.remedy(wish, &best),
+        })
     }
 
     /// The most accurate plan within the budgets.
@@ -137,8 +143,11 @@ impl Chooser<'_> {
         Err(PlanError::TimeBudget { budget, least: least.cost.seconds, plan: report::words(&least) })
     }
 
-    fn remedy(&self, wish: &Wish) -> String {
+    fn remedy(&self, wish: &Wish, best: &Possible) -> String {
         let mut remedies = Vec::new();
+        if worst(&best.columns).and_then(ColumnForecast::main_cause) == Some(Cause::Holes) {
+            remedies.push("if only the flow through a hole matters, model it as a [[vent]]");
+        }
         if self.scene.model.particles.is_some() {
             remedies.push("leave `particles` out of [model]");
         }

@@ -1,5 +1,6 @@
 //! The choice in words: what was chosen, what it is worth and costs, what the next plans would be, and why.
 
+use super::holes::Holes;
 use super::{AIM, Chooser, NEXT, Possible};
 use crate::plan::forecast::{Cause, ColumnForecast, worst};
 use crate::plan::render::{grouped, significant};
@@ -37,6 +38,7 @@ pub struct Choice {
     pub request: ModelRequest,
     pub forecast: Forecast,
     reasons: Vec<Reason>,
+    holes: Holes,
 }
 
 impl Choice {
@@ -57,7 +59,9 @@ impl Choice {
     pub fn explain(&self, plan: &mut Plan) {
         let mut reasons = self.reasons.clone();
         for hole in &plan.openings {
-            reasons.push(hole_reason(plan.method, &hole.name, hole.knudsen, &self.forecast.columns));
+            let mut own = hole_reason(plan.method, &hole.name, hole.knudsen, &self.forecast.columns);
+            own.why.extend(self.holes.advice(plan, hole));
+            reasons.push(own);
         }
         for vent in &plan.vents {
             let length = (vent.area / std::f64::consts::PI).sqrt();
@@ -219,7 +223,8 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
         columns: chosen.columns.clone(),
     };
     let request = chooser.request(&chosen.family, chosen.candidate.particles as u64);
-    Choice { request, forecast, reasons }
+    let aimed = wish.accuracy.map_or(chosen.error, |accuracy| AIM * accuracy);
+    Choice { request, forecast, reasons, holes: Holes::new(chooser.scene, &chosen, aimed) }
 }
 
 /// How many rounds, and why not the other number.

@@ -142,3 +142,30 @@ fn impossible_wishes_are_refused() {
     });
     assert!(matches!(switching, PlanError::WishOfSwitch));
 }
+
+/// A hole that takes more particles than the statistics is told, with the vent that could take its place; one that is
+/// resolved is not.
+#[test]
+fn a_hole_that_is_not_resolved_could_be_modelled() {
+    let said = |area: f64, length: f64| {
+        let (mut scene, mut measured, outlook) = seen();
+        scene.probes.clear();
+        measured.openings[0] = crate::scene::Opening { area, length, ..measured.openings[0].clone() };
+        scene.model.wish.particle_budget = Some(100_000);
+        scene.model.method = Some(Method::ClosestApproach);
+        let choice = choose(&scene, &measured, &Outlook { probes: vec![], ..outlook }).unwrap();
+        scene.model = choice.request.clone();
+        let mut planned = plan(&scene, &measured).unwrap();
+        choice.explain(&mut planned);
+        let hole = planned.reasons.iter().find(|reason| reason.quantity == "hole vent").unwrap();
+        (hole.why.clone(), planned.particles as f64 * (planned.openings[0].knudsen / 0.1).powi(3))
+    };
+    let (why, resolving) = said(4e-4, 0.02);
+    assert!(resolving > 2e5, "{resolving}");
+    for part in ["to resolve it takes", "`area` = 0.0004 m2", "`external_pressure` = 101325 Pa", "chamber `tank`"] {
+        assert!(why.contains(part), "{part} is not in {why}");
+    }
+    // The check can fail: a wide hole is resolved.
+    let (why, resolving) = said(0.04, 0.2);
+    assert!(resolving < 1e5 && !why.contains("[[vent]]"), "{why}");
+}

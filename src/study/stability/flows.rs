@@ -69,10 +69,8 @@ pub(super) fn wall_speed(
         Effort::Usual => 16_000,
         Effort::Full => 64_000,
     };
-    let piston = Piston::shock(particles, speed);
-    let mut scene = piston.scene()?;
-    scene.model.method = Some(method);
-    let model = model_from("piston", scene)?;
+    let piston = Piston::shock(particles, speed).by(method);
+    let model = piston.model()?;
     let run = run(device, &model, Options::default())?;
     let (found, error) = on_piston(&piston, &run);
     let expected = shock_pressure(speed);

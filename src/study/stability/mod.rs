@@ -159,7 +159,6 @@ pub fn first_broken(points: &[Point], method: Method) -> Found<'_> {
 }
 
 const COLLIDING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell];
-const MOVING: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::None];
 const ALL: &[Method] = &[Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
 
 fn of_table(quantity: Quantity) -> impl Fn(Method) -> Option<Bound> {
@@ -255,7 +254,7 @@ pub const AXES: &[Axis] = &[
         name: "wall-speed",
         what: "speed of a piston over sqrt(kT/m)",
         runs: "a piston that starts at once into gas at rest, until its shock is near the far end, against Rankine and Hugoniot",
-        methods: MOVING,
+        methods: ALL,
         quick: &[0.2, 1.0],
         usual: &[0.2, 0.5, 1.0, 2.0],
         full: &[0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0],

@@ -1,0 +1,362 @@
+//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl dsmc.wgsl cell_gas.wgsl
+// The collisions of the method `cell`, in cells that walls which move may touch in this step: each part of the gas by
+// itself, with the volumes of the moment.
+//
+// Collisions are at the start of the step, where the walls are at `moved`. Of a lattice of points in the cell those are
+// gas that are in no wall at rest (`still_gas`) and of which a ray along x leaves no moving wall more often than it enters
+// one. A point that no place before it sees is a place itself; what it sees is of its part, and parts that share a point
+// are one. The volume of a part is its share of the points, and smaller by the share of pairs of points that do not see
+// each other, as that of a part at rest (src/geometry/cell_gas.rs). A particle is of the part of the first place that it
+// sees, or if it sees none, of that of the nearest.
+//
+// All of it is a function of the cell and of where the walls are in the step: the same on every device that owns the
+// cell. A pair that a wall parts does not collide, whatever the parts are.
+//
+// Reads `moved`, `cell_start`, `cell_volume`, `still_gas`, `motions` and the walls; reads and writes `sorted` and the
+// part of each particle in `layers`. One workgroup per entry of `moved`, whose threads share the points and the particles
+// (a software device gives up loops that are too long); the first of them collides. Each works on its own cell; what is
+// shared are sets and sums of integers, which have no order.
+
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(54) var<storage, read> moved: array<u32>;
+@group(0) @binding(55) var<storage, read> still_gas: array<StillGas>;
+
+// The points of a cell, a rank-1 lattice, at most 96.
+override CELL_POINTS: u32;
+override GENERATOR_Y: u32;
+override GENERATOR_Z: u32;
+
+const PART_SHIFT: u32 = 16;
+// Gas that is in more parts than this counts as that of the nearest.
+const MOST_PARTS: u32 = 8;
+// Pairs of points whose sight of each other is tried: each with three others.
+const PAIRINGS: vec3<u32> = vec3<u32>(3, 20, 47);
+
+// Moving triangles that may be in the cell, and those that lie on it or beyond it along x. Where there are more of the
+// first than there is room for, no pair of the cell collides; of the second, all of the walls are tried.
+const MOST_LISTED: u32 = 512;
+var<workgroup> close: array<u32, 512>;
+var<workgroup> close_count: atomic<u32>;
+var<workgroup> ahead: array<u32, 512>;
+var<workgroup> ahead_count: atomic<u32>;
+// Sets of points, three words each: the gas, and what each place sees.
+var<workgroup> gas: array<atomic<u32>, 3>;
+var<workgroup> seen: array<atomic<u32>, 24>;
+// Of each part the pairs of points that were tried, and those of them that see each other.
+var<workgroup> tried: array<atomic<u32>, 16>;
+
+// The cell, and whether walls at rest may part its gas.
+var<private> here: vec3<u32>;
+var<private> still_parts: bool;
+var<private> places: array<vec3<u32>, 8>;
+var<private> part_of_place: array<u32, 8>;
+var<private> place_count: u32;
+
+// The k-th particle of a part.
+fn member(begin: u32, k: u32, part: u32) -> u32 {
+    var s = begin;
+    var left = k;
+    loop {
+        if ((layers[s] >> PART_SHIFT) == part) {
+            if (left == 0u) {
+                return s;
+            }
+            left--;
+        }
+        s++;
+    }
+    return s;
+}
+
+fn hidden(i: Particle, j: Particle) -> bool {
+    return !sees(i.position, j.position);
+}
+
+// Finds `close` and `ahead`, by all threads.
+fn gather(thread: u32) {
+    // A little more than half the edge, for rounding.
+    let half = 0.50005 * f32(1u << CELL_BITS) * QUANTUM + TOLERANCE;
+    let middle = (here << vec3<u32>(CELL_BITS)) + vec3<u32>(1u << (CELL_BITS - 1u));
+    for (var m = 0u; m < MOTIONS; m++) {
+        let motion = motion_of(m);
+        if (!in_motion(here, motion)) {
+            continue;
+        }
+        let from_middle = middle - bitcast<vec3<u32>>(motion.moved);
+        for (var index = motion.first + thread; index < motion.end; index += WORKGROUP) {
+            let triangle = triangles[index];
+            let a = between(from_middle, triangle.a);
+            let b = between(from_middle, triangle.b);
+            let c = between(from_middle, triangle.c);
+            let low = min(a, min(b, c));
+            let high = max(a, max(b, c));
+            if (any(low.yz > vec2<f32>(half)) || any(high.yz < vec2<f32>(-half)) || high.x < -half) {
+                continue;
+            }
+            let k = atomicAdd(&ahead_count, 1u);
+            if (k < MOST_LISTED) {
+                ahead[k] = index;
+            }
+            let size = abs(triangle.normal);
+            if (low.x <= half && abs(dot(triangle.normal, a)) <= half * (size.x + size.y + size.z)) {
+                let l = atomicAdd(&close_count, 1u);
+                if (l < MOST_LISTED) {
+                    close[l] = index;
+                }
+            }
+        }
+    }
+}
+
+// Whether a point of the cell is in a wall that moves.
+fn in_wall(p: vec3<u32>) -> bool {
+    var depth = 0;
+    let count = atomicLoad(&ahead_count);
+    if (count <= MOST_LISTED) {
+        for (var k = 0u; k < count; k++) {
+            depth += crossing(ahead[k], p);
+        }
+        return depth > 0;
+    }
+    for (var m = 0u; m < MOTIONS; m++) {
+        let motion = motion_of(m);
+        if (in_motion(here, motion)) {
+            for (var index = motion.first; index < motion.end; index++) {
+                depth += crossing(index, p);
+            }
+        }
+    }
+    return depth > 0;
+}
+
+// Whether the ray along x from a point leaves the wall of a triangle through it (1), or enters it (-1).
+fn crossing(index: u32, p: vec3<u32>) -> i32 {
+    let triangle = triangles[index];
+    let q = p - bitcast<vec3<u32>>(motion_of(triangle.motion).moved);
+    let a = between(q, triangle.a);
+    let b = between(q, triangle.b);
+    let c = between(q, triangle.c);
+    // From the lower vertex id to the higher: two triangles agree on their edge.
+    let ab = turn(a, b);
+    if (ab != turn(b, c) || ab == turn(a, c)) {
+        return 0;
+    }
+    let facing = select(-triangle.sense, triangle.sense, ab);
+    return select(0, select(-1, 1, facing > 0.0), dot(triangle.normal, a) * facing > 0.0);
+}
+
+fn turn(a: vec3<f32>, b: vec3<f32>) -> bool {
+    return a.y * b.z - a.z * b.y >= 0.0;
+}
+
+// Whether no wall is between two points of the cell.
+fn sees(p: vec3<u32>, q: vec3<u32>) -> bool {
+    let along = between(p, q);
+    let count = atomicLoad(&close_count);
+    if (count > MOST_LISTED) {
+        return false;
+    }
+    for (var k = 0u; k < count; k++) {
+        let way = bitcast<vec3<u32>>(motion_of(triangles[close[k]].motion).moved);
+        if (parts(close[k], p - way, q - way, along)) {
+            return false;
+        }
+    }
+    if (still_parts) {
+        let cell = cell_index(here);
+        for (var k = wall_start[cell]; k < wall_start[cell + 1u]; k++) {
+            if (parts(wall_list[k], p, q, along)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+fn point(k: u32) -> vec3<u32> {
+    let share = vec3<u32>(k, k * GENERATOR_Y, k * GENERATOR_Z) % CELL_POINTS;
+    return (here << vec3<u32>(CELL_BITS)) + (2u * share + 1u) * ((1u << CELL_BITS) / (2u * CELL_POINTS));
+}
+
+// Sets of points: a bit for each.
+fn has(points: vec3<u32>, k: u32) -> bool {
+    return ((points[k >> 5u] >> (k & 31u)) & 1u) != 0u;
+}
+
+fn size_of(points: vec3<u32>) -> f32 {
+    let bits = countOneBits(points);
+    return f32(bits.x + bits.y + bits.z);
+}
+
+fn all_gas() -> vec3<u32> {
+    return vec3<u32>(atomicLoad(&gas[0]), atomicLoad(&gas[1]), atomicLoad(&gas[2]));
+}
+
+fn seen_by(place: u32) -> vec3<u32> {
+    return vec3<u32>(atomicLoad(&seen[3u * place]), atomicLoad(&seen[3u * place + 1u]), atomicLoad(&seen[3u * place + 2u]));
+}
+
+// The number of the first point of a set that is not empty.
+fn lowest(points: vec3<u32>) -> u32 {
+    if (points.x != 0u) {
+        return countTrailingZeros(points.x);
+    }
+    if (points.y != 0u) {
+        return 32u + countTrailingZeros(points.y);
+    }
+    return 64u + countTrailingZeros(points.z);
+}
+
+// Parts that share a point are one, with the number of the lowest place.
+fn merge() {
+    for (var a = 0u; a < place_count; a++) {
+        part_of_place[a] = a;
+    }
+    for (var a = 0u; a < place_count; a++) {
+        for (var b = a + 1u; b < place_count; b++) {
+            if (any((seen_by(a) & seen_by(b)) != vec3<u32>(0u))) {
+                let low = min(part_of_place[a], part_of_place[b]);
+                let high = max(part_of_place[a], part_of_place[b]);
+                for (var k = 0u; k < place_count; k++) {
+                    part_of_place[k] = select(part_of_place[k], low, part_of_place[k] == high);
+                }
+            }
+        }
+    }
+}
+
+// MOST_PARTS of a point that is of none.
+fn part_of_point(k: u32) -> u32 {
+    for (var place = 0u; place < place_count; place++) {
+        if (has(seen_by(place), k)) {
+            return part_of_place[place];
+        }
+    }
+    return MOST_PARTS;
+}
+
+fn part_of(place: vec3<u32>) -> u32 {
+    var nearest = 0u;
+    var least = NEVER;
+    for (var k = 0u; k < place_count; k++) {
+        if (sees(place, places[k])) {
+            return part_of_place[k];
+        }
+        let away = between(place, places[k]);
+        if (dot(away, away) < least) {
+            nearest = part_of_place[k];
+            least = dot(away, away);
+        }
+    }
+    return nearest;
+}
+
+fn volume_of(part: u32) -> f32 {
+    let entry = cell_volume[cell_index(here)];
+    // The box around a wall is larger than the wall.
+    if (atomicLoad(&close_count) == 0u && (entry & PARTED) == 0u) {
+        return bitcast<f32>(entry);
+    }
+    let still = still_gas[cell_index(here)];
+    var points = vec3<u32>(0u);
+    for (var k = 0u; k < place_count; k++) {
+        points |= select(vec3<u32>(0u), seen_by(k), part_of_place[k] == part);
+    }
+    if (all(points == vec3<u32>(0u))) {
+        // A gap without a point has half of one's share, in the mean.
+        let edge = f32(1u << CELL_BITS) * QUANTUM;
+        return 0.5 * edge * edge * edge / f32(CELL_POINTS);
+    }
+    let pairs = f32(atomicLoad(&tried[2u * part]));
+    let seeing = f32(atomicLoad(&tried[2u * part + 1u]));
+    let visible = select(1.0, max(seeing, 1.0) / max(pairs, 1.0), pairs > 0.0);
+    return still.volume * (size_of(points) / size_of(still.points)) * visible;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn collide_moved(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let place_in_list = group.x + group.y * groups.x;
+    let listed = place_in_list < atomicLoad(&counters[LIST_MOVED]);
+    // (All threads reach the barriers.)
+    let bin = moved[select(0u, place_in_list, listed)];
+    here = cell_of(bin);
+    let cell = cell_index(here);
+    still_parts = ((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u;
+    gather(thread);
+    workgroupBarrier();
+    let still_points = still_gas[cell].points;
+    for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
+        if (has(still_points, k) && !in_wall(point(k))) {
+            atomicOr(&gas[k >> 5u], 1u << (k & 31u));
+        }
+    }
+    workgroupBarrier();
+    let points = all_gas();
+    var rest = points;
+    place_count = 0u;
+    for (var place = 0u; place < MOST_PARTS; place++) {
+        let found = any(rest != vec3<u32>(0u));
+        if (found) {
+            let own = point(lowest(rest));
+            places[place] = own;
+            place_count = place + 1u;
+            for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
+                if (has(points, k) && (k == lowest(rest) || sees(own, point(k)))) {
+                    atomicOr(&seen[3u * place + (k >> 5u)], 1u << (k & 31u));
+                }
+            }
+        }
+        workgroupBarrier();
+        rest &= ~seen_by(place);
+    }
+    merge();
+    for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
+        let part = part_of_point(k);
+        for (var n = 0u; n < 3u && part < MOST_PARTS; n++) {
+            let other = (PAIRINGS[n] * k + 1u) % CELL_POINTS;
+            if (other != k && part_of_point(other) == part) {
+                atomicAdd(&tried[2u * part], 1u);
+                if (sees(point(k), point(other))) {
+                    atomicAdd(&tried[2u * part + 1u], 1u);
+                }
+            }
+        }
+    }
+    if (place_count == 0u) {
+        places[0] = (here << vec3<u32>(CELL_BITS)) + vec3<u32>(1u << (CELL_BITS - 1u));
+        part_of_place[0] = 0u;
+        place_count = 1u;
+    }
+    let begin = cell_start[bin];
+    let end = select(begin, last_of(begin, cell_start[bin + 1u]), listed);
+    for (var s = begin + thread; s < end; s += WORKGROUP) {
+        layers[s] = (layers[s] & 0xffffu) | (part_of(sorted[s].position) << PART_SHIFT);
+    }
+    storageBarrier();
+    workgroupBarrier();
+    if (thread > 0u || !listed) {
+        return;
+    }
+    var candidates = 0u;
+    for (var part = 0u; part < place_count; part++) {
+        var count = 0u;
+        for (var s = begin; s < end; s++) {
+            count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
+        }
+        if (count > 1u) {
+            let done = collide_members(begin, count, volume_of(part), cell, part);
+            candidates += done.candidates;
+            if (done.collisions > 0u) {
+                count_collisions(done.collisions);
+            }
+        }
+    }
+    if (step.peers > 0u) {
+        neighbour_count[begin] = candidates;
+    }
+}
