@@ -27,13 +27,15 @@ pub fn tank(end_time: f64) -> Scene {
     scene
 }
 
-/// Gas so dense that neighbour lists are too short at first, and intervals are run again.
+/// Gas that becomes so dense that neighbour lists which fit it at the start are too short later, and intervals are run again.
 pub fn dense() -> Scene {
     let text = "title = \"dense\"\nend_time = 5e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
         [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+        [[orifice]]\nname = \"in\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.006\n\
+        gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 6.0], [5e-4, 6.0]]\n\
         [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-        [model]\nparticles = 1500\ndiameter = 0.010\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 3\n";
+        [model]\nparticles = 2000\ndiameter = 0.010\ntime_step = 1e-5\n[output]\nrows = 5\nsnapshots = 3\n";
     scene::parse(text, "dense.toml", Path::new("")).unwrap()
 }
 

@@ -107,7 +107,7 @@ fn vents_and_cold_walls_go_on_from_any_step() {
     assert!(case.said.contains("heat to the walls"), "{}", case.said);
 }
 
-/// A run that goes on starts with short neighbour lists again.
+/// A run that goes on has neighbour lists that fit its gas of then, whatever they were before.
 #[test]
 fn intervals_that_are_run_again_do_not_matter() {
     let case = restarts(&dense(), 4, [2, 3, 1, 2]);
