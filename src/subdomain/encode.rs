@@ -189,7 +189,11 @@ impl Subdomain {
             0 => self.list_lengths(device)?.into_iter().max().unwrap_or(0),
             wanted => wanted,
         };
-        self.make_room(device, 0, 0, longest + longest / 2)
+        match self.make_room(device, 0, 0, longest + longest / 2) {
+            // A device may have room for what is wanted and not for more.
+            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, longest),
+            made => made,
+        }
     }
 
     /// Starts a step of a device among others, whose number of particles is known only now.
