@@ -10,6 +10,7 @@
 use std::error::Error;
 use std::time::Instant;
 
+use corpuscle::gas::philox4x32_10;
 use corpuscle::gpu::{Access, Binding, BoundKernel, Device, Kernel, KernelSource, Recording, fold};
 use corpuscle::subdomain::GpuStep;
 
@@ -57,13 +58,14 @@ struct Way {
 }
 
 impl Bench {
-    /// Times the ways in turns and prints a line for each; `digest` of their results must be one for all.
-    fn compare(&self, task: &str, items: usize, ways: &[Way], digest: impl Fn(&Way, Vec<u32>) -> u64) -> Outcome<()> {
+    /// Times the ways in turns and prints a line for each; `digest` of their results must be one for all (it is given which
+    /// way's they are).
+    fn compare(&self, task: &str, items: usize, ways: &[Way], digest: impl Fn(usize, Vec<u32>) -> u64) -> Outcome<()> {
         println!("\n{task}, {items} items");
         let mut seconds = vec![Vec::new(); ways.len()];
         let mut first = None;
         for turn in 0..=self.turns {
-            for (way, seconds) in ways.iter().zip(&mut seconds) {
+            for (k, (way, seconds)) in ways.iter().zip(&mut seconds).enumerate() {
                 let mut rec = Recording::new(&self.device);
                 for (from, to) in &way.restores {
                     rec.encoder().copy_buffer_to_buffer(from, 0, to, 0, from.size().min(to.size()));
@@ -80,7 +82,7 @@ impl Bench {
                 if turn > 0 {
                     seconds.push(start.elapsed().as_secs_f64());
                 } else {
-                    let found = digest(way, self.device.read(&way.result, way.words)?);
+                    let found = digest(k, self.device.read(&way.result, way.words)?);
                     if *first.get_or_insert(found) != found {
                         return Err(
                             format!("{task}: `{}` gives another result than `{}`", way.name, ways[0].name).into()
@@ -152,7 +154,7 @@ impl Bench {
     fn scans(&self) -> Outcome<()> {
         let cells = 8 * self.count;
         let mut counts = vec![0u32; cells];
-        let mut numbers = Numbers(3);
+        let mut numbers = Numbers::of(3);
         (0..self.count).for_each(|_| counts[numbers.below(cells as u32) as usize / 2] += 1);
         let mut ways = Vec::new();
         for chunk in [64, 16, 256] {
@@ -246,7 +248,7 @@ impl Bench {
 
     /// A particle's words together, or each in an array of its own.
     fn layouts(&self) -> Outcome<()> {
-        let mut numbers = Numbers(5);
+        let mut numbers = Numbers::of(5);
         let records: Vec<u32> =
             (0..self.count).flat_map(|_| [0; 8].map(|_: u32| (100.0 * numbers.uniform()).to_bits())).collect();
         let word = |k: usize| records.iter().skip(k).step_by(8).copied();
@@ -258,12 +260,12 @@ impl Bench {
             order.swap(k, other);
         });
         let texts = [
-            ("records of 32 bytes", "records", include_str!("kernels/records.wgsl"), &records),
-            ("an array for each of 8 words", "arrays", include_str!("kernels/arrays.wgsl"), &arrays),
+            ("records of 32 bytes (records)", include_str!("kernels/records.wgsl"), &records, false),
+            ("an array for each of 8 words (arrays)", include_str!("kernels/arrays.wgsl"), &arrays, true),
         ];
         for (task, entry, result) in [("flight", "fly", 1), ("a new order", "gather", 2)] {
             let mut ways = Vec::new();
-            for (name, file, text, data) in texts {
+            for (name, text, data, _) in texts {
                 let device = &self.device;
                 let kept = device.storage_of("kept", data)?;
                 let buffers = [
@@ -275,7 +277,7 @@ impl Bench {
                 let source = source(entry, text, &["order", "particles", "ordered"], &constants);
                 let kernel = self.bind(&Kernel::of(device, source, &constants)?, &buffers)?;
                 ways.push(Way {
-                    name: format!("{name} ({file})"),
+                    name: name.to_owned(),
                     dispatches: vec![(kernel, self.groups(self.count, 64))],
                     restores: vec![(kept, buffers[1].1.clone())],
                     result: buffers[result].1.clone(),
@@ -284,8 +286,8 @@ impl Bench {
             }
             let count = self.count;
             // Particle by particle, wherever its words are.
-            let digest_of = |way: &Way, words: Vec<u32>| {
-                let apart = way.name.contains("array");
+            let digest_of = |way: usize, words: Vec<u32>| {
+                let (.., apart) = texts[way];
                 let at =
                     |particle: usize, word: usize| if apart { word * count + particle } else { 8 * particle + word };
                 let words: Vec<u32> = (0..8 * count).map(|k| words[at(k / 8, k % 8)]).collect();
@@ -352,7 +354,7 @@ impl Cloud {
         let cell = (share * near).floor().max(1.0) as u32;
         let reach = (near / f64::from(cell)).ceil() as u32;
         let edge = UNITS.div_ceil(cell) + 2 * reach;
-        let mut numbers = Numbers(1);
+        let mut numbers = Numbers::of(1);
         let mut points: Vec<(u32, u32)> = (0..count)
             .map(|_| {
                 let place = [0; 3].map(|_: u32| numbers.below(UNITS));
@@ -369,23 +371,25 @@ impl Cloud {
     }
 }
 
-/// Equal numbers in every run (SplitMix64).
-struct Numbers(u64);
+/// Equal numbers in every run: a counter and a key.
+struct Numbers([u32; 4], [u32; 2]);
 
 impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
+    fn of(seed: u32) -> Numbers {
+        Numbers([0; 4], [seed, 0])
+    }
+
+    fn next(&mut self) -> u32 {
+        self.0[0] += 1;
+        philox4x32_10(self.0, self.1)[0]
     }
 
     fn below(&mut self, limit: u32) -> u32 {
-        (self.next() % u64::from(limit)) as u32
+        self.next() % limit
     }
 
     fn uniform(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1 << 24) as f32
+        (self.next() >> 8) as f32 / (1 << 24) as f32
     }
 }
 

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl dsmc.wgsl cell_gas.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl parts.wgsl cell_gas.wgsl
 // The collisions of the method `cell`, in cells that walls which move may touch in this step: each part of the gas by
 // itself, with the volumes of the moment.
 //
@@ -17,8 +17,6 @@
 // (a software device gives up loops that are too long); the first of them collides. Each works on its own cell; what is
 // shared are sets and sums of integers, which have no order.
 
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(54) var<storage, read> moved: array<u32>;
 @group(0) @binding(55) var<storage, read> still_gas: array<StillGas>;
 
@@ -27,7 +25,6 @@ override CELL_POINTS: u32;
 override GENERATOR_Y: u32;
 override GENERATOR_Z: u32;
 
-const PART_SHIFT: u32 = 16;
 // Gas that is in more parts than this counts as that of the nearest.
 const MOST_PARTS: u32 = 8;
 // Pairs of points whose sight of each other is tried: each with three others.
@@ -52,22 +49,6 @@ var<private> still_parts: bool;
 var<private> places: array<vec3<u32>, 8>;
 var<private> part_of_place: array<u32, 8>;
 var<private> place_count: u32;
-
-// The k-th particle of a part.
-fn member(begin: u32, k: u32, part: u32) -> u32 {
-    var s = begin;
-    var left = k;
-    loop {
-        if ((layers[s] >> PART_SHIFT) == part) {
-            if (left == 0u) {
-                return s;
-            }
-            left--;
-        }
-        s++;
-    }
-    return s;
-}
 
 fn hidden(i: Particle, j: Particle) -> bool {
     return !sees(i.position, j.position);
@@ -335,7 +316,7 @@ fn collide_moved(
     let begin = cell_start[bin];
     let end = select(begin, last_of(begin, cell_start[bin + 1u]), listed);
     for (var s = begin + thread; s < end; s += WORKGROUP) {
-        layers[s] = (layers[s] & 0xffffu) | (part_of(sorted[s].position) << PART_SHIFT);
+        put_in_part(s, part_of(sorted[s].position));
     }
     storageBarrier();
     workgroupBarrier();
@@ -344,19 +325,7 @@ fn collide_moved(
     }
     var candidates = 0u;
     for (var part = 0u; part < place_count; part++) {
-        var count = 0u;
-        for (var s = begin; s < end; s++) {
-            count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
-        }
-        if (count > 1u) {
-            let done = collide_members(begin, count, volume_of(part), cell, part);
-            candidates += done.candidates;
-            if (done.collisions > 0u) {
-                count_collisions(done.collisions);
-            }
-        }
+        candidates += collide_part(begin, end, volume_of(part), cell, part);
     }
-    if (step.peers > 0u) {
-        neighbour_count[begin] = candidates;
-    }
+    tell_candidates(begin, candidates);
 }

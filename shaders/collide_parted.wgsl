@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl dsmc.wgsl cell_gas.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl parts.wgsl cell_gas.wgsl
 // The collisions of the method `cell`, in cells that walls part: each part of the gas by itself.
 //
 // A particle belongs to the first part whose point it sees, or if it sees none, to the one with the nearest point.
@@ -7,28 +7,8 @@
 // Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns` and the walls; reads and writes `sorted` and
 // the part of each particle in `layers`. One thread per entry of `parted`; each works on its own cell.
 
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(51) var<storage, read> parted: array<u32>;
 @group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
-
-const PART_SHIFT: u32 = 16;
-
-// The k-th particle of a part.
-fn member(begin: u32, k: u32, part: u32) -> u32 {
-    var s = begin;
-    var left = k;
-    loop {
-        if ((layers[s] >> PART_SHIFT) == part) {
-            if (left == 0u) {
-                return s;
-            }
-            left--;
-        }
-        s++;
-    }
-    return s;
-}
 
 fn hidden(i: Particle, j: Particle) -> bool {
     return blocked(i.position, j.position, 0.0);
@@ -63,25 +43,11 @@ fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     let begin = cell_start[bin];
     let end = last_of(begin, cell_start[bin + 1u]);
     for (var s = begin; s < end; s++) {
-        let part = part_of(sorted[s].position, first_part(entry), parts);
-        layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
+        put_in_part(s, part_of(sorted[s].position, first_part(entry), parts));
     }
     var candidates = 0u;
     for (var part = 0u; part < parts; part++) {
-        var count = 0u;
-        for (var s = begin; s < end; s++) {
-            count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
-        }
-        if (count > 1u) {
-            let volume = cell_parts[first_part(entry) + part].volume;
-            let done = collide_members(begin, count, volume, cell, part);
-            candidates += done.candidates;
-            if (done.collisions > 0u) {
-                count_collisions(done.collisions);
-            }
-        }
+        candidates += collide_part(begin, end, cell_parts[first_part(entry) + part].volume, cell, part);
     }
-    if (step.peers > 0u) {
-        neighbour_count[begin] = candidates;
-    }
+    tell_candidates(begin, candidates);
 }

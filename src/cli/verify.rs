@@ -65,11 +65,11 @@ pub fn verify(raw: VerifyArguments) -> Result<(), CliError> {
             line_chart(&path, &chart.title, chart.x_label, chart.y_label, &chart.series)?;
         }
     }
-    say(&format!("{}\n", report::summary(&outcomes, failed.len())))?;
+    let tally = report::Tally::of(&outcomes);
+    say(&format!("{}\n", tally.in_words(failed.len())))?;
     let mut errors: Vec<CliError> = failed.into_iter().map(|(_, error)| error.into()).collect();
-    let (passed, checks) = report::passed(&outcomes);
-    if passed < checks {
-        errors.push(CliError::Verification { failed: checks - passed, checks });
+    if tally.failed() > 0 {
+        errors.push(CliError::Verification { failed: tally.failed(), checks: tally.all });
     }
     worst(errors)
 }

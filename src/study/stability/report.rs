@@ -28,7 +28,7 @@ pub fn csv(maps: &[Map<'_>]) -> Result<String, csv::Error> {
         for point in points {
             let guard = axis.limit(point.method).map_or_else(String::new, |bound| bound.words());
             for check in &point.checks {
-                let Check { quantity, reference, measured, error, tolerance } = check;
+                let Check { quantity, reference, measured, error, tolerance, .. } = check;
                 writer.write_record([
                     axis.name,
                     point.method.name(),

@@ -165,9 +165,26 @@ pub fn collision_rate(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate,
 pub fn collision_rate_within(device: &Device, gas: &EquilibriumBox<'_>, limit: f64) -> Result<Rate, StudyError> {
     let mut model = gas.model()?;
     model.plan.collision_limit = limit;
+    rate_of(device, gas, model, Options::default())
+}
+
+/// The same in the steps asked for, however long.
+///
+/// # Errors
+/// If the run fails.
+pub fn collision_rate_held(device: &Device, gas: &EquilibriumBox<'_>) -> Result<Rate, StudyError> {
+    rate_of(device, gas, gas.model()?, Options { hold_step: true, ..Options::default() })
+}
+
+fn rate_of(
+    device: &Device,
+    gas: &EquilibriumBox<'_>,
+    mut model: Model,
+    options: Options<'_>,
+) -> Result<Rate, StudyError> {
     let margin = gas.wall_layer();
     let (mut visits, mut ends) = ([0u64; 2], [0u64; 2]);
-    let seen = watched(device, &mut model, Options::default(), |model, places, flights| {
+    let seen = watched(device, &mut model, options, |model, places, flights| {
         for (particle, (_, flight)) in places.iter().zip(flights) {
             let place = model.plan.grid.to_metres(particle.position);
             let layer = usize::from(place.iter().any(|x| *x < margin || *x > EDGE - margin));

@@ -14,6 +14,7 @@ pub const EDGE: f64 = 0.1;
 pub const TEMPERATURE: f64 = 300.0;
 
 /// One gas or several in a cube of [`EDGE`]; all that a case may want to vary.
+#[derive(Debug, Clone, Copy)]
 pub struct EquilibriumBox<'a> {
     pub method: &'a str,
     pub particles: u64,

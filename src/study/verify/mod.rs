@@ -126,6 +126,8 @@ pub struct Check {
     pub tolerance: f64,
     /// Standard error of `measured`; 0 where it is a number of the run and no estimate.
     pub error: f64,
+    /// The reference is a figure of the specification that runs do not find, as a note of the case tells.
+    pub disputed: bool,
 }
 
 /// Standard errors that a tolerance must have.
@@ -135,6 +137,8 @@ const ERRORS_IN_TOLERANCE: f64 = 3.0;
 pub enum Verdict {
     Pass,
     Fail,
+    /// From a disputed figure: that is no failure of the solver, nor does it pass.
+    Differs,
     /// The run knows too little.
     Unclear,
 }
@@ -144,6 +148,7 @@ impl Verdict {
         match self {
             Verdict::Pass => "pass",
             Verdict::Fail => "FAIL",
+            Verdict::Differs => "differs",
             Verdict::Unclear => "UNCLEAR",
         }
     }
@@ -152,7 +157,12 @@ impl Verdict {
 impl Check {
     /// An estimate with a standard error.
     pub fn of(quantity: impl Into<String>, reference: f64, (measured, error): (f64, f64), tolerance: f64) -> Check {
-        Check { quantity: quantity.into(), reference, measured, tolerance, error }
+        Check { quantity: quantity.into(), reference, measured, tolerance, error, disputed: false }
+    }
+
+    #[must_use]
+    pub fn disputed(self) -> Check {
+        Check { disputed: true, ..self }
     }
 
     pub fn verdict(&self) -> Verdict {
@@ -162,6 +172,8 @@ impl Check {
             Verdict::Unclear
         } else if off <= self.tolerance {
             Verdict::Pass
+        } else if self.disputed {
+            Verdict::Differs
         } else {
             Verdict::Fail
         }
@@ -270,7 +282,8 @@ pub const CASES: &[Case] = &[
 mod tests {
     use super::*;
 
-    /// A check passes within its tolerance, fails beyond it, and says nothing where it does not know.
+    /// A check passes within its tolerance, fails beyond it (or differs from what is disputed), and says nothing where it does
+    /// not know.
     #[test]
     fn a_check_passes_fails_or_knows_too_little() {
         let check = |measured, error| Check::of("x", 1.0, (measured, error), 0.03).verdict();
@@ -280,6 +293,10 @@ mod tests {
         assert_eq!(check(1.0, 0.011), Verdict::Unclear);
         assert_eq!(check(f64::NAN, 0.0), Verdict::Unclear);
         assert_eq!(check(1.0, f64::NAN), Verdict::Unclear);
+        let disputed = |measured, error| Check::of("x", 1.0, (measured, error), 0.03).disputed().verdict();
+        assert_eq!(disputed(1.029, 0.005), Verdict::Pass);
+        assert_eq!(disputed(1.031, 0.005), Verdict::Differs);
+        assert_eq!(disputed(1.031, 0.011), Verdict::Unclear);
     }
 
     #[test]

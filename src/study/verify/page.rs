@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::report::{TITLES, cells, file, in_words, one_line};
+use super::report::{TITLES, Tally, cells, file, one_line};
 use super::{Case, Findings, Verdict, all_cases};
 
 const TITLE: &str = "# Accuracy";
@@ -152,8 +152,11 @@ impl Page {
     pub fn text(&self) -> String {
         let parts: Vec<&Part> = all_cases().filter_map(|case| self.cases.get(case.name)).collect();
         let rows: Vec<&String> = parts.iter().flat_map(|part| &part.rows).collect();
-        let pass = format!("| {} |", Verdict::Pass.word());
-        let passed = rows.iter().filter(|row| row.ends_with(&pass)).count();
+        let count = |verdict: Verdict| {
+            let end = format!("| {} |", verdict.word());
+            rows.iter().filter(|row| row.ends_with(&end)).count()
+        };
+        let tally = Tally { pass: count(Verdict::Pass), differ: count(Verdict::Differs), all: rows.len() };
         let failures: Vec<&String> = parts.iter().filter_map(|part| part.failure.as_ref()).collect();
         let mut text = format!(
             "{TITLE}\n\n\
@@ -162,7 +165,7 @@ impl Page {
              a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n",
             self.command, self.device
         );
-        let _ = writeln!(text, "{}.\n\n| {} |", in_words(passed, rows.len(), failures.len()), TITLES.join(" | "));
+        let _ = writeln!(text, "{}.\n\n| {} |", tally.in_words(failures.len()), TITLES.join(" | "));
         let _ = writeln!(text, "{ALIGNMENT}");
         let mut section = |title: &str, lines: Vec<&String>| {
             if !lines.is_empty() {

@@ -29,23 +29,40 @@ pub(super) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// How many of the checks pass, of how many.
-pub fn passed(outcomes: &[(&Case, Findings)]) -> (usize, usize) {
-    let checks = || outcomes.iter().flat_map(|(_, found)| &found.checks);
-    (checks().filter(|check| check.verdict() == Verdict::Pass).count(), checks().count())
+/// How many checks came out how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tally {
+    pub pass: usize,
+    pub differ: usize,
+    pub all: usize,
 }
 
-/// The same in words, and how many cases failed before they had any.
-pub fn summary(outcomes: &[(&Case, Findings)], failed: usize) -> String {
-    let (passed, all) = passed(outcomes);
-    in_words(passed, all, failed)
-}
+impl Tally {
+    pub fn of(outcomes: &[(&Case, Findings)]) -> Tally {
+        let verdicts = || outcomes.iter().flat_map(|(_, found)| &found.checks).map(Check::verdict);
+        let count = |wanted: Verdict| verdicts().filter(|verdict| *verdict == wanted).count();
+        Tally { pass: count(Verdict::Pass), differ: count(Verdict::Differs), all: verdicts().count() }
+    }
 
-pub(super) fn in_words(passed: usize, all: usize, failed: usize) -> String {
-    match failed {
-        0 => format!("{passed} of {all} pass"),
-        1 => format!("{passed} of {all} pass, 1 case failed"),
-        _ => format!("{passed} of {all} pass, {failed} cases failed"),
+    /// Those that fail, or say nothing.
+    pub fn failed(self) -> usize {
+        self.all - self.pass - self.differ
+    }
+
+    /// With how many cases failed before they had any.
+    pub fn in_words(self, failed: usize) -> String {
+        let mut words = format!("{} of {} pass", self.pass, self.all);
+        if self.differ > 0 {
+            let _ = write!(words, ", {} differ from disputed figures of the specification", self.differ);
+        }
+        match failed {
+            0 => {}
+            1 => words += ", 1 case failed",
+            _ => {
+                let _ = write!(words, ", {failed} cases failed");
+            }
+        }
+        words
     }
 }
 
@@ -90,17 +107,19 @@ mod tests {
     fn the_page_tells_what_passed() {
         let good = Check::of("mean |x|", 1.0, (1.01, 0.001), 0.02);
         let bad = Check { measured: 1.03, ..good.clone() };
+        let other = bad.clone().disputed();
         let chart = Curves::new("wall-pressure", "Pressure".into(), "f", "p");
-        let found = Findings { charts: vec![chart], ..vec![good, bad].into() };
+        let found = Findings { charts: vec![chart], ..vec![good, bad, other].into() };
         let failed = [(&CASES[1], "no\n  room".to_owned())];
         let page = Page::new(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures").text();
-        assert!(page.contains("1 of 2 pass, 1 case failed."), "{page}");
+        let summary = "1 of 3 pass, 1 differ from disputed figures of the specification, 1 case failed.";
+        assert!(page.contains(summary), "{page}");
         assert!(page.contains(&format!("\n- `{}`: no room.\n", CASES[1].name)), "{page}");
         assert!(
             page.contains("| wall-pressure | mean \\|x\\| | 1.000 | 1.010 | 0.001000 | 0.02000 | pass |"),
             "{page}"
         );
-        assert!(page.contains("| FAIL |"), "{page}");
+        assert!(page.contains("| FAIL |") && page.contains("| differs |"), "{page}");
         assert!(page.contains("![Pressure](figures/accuracy-wall-pressure.svg)"), "{page}");
     }
 }

@@ -31,29 +31,14 @@ fn form(grid: &Grid, particle: &GpuParticle) -> [f64; 2] {
 }
 
 /// Kinematic viscosity over the mean distance of particles d and the thermal speed c0, and its standard error, from
-/// `seeds` runs of a box of `particles`.
+/// `seeds` runs of such a box, as long as the vortices need.
 ///
 /// # Errors
 /// If a run fails.
-pub fn viscosity(device: &Device, method: &str, particles: u64, seeds: u64) -> Result<(f64, f64), StudyError> {
-    viscosity_at(device, method, 0.1, particles, seeds)
-}
-
-/// The same at another occupancy.
-///
-/// # Errors
-/// If a run fails.
-pub fn viscosity_at(
-    device: &Device,
-    method: &str,
-    occupancy: f64,
-    particles: u64,
-    seeds: u64,
-) -> Result<(f64, f64), StudyError> {
-    // Some .65 d c0 (specification, section 2): the time in which the vortices fall to LAST, and a step of .2 tau.
-    let distance = EDGE / (particles as f64).cbrt();
-    let mut gas_box =
-        EquilibriumBox { method, particles, occupancy, step_over_tau: 0.2, snapshots: 40, ..EquilibriumBox::default() };
+pub fn viscosity(device: &Device, gas: EquilibriumBox<'_>, seeds: u64) -> Result<(f64, f64), StudyError> {
+    // Some .65 d c0 (specification, section 2): the time in which the vortices fall to LAST.
+    let distance = EDGE / (gas.particles as f64).cbrt();
+    let mut gas_box = EquilibriumBox { snapshots: 40, ..gas };
     let speed = gas_box.thermal_speed();
     let rate = 2.0 * FLOOR * distance * speed * (PI / EDGE).powi(2);
     gas_box.steps = (-LAST.ln() / rate / gas_box.time_step()).ceil() as u32;
@@ -104,7 +89,8 @@ fn decay(series: &[(f64, f64)]) -> f64 {
 /// [`FLOOR`].
 pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, seeds) = if effort == Effort::Quick { (8000, 8) } else { (32_000, 8) };
-    let found = viscosity(device, "closest-approach", particles, seeds)?;
+    let gas = EquilibriumBox { particles, step_over_tau: 0.2, ..EquilibriumBox::default() };
+    let found = viscosity(device, gas, seeds)?;
     Ok(vec![Check::of(format!("nu / (d c0), f = .1, N = {particles}"), FLOOR, found, 0.1 * FLOOR)].into())
 }
 

@@ -17,14 +17,17 @@ type Row = (Method, u64, Option<f64>, Option<f64>, Option<u32>, [f64; 2]);
 const TABLE: [Row; 8] = [
     (Method::HardSphere, 40_000, Some(0.1), Some(0.3), Some(2), [0.0533, 0.191]),
     (Method::ClosestApproach, 10_000, Some(0.1), Some(0.3), Some(1), [0.0420, 0.087]),
-    // The velocity's .055 is less than those of a quarter and of four times the particles have between them.
-    (Method::ClosestApproach, 40_000, Some(0.1), Some(0.3), Some(1), [0.0301, 0.063]),
+    // The velocity is disputed.
+    (Method::ClosestApproach, 40_000, Some(0.1), Some(0.3), Some(1), [0.0301, 0.055]),
     (Method::Cell, 160_000, Some(0.1), Some(2.0), None, [0.0232, 0.046]),
     (Method::Cell, 40_000, Some(0.1), Some(0.3), None, [0.0307, 0.068]),
     (Method::None, 160_000, None, None, None, [0.0589, 0.155]),
     (Method::ClosestApproach, 160_000, Some(0.1), Some(0.3), Some(1), [0.0218, 0.045]),
     (Method::ClosestApproach, 160_000, Some(0.3), Some(0.3), Some(1), [0.0166, 0.030]),
 ];
+
+/// Of the velocity, less than a quarter and four times the particles have between them.
+const DISPUTED: f64 = 0.055;
 
 /// Single runs, to 5 %, whose counting noise is as much again as ours.
 pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
@@ -39,7 +42,8 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         for (k, name) in ["rho", "u"].into_iter().enumerate() {
             let quantity = format!("{setting}: mean |{name} - exact|");
             let known = (0.05 * expected[k]).hypot(3.0 * noise[k].1);
-            findings.checks.push(figure(quantity, expected[k], (found[k], noise[k].1), known));
+            let check = figure(quantity, expected[k], (found[k], noise[k].1), known);
+            findings.checks.push(if expected[k] == DISPUTED { check.disputed() } else { check });
         }
     }
     findings.notes.push(

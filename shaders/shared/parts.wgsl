@@ -1,0 +1,51 @@
+//! uses: dsmc.wgsl
+// Cells whose gas is in parts, each of which collides by itself: the part of each particle is kept in the upper half of its
+// word in `layers` (the lower half is the halo's).
+
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+
+const PART_SHIFT: u32 = 16;
+
+fn put_in_part(s: u32, part: u32) {
+    layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
+}
+
+// The k-th particle of a part.
+fn member(begin: u32, k: u32, part: u32) -> u32 {
+    var s = begin;
+    var left = k;
+    loop {
+        if ((layers[s] >> PART_SHIFT) == part) {
+            if (left == 0u) {
+                return s;
+            }
+            left--;
+        }
+        s++;
+    }
+    return s;
+}
+
+// The collisions of a part of this volume, m3, among the particles begin .. end of its cell; how many candidates there were.
+fn collide_part(begin: u32, end: u32, volume: f32, cell: u32, part: u32) -> u32 {
+    var count = 0u;
+    for (var s = begin; s < end; s++) {
+        count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
+    }
+    if (count < 2u) {
+        return 0u;
+    }
+    let done = collide_members(begin, count, volume, cell, part);
+    if (done.collisions > 0u) {
+        count_collisions(done.collisions);
+    }
+    return done.candidates;
+}
+
+// What a cell took, for the weights of the decomposition.
+fn tell_candidates(begin: u32, candidates: u32) {
+    if (step.peers > 0u) {
+        neighbour_count[begin] = candidates;
+    }
+}
