@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
@@ -46,8 +46,9 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let own_flight = flights[s];
     let own_latest = min(step.dt, own_flight.wall);
     let stride = arrayLength(&neighbour_count);
+    let tail = tail_of(s, listed, stride);
     for (var k = 0u; k < listed; k++) {
-        let j = neighbours[k * stride + s];
+        let j = neighbours[entry_of(s, k, listed, stride, tail)];
         let r = between(position, sorted[j].position);
         let g = sorted[j].velocity - velocity;
         let g2 = dot(g, g);

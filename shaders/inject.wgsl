@@ -15,7 +15,7 @@ fn inject(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     let slot = step.count + k;
-    if (slot >= arrayLength(&particles)) {
+    if (slot >= step.capacity) {
         atomicAdd(&counters[CAPACITY_FAILED], 1u);
         return;
     }

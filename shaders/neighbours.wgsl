@@ -1,31 +1,16 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl cap.wgsl nearness.wgsl
-// Lists the particles near enough to collide with each particle in this step, whatever the rounds do to
-// their velocities: mid-step points nearer than `near2` says, in the longest steps the cell edge (which the plan makes at
-// least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
-// farther away are passed over.
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl
+// The neighbour lists, as far as they are short (search.wgsl).
 //
-// Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours` (the k-th of particle s at k * stride + s)
-// and `neighbour_count`, and appends to `screened` whose neighbours may be behind a wall. One thread per
-// particle, or per ghost that was asked (asked.wgsl), which writes its own list. Where a list is too short, the longest one wanted is kept, and the
-// host runs the interval again with longer lists.
+// Reads what the search does and `layers`; writes `neighbours` and `neighbour_count`, appends longer lists to `long_lists`,
+// and to `screened` those with neighbours that may be behind a wall. One thread per particle, or per ghost that was asked
+// (asked.wgsl), which writes its own list.
 
 override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
-@group(0) @binding(12) var<storage, read> middles: array<u32>;
-@group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(25) var<storage, read_write> screened: array<u32>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-
-// How far a point at `at` within its cell, in 1/128 of it, is at least from points in the cell before (-1), its own, or
-// the next (1).
-fn gap(at: i32, side: i32) -> i32 {
-    return select(select(0, at + 1, side < 0), 128 - at, side > 0);
-}
+@group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -45,49 +30,17 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         neighbour_count[s] = 0u;
         return;
     }
-    let middle = middles[s];
-    let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
-    let stride = arrayLength(&neighbour_count);
-    let list = step.list;
-    var share = FULL_SHARE;
-    if (CAPPED) {
-        share = share_of(flights[s]);
-    }
-    let own_near2 = near2(share);
-    let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
-    let before = gap(at.x, -1) * gap(at.x, -1);
-    let after = gap(at.x, 1) * gap(at.x, 1);
-    let astray = (middle & ASTRAY) != 0u;
-    var found = 0u;
-    var flags = middle;
-    for (var row = 0u; row < 9u; row++) {
-        let y = gap(at.y, i32(row % 3u) - 1);
-        let z = gap(at.z, i32(row / 3u) - 1);
-        let left = select(own_near2 - y * y - z * z, own_near2, astray);
-        if (left <= 0) {
-            continue;
-        }
-        // Rows of three cells, neighbours in memory, without those too far away; the border layer makes every index valid.
-        let first = corner + (row / 3u) * step.size.x * step.size.y + (row % 3u) * step.size.x;
-        let end = cell_start[first + select(2u, 3u, after < left || astray)];
-        for (var j = cell_start[first + select(1u, 0u, before < left || astray)]; j < end; j++) {
-            let other = middles[j];
-            let distance2 = packed_distance2(middle, other);
-            // Of the pair's diameter, so that either is in the other's list.
-            if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
-                flags |= other;
-                if (found < list) {
-                    neighbours[found * stride + s] = j;
-                }
-                found++;
-            }
+    let found = search(s, DIRECT, NOBODY);
+    neighbour_count[s] = found.count;
+    if (found.count > DIRECT) {
+        if (late) {
+            // The rounds have their pairs in the first half.
+            long_lists[arrayLength(&neighbour_count) + append(LIST_LONG_LATE)] = s;
+        } else {
+            long_lists[append(LIST_LONG)] = s;
         }
     }
-    neighbour_count[s] = min(found, list);
-    if (found > list) {
-        atomicMax(&counters[MOST_NEIGHBOURS], found);
-    }
-    let walls = found > 0u && (flags & NEAR_WALL) != 0u;
+    let walls = found.count > 0u && (found.flags & NEAR_WALL) != 0u;
     if (late) {
         layers[s] |= SEARCHED | select(0u, UNSCREENED, walls);
     } else if (walls) {

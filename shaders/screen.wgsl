@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl lists.wgsl asked.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl lists.wgsl asked.wgsl walls.wgsl neighbour_list.wgsl
 // Takes from the neighbour lists near walls those that stand behind a wall where their flights start.
 //
 // Reads `sorted`, `flights` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
@@ -42,17 +42,22 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     let stride = arrayLength(&neighbour_count);
     let listed = neighbour_count[s];
+    let tail = tail_of(s, listed, stride);
     let tag = sorted[s].tag;
     let place = first_place(s);
     var kept = 0u;
     for (var k = 0u; k < listed; k++) {
-        let j = neighbours[k * stride + s];
+        let j = neighbours[entry_of(s, k, listed, stride, tail)];
         let there = first_place(j);
         let first = id_of(tag) < id_of(sorted[j].tag);
         if (!blocked(select(there, place, first), select(place, there, first), 0.0)) {
-            neighbours[kept * stride + s] = j;
+            neighbours[entry_of(s, kept, listed, stride, tail)] = j;
             kept++;
         }
+    }
+    if (listed > DIRECT && kept == DIRECT) {
+        // It has no tail any more.
+        neighbours[(DIRECT - 1u) * stride + s] = neighbours[tail + DIRECT - 1u];
     }
     neighbour_count[s] = kept;
 }

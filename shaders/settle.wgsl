@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
@@ -75,8 +75,9 @@ fn tell(s: u32) {
 fn touch_neighbours(s: u32) {
     let stride = arrayLength(&neighbour_count);
     let listed = neighbour_count[s];
+    let tail = tail_of(s, listed, stride);
     for (var k = 0u; k < listed; k++) {
-        touch(neighbours[k * stride + s]);
+        touch(neighbours[entry_of(s, k, listed, stride, tail)]);
     }
 }
 

@@ -51,7 +51,7 @@ fn twins() -> Vec<Twin> {
             ghosts,
             peers,
             near_peers,
-            list,
+            capacity,
             stride,
             // The tail padding is not named in the shader.
             tallies_left,

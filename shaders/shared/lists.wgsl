@@ -19,6 +19,11 @@ const LIST_OUTBOX: u32 = 14;
 const LIST_UPDATES: u32 = 15;
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
+// Neighbour lists that are longer than DIRECT, and those among them of ghosts that were asked; and the entries of
+// all their tails.
+const LIST_LONG: u32 = 27;
+const LIST_LONG_LATE: u32 = 28;
+const LIST_TAILS: u32 = 29;
 const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
 

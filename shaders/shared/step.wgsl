@@ -41,8 +41,8 @@ struct Step {
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
     near_peers: u32,
-    // Most entries of a neighbour list.
-    list: u32,
+    // Room for particles.
+    capacity: u32,
     // Distance of the ids of two newborns.
     stride: u32,
     // Tallies of the zones in this interval at the end of this step or later.

@@ -49,7 +49,7 @@ mod tests {
     /// 16 neighbours of 4 bytes are 64 bytes a particle.
     #[test]
     fn the_binding_limits_the_particles() {
-        assert_eq!(most_particles(128 << 20), 2 << 20);
+        assert_eq!(most_particles(128 << 20), (128 << 20) / 36);
         assert_eq!(bytes(128 << 20), "134,217,728 bytes (0.1 GiB)");
     }
 }

@@ -190,10 +190,10 @@ impl Machine<'_, '_> {
         {
             decomposition.apply(device, self.subdomain, self.exchange)?;
         }
-        if self.fit_lists {
-            self.subdomain.fit_lists(device, interval.dt, &interval.tables)?;
-        }
         let before = self.subdomain.remember(device, spare)?;
+        if self.fit_lists {
+            self.subdomain.fit_lists(device, interval.dt, &interval.tables, &before)?;
+        }
         let newborns = Newborns {
             of_step: &interval.newborns_of,
             list: &interval.newborns,
@@ -203,6 +203,7 @@ impl Machine<'_, '_> {
         let Interval { first_step, dt, ref tallied, ref tables, .. } = interval;
         let slots = self.subdomain.begin_interval(device, first_step, dt, tallied, &newborns, tables)?;
         let last = slots.len() - 1;
+        let end = slots[last];
         let mut rec = Recording::new(device);
         let mut present = 0;
         for (k, mut slot) in slots.into_iter().enumerate() {
@@ -223,6 +224,9 @@ impl Machine<'_, '_> {
                 decomposition.apply(device, self.subdomain, self.exchange)?;
             }
         }
+        // Once an interval, and so no part of a mean step.
+        rec.time(None);
+        self.subdomain.remember_end(&mut rec, &end);
         let phases = rec.timed().to_vec();
         let timed = self.timer.map(|timer| (timer, phases.len()));
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;

@@ -1,8 +1,8 @@
 //! A rank's time loop and the step: owns the subdomain, the inflow and the clock; audits.
 //!
 //! `Simulation::run` submits intervals of steps, one ahead of what it reads: the tallies of an interval
-//! set the step size of the interval after next, so the device never waits for the host. If a neighbour
-//! list was too short, the intervals since are run again from a remembered state with longer lists.
+//! set the step size of the interval after next, so the device never waits for the host. If neighbour
+//! lists had too little room, the intervals since are run again from a remembered state with more.
 
 mod audit;
 mod averages;

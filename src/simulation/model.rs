@@ -8,7 +8,6 @@ use crate::subdomain::Memory;
 use super::coats::Coats;
 use super::moving::Moving;
 use super::outlook::outlook;
-use super::run::AHEAD;
 
 pub struct Model {
     pub scene: Scene,
@@ -95,10 +94,11 @@ impl Model {
         if let Some(choice) = &self.choice {
             choice.explain(&mut plan);
         }
-        if let Some(memory) = Memory::of(&plan, AHEAD as u64, !self.moving.is_empty()) {
+        if let Some(memory) = Memory::of(&plan, !self.moving.is_empty()) {
             let value = format!("{} MB", significant(memory.all / 1e6));
+            let growth = if plan.method.has_rounds() { "; more where lists of neighbours grow" } else { "" };
             let why = format!(
-                "on one device, all particles there: {} bytes per particle, {} per cell; more where lists of neighbours grow",
+                "on one device, all particles there: {} bytes per particle, {} per cell{growth}",
                 memory.per_particle,
                 significant(memory.per_cell)
             );

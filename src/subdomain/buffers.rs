@@ -25,8 +25,14 @@ pub const MOTION_ENTRIES: usize = 128;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 
-/// First length of the neighbour lists; they grow when a device finds one too short.
-pub const FIRST_LIST: u64 = 16;
+/// Entries of a neighbour list that are interleaved with those of others (`shaders/shared/neighbour_list.wgsl`): as many as
+/// take the room of a particle.
+pub const DIRECT: u64 = 8;
+/// Particles for each entry of a tail that there is room for at first: thin gas has no longer lists.
+pub const FIRST_TAILS: u64 = 8;
+/// Entries of the tails of longer lists per particle, with room to spare, in gas at an occupancy of .12 and steps of a tenth of
+/// the collision time: a guide for plans. A run finds what its gas wants.
+pub const USUAL_TAILS: u64 = 1;
 
 /// What all subdomains of a device share: the gases, the walls and the zones.
 pub struct DomainBuffers {
@@ -117,7 +123,7 @@ impl FixedBuffers {
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
-            counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
+            counters: device.storage::<u32>("counters", counters::ALL_WORDS as u64)?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
@@ -219,16 +225,16 @@ impl ExchangeBuffers {
 }
 
 /// Of the buffers that grow with the number of particles, on a device alone.
-pub fn bytes_per_particle(collisions: bool, rounds: bool, list: u64) -> u64 {
+pub fn bytes_per_particle(collisions: bool, rounds: bool, tails: u64) -> u64 {
     let particle = size_of::<GpuParticle>() as u64;
-    // `particles` and `rare`; `sorted`, `bins`, `slots`, `cells` and `layers`; `flights`, `middles`, `touched`, the lists and
-    // their lengths.
+    // `particles` and `rare`; `sorted`, `bins`, `slots`, `cells` and `layers`; `flights`, `middles`, `touched`, the lengths of
+    // the lists and their tails, and the copy that is kept to run an interval again.
     let mut bytes = particle + 4;
     if collisions {
         bytes += particle + 8 + 8 + 4 + 4;
     }
     if rounds {
-        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 * list + 4;
+        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails + particle;
     }
     bytes
 }
@@ -236,20 +242,26 @@ pub fn bytes_per_particle(collisions: bool, rounds: bool, list: u64) -> u64 {
 /// What grows with the number of particles.
 pub struct ParticleBuffers {
     pub capacity: u64,
-    /// Entries of a neighbour list.
-    pub list: u64,
+    /// Entries of the tails of neighbour lists.
+    pub tails: u64,
+    /// On a device alone that has lists, from the sort until the particles have flown `neighbours`: what the particles are
+    /// is in `sorted` then.
     pub particles: wgpu::Buffer,
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds.
     pub bins: wgpu::Buffer,
-    /// Of the exchange `border`, of the sort `slots`; afterwards the `pairs` of the rounds, half as many.
+    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`; afterwards the `pairs` of the rounds, half as
+    /// many.
     pub slots: wgpu::Buffer,
     /// One after the other `near_walls`, `screened`, `rechoose` and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub flights: wgpu::Buffer,
     pub middles: wgpu::Buffer,
-    pub neighbours: wgpu::Buffer,
+    /// Among others, whose ghosts may be searched for late.
+    pub neighbours: Option<wgpu::Buffer>,
+    /// On a device alone that has lists, the particles before an interval that may have to run again.
+    pub remembered: wgpu::Buffer,
     pub neighbour_count: wgpu::Buffer,
     pub cells: wgpu::Buffer,
     pub touched: wgpu::Buffer,
@@ -261,12 +273,12 @@ pub struct ParticleBuffers {
 }
 
 impl ParticleBuffers {
-    /// Room for `capacity` particles (rounded up) with `list` neighbours each.
+    /// Room for `capacity` particles (rounded up) and for tails of neighbour lists of `tails` entries.
     pub fn new(
         device: &Device,
         capacity: u64,
         newborns: u64,
-        list: u64,
+        tails: u64,
         features: Features,
     ) -> Result<ParticleBuffers, GpuError> {
         let capacity = capacity.max(64).next_multiple_of(64);
@@ -276,10 +288,12 @@ impl ParticleBuffers {
         let chosen = if features.rounds { capacity } else { 4 };
         let weighed = if features.rounds || features.halo { scratch } else { 4 };
         let exchange = if features.halo { capacity } else { 4 };
+        let tails = if features.rounds { tails.next_multiple_of(8) } else { 0 };
+        let apart = features.rounds && features.halo;
         Ok(ParticleBuffers {
             capacity,
-            list,
-            particles: device.storage::<GpuParticle>("particles", capacity)?,
+            tails,
+            particles: device.storage::<u32>("particles", DIRECT * capacity + if apart { 0 } else { tails })?,
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<[u32; 2]>("slots", scratch)?,
@@ -289,7 +303,11 @@ impl ParticleBuffers {
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", scratch)?,
             touched: device.storage::<u32>("touched", chosen)?,
-            neighbours: device.storage::<u32>("neighbours", chosen * list)?,
+            neighbours: match apart {
+                true => Some(device.storage::<u32>("neighbours", DIRECT * capacity + tails)?),
+                false => None,
+            },
+            remembered: device.storage::<GpuParticle>("remembered", if features.halo { 4 } else { chosen })?,
             neighbour_count: device.storage::<u32>("neighbour_count", weighed)?,
             layers: device.storage::<u32>("layers", scratch)?,
             changed: device.storage::<u32>("changed", exchange)?,
@@ -299,7 +317,8 @@ impl ParticleBuffers {
     }
 
     pub fn bytes(&self) -> u64 {
-        self.buffers().iter().map(|buffer| buffer.size()).sum()
+        let apart = self.neighbours.as_ref().map_or(0, wgpu::Buffer::size);
+        self.buffers().iter().map(|buffer| buffer.size()).sum::<u64>() + apart
     }
 
     fn buffers(&self) -> [&wgpu::Buffer; 16] {
@@ -312,7 +331,7 @@ impl ParticleBuffers {
             &self.sorted,
             &self.flights,
             &self.middles,
-            &self.neighbours,
+            &self.remembered,
             &self.neighbour_count,
             &self.cells,
             &self.touched,
@@ -324,10 +343,10 @@ impl ParticleBuffers {
     }
 }
 
-/// How many particles' neighbour lists, the largest of the buffers that grow with them, fit a buffer of
+/// How many particles, whose buffer with that of their neighbour lists is the largest that grows with them, fit a buffer of
 /// `bytes`. Lists grow where gas is dense, and buffers are made larger than the gas at hand: a guide, no promise.
 pub fn most_particles(bytes: u64) -> u64 {
-    bytes / (FIRST_LIST * size_of::<u32>() as u64)
+    bytes / ((DIRECT + USUAL_TAILS) * size_of::<u32>() as u64)
 }
 
 /// All buffers of a subdomain.
@@ -378,15 +397,18 @@ impl<'a> Buffers<'a> {
             (_, "shares") => &fixed.shares,
             (_, "parted") => &fixed.parted,
             (_, "moved") => &fixed.moved,
+            // Only of ghosts that are searched for late, which a device alone has none of; its `neighbours` are in that buffer.
+            ("screen", "particles") if particle.neighbours.is_none() => &particle.sorted,
             (_, "particles") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "choices") => &particle.bins,
-            (_, "border" | "slots" | "pairs") => &particle.slots,
+            (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
             (_, "near_walls" | "screened" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,
-            (_, "neighbours") => &particle.neighbours,
+            (_, "neighbours") => particle.neighbours.as_ref().unwrap_or(&particle.particles),
+            (_, "remembered") => &particle.remembered,
             (_, "neighbour_count") => &particle.neighbour_count,
             (_, "cells") => &particle.cells,
             (_, "touched") => &particle.touched,
@@ -416,12 +438,12 @@ mod tests {
     fn the_bytes_of_a_particle_are_those_of_its_buffers() {
         let device = Device::open(None).expect("a device");
         let bytes = |features: Features, capacity: u64| {
-            ParticleBuffers::new(&device, capacity, 1, 24, features).expect("room").bytes()
+            ParticleBuffers::new(&device, capacity, 1, USUAL_TAILS * capacity, features).expect("room").bytes()
         };
         for (collisions, rounds) in [(false, false), (true, false), (true, true)] {
             let features = Features { collisions, rounds, ..Features::default() };
             let found = bytes(features, 6400) - bytes(features, 3200);
-            assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, 24), "{collisions} {rounds}");
+            assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, USUAL_TAILS), "{collisions} {rounds}");
         }
         let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
         let some = 64 * CHUNK;

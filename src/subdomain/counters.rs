@@ -1,7 +1,9 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
-/// Words of the buffer.
+/// Words that are read.
 pub const WORDS: usize = 50;
+/// Words of the buffer: `GOES_BACK` is the device's own.
+pub const ALL_WORDS: usize = WORDS + 1;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
@@ -10,7 +12,9 @@ pub const CHANGED: usize = 13;
 pub const OUTBOX: usize = 14;
 pub const UPDATES: usize = 15;
 pub const DROPPED: usize = 31;
-pub const MOST_NEIGHBOURS: usize = 36;
+/// Entries of the tails of neighbour lists in a step.
+pub const TAILS: usize = 29;
+pub const TAILS_WANTED: usize = 36;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
@@ -19,8 +23,8 @@ pub struct Counters {
     pub lost: u32,
     /// Collisions of the sampled steps.
     pub sampled: u32,
-    /// The longest neighbour list that did not fit; 0 if all did.
-    pub most_neighbours: u32,
+    /// Entries of the tails of neighbour lists in a step that had no room for all; 0 if every step had.
+    pub tails_wanted: u32,
     /// Particles seen outside the vessel, once per step.
     pub outside: u32,
     /// Quanta.
@@ -51,7 +55,7 @@ impl Counters {
             collisions: (u64::from(words[32]) | (u64::from(words[33]) << 32)) - u64::from(words[44]),
             lost: words[34],
             sampled: words[35],
-            most_neighbours: words[MOST_NEIGHBOURS],
+            tails_wanted: words[TAILS_WANTED],
             outside: words[37],
             overshoot: words[38],
             truncated: words[39],
@@ -90,6 +94,6 @@ impl Counters {
 
     /// Of what ranks take the largest.
     pub(super) fn largest(&mut self) -> [&mut u32; 2] {
-        [&mut self.most_neighbours, &mut self.overshoot]
+        [&mut self.tails_wanted, &mut self.overshoot]
     }
 }

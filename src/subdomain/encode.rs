@@ -10,7 +10,7 @@ use super::kernels::CollisionKernels;
 use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuStep, GpuVent};
 use super::nearness;
 use super::place::Cells;
-use super::{GpuError, Subdomain};
+use super::{GpuError, Kept, Remembered, Subdomain};
 
 /// One step of an interval, as its dispatches see it.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +84,8 @@ const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
+const LIST_LONG: u32 = 27;
+const LIST_LONG_LATE: u32 = 28;
 
 /// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
 /// the ghosts that were asked.
@@ -154,15 +156,20 @@ impl Subdomain {
         Ok(slots)
     }
 
-    /// Makes the neighbour lists half as long again as the first step of an interval wants them, by a search among the
-    /// particles that are here: a run begins with gas of any density, and lists that are found too short only
-    /// afterwards cost the intervals under way. (The longest list of all is an extreme: in the corner release later
-    /// steps want 19 entries where the first wants 12.) Changes nothing else.
+    /// Makes half as much room again as the first step of an interval wants for the tails of neighbour lists, by a search among
+    /// the particles that are here, which is remembered as `before`: a run begins with gas of any density, and room that is
+    /// found to be too small only afterwards costs the intervals under way. Changes nothing else.
     ///
     /// # Errors
     /// If the device fails, or has no room for such lists.
-    pub fn fit_lists(&mut self, device: &Device, dt: f64, tables: &Tables) -> Result<(), GpuError> {
-        if !self.domain.features.rounds || self.count == 0 {
+    pub fn fit_lists(
+        &mut self,
+        device: &Device,
+        dt: f64,
+        tables: &Tables,
+        before: &Remembered,
+    ) -> Result<(), GpuError> {
+        if !self.domain.features.rounds || self.count == 0 || matches!(before.kept, Kept::Nothing) {
             return Ok(());
         }
         device.write(&self.fixed.shares, 0, &tables.shares);
@@ -177,21 +184,15 @@ impl Subdomain {
         self.neighbours(&mut rec, &slot);
         rec.submit();
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
-        let mut encoder = device.encoder();
-        encoder.clear_buffer(&self.fixed.counters, 0, None);
-        device.submit(encoder);
+        self.restore(device, before);
         // Where particles lie outside of the own cells and the halo, `sorted` has gaps: then the intervals tell.
         if words[counters::DROPPED] > 0 {
             return Ok(());
         }
-        let longest = match words[counters::MOST_NEIGHBOURS] {
-            // None was too short.
-            0 => self.list_lengths(device)?.into_iter().max().unwrap_or(0),
-            wanted => wanted,
-        };
-        match self.make_room(device, 0, 0, longest + longest / 2) {
+        let wanted = u64::from(words[counters::TAILS]);
+        match self.make_room(device, 0, 0, wanted + wanted / 2) {
             // A device may have room for what is wanted and not for more.
-            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, longest),
+            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, wanted),
             made => made,
         }
     }
@@ -253,7 +254,7 @@ impl Subdomain {
                 },
                 peers: self.place.peers.len() as u32,
                 near_peers: self.place.near as u32,
-                list: self.particle.list as u32,
+                capacity: self.particle.capacity as u32,
                 stride: slot.stride,
                 tallies_left: slot.tallies_left,
                 slot: slot.slot,
@@ -356,6 +357,7 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
+            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_LONG);
             kernels.screen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_SCREEN);
         }
     }
@@ -420,7 +422,9 @@ impl Subdomain {
         if self.place.asks() {
             let offset = self.asked_offset(rec.device(), step, round);
             let pass = rec.phase(phase);
-            for kernel in [&kernels.neighbours, &kernels.screen, &kernels.choose_asked] {
+            kernels.neighbours.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
+            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_LONG_LATE);
+            for kernel in [&kernels.screen, &kernels.choose_asked] {
                 kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
             }
         }
@@ -462,6 +466,14 @@ impl Subdomain {
         let groups = [chunks, self.domain.zones as u32, self.domain.plan.gases.len() as u32];
         let offset = self.offset(rec.device(), step, 0);
         self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
+    }
+
+    /// At the end of an interval: what the next begins with, on a device alone.
+    pub fn remember_end(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        if let Some(CollisionKernels { remember: Some(kernel), .. }) = &self.kernels.collisions {
+            let device = rec.device();
+            kernel.dispatch(rec.phase("remember"), self.offset(device, step, 0), all(device, step));
+        }
     }
 
     /// The blocks that the choice of the step size needs.

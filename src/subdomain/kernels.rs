@@ -33,6 +33,7 @@ pub struct SortKernels<K> {
 pub struct CollisionKernels<K> {
     pub wall_times: K,
     pub neighbours: K,
+    pub lengthen: K,
     pub screen: K,
     pub choose: K,
     /// The same kernel, for the pass over the ghosts that were asked.
@@ -40,6 +41,8 @@ pub struct CollisionKernels<K> {
     pub match_pairs: K,
     pub settle: K,
     pub lost: K,
+    /// On a device alone.
+    pub remember: Option<K>,
 }
 
 /// Collisions within cells.
@@ -94,12 +97,14 @@ impl<K> Kernels<K> {
             Some(CollisionKernels {
                 wall_times: make("wall_times")?,
                 neighbours: make("neighbours")?,
+                lengthen: make("lengthen")?,
                 screen: make("screen")?,
                 choose: make("choose")?,
                 choose_asked: make("choose_asked")?,
                 match_pairs: make("match_pairs")?,
                 settle: make("settle")?,
                 lost: make("lost")?,
+                remember: if features.halo { None } else { Some(make("remember")?) },
             })
         } else {
             None

@@ -28,7 +28,7 @@ pub struct GpuStep {
     pub ghosts: u32,
     pub peers: u32,
     pub near_peers: u32,
-    pub list: u32,
+    pub capacity: u32,
     pub stride: u32,
     pub tallies_left: u32,
     pub slot: u32,

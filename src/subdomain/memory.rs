@@ -3,14 +3,13 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-use super::buffers::{BYTES_PER_BIN, FIRST_LIST, bytes_per_particle};
-use super::layout::{GpuParticle, GpuStillGas};
+use super::buffers::{BYTES_PER_BIN, USUAL_TAILS, bytes_per_particle};
+use super::layout::GpuStillGas;
 
 /// Bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Memory {
-    /// Of each particle, with its share of the copies that are kept to run an interval again, and with neighbour lists of
-    /// their first length.
+    /// Of each particle, with room for neighbour lists as most gas wants it.
     pub per_particle: u64,
     /// Of each cell of the grid: that of the sort, that of the walls, and its volume for collisions within it.
     pub per_cell: f64,
@@ -24,14 +23,13 @@ const WALLS_OF_A_CELL: f64 = 4.0 + 2.0 / 8.0 + 1.0 / 8.0;
 const MOVED_OF_A_CELL: f64 = size_of::<GpuStillGas>() as f64 + 4.0;
 
 impl Memory {
-    /// With so many copies of the particles under way, and perhaps walls that move; `None` of a plan that no device runs.
-    pub fn of(plan: &Plan, copies: u64, moving: bool) -> Option<Memory> {
+    /// Perhaps with walls that move; `None` of a plan that no device runs.
+    pub fn of(plan: &Plan, moving: bool) -> Option<Memory> {
         if plan.method == Method::ControlVolume {
             return None;
         }
         let collisions = plan.method != Method::None;
-        let state = size_of::<GpuParticle>() as u64;
-        let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), FIRST_LIST) + copies * state;
+        let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), USUAL_TAILS);
         let sort = if collisions { BYTES_PER_BIN } else { 0.0 };
         let volume = match plan.method {
             Method::Cell if moving => 4.0 + MOVED_OF_A_CELL,

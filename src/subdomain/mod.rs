@@ -30,7 +30,7 @@ pub use buffers::{
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
-pub use counters::{Counters, WORDS as COUNTER_WORDS};
+pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters};
 pub use domain::{Domain, DomainInput};
 pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
 pub use exchange::{Messages, Outgoing};
@@ -46,15 +46,34 @@ pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;
 
 use buffers::{
-    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_LIST, FixedBuffers, ParticleBuffers, TallyWords,
+    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, ParticleBuffers, TallyWords,
 };
 use exchange::Guess;
 use kernels::Kernels;
 
 /// The particles before an interval, so that it can be run again with larger buffers.
 pub struct Remembered {
-    pub particles: wgpu::Buffer,
+    kept: Kept,
     count: u32,
+}
+
+enum Kept {
+    /// No interval is ever run again.
+    Nothing,
+    /// A device alone keeps the start of the first interval that must (`shaders/remember.wgsl`).
+    Here,
+    /// Whether one must is known when all ranks' tallies are: each interval has a copy.
+    Copy(wgpu::Buffer),
+}
+
+impl Remembered {
+    /// Memory that can be used again.
+    pub fn spare(self) -> Option<wgpu::Buffer> {
+        match self.kept {
+            Kept::Copy(buffer) => Some(buffer),
+            Kept::Nothing | Kept::Here => None,
+        }
+    }
 }
 
 pub struct Subdomain {
@@ -70,6 +89,8 @@ pub struct Subdomain {
     update_guess: Guess,
     /// Slots of `particles` in use once all encoded steps have run; among others some of them are dead.
     count: u32,
+    /// Whether `remembered` holds the start of an interval.
+    remembers: bool,
     staging: Vec<wgpu::Buffer>,
     spare_staging: Vec<wgpu::Buffer>,
 }
@@ -93,7 +114,7 @@ impl Subdomain {
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there and some inflow; it grows as the inflow comes.
         let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);
-        let particle = ParticleBuffers::new(device, capacity, 1024, FIRST_LIST, features)?;
+        let particle = ParticleBuffers::new(device, capacity, 1024, capacity / FIRST_TAILS, features)?;
         // Without collisions nothing is binned.
         let bins = if features.collisions { bins_of(&place, &domain) } else { 4 };
         let cell = CellBuffers::new(device, bins)?;
@@ -114,6 +135,7 @@ impl Subdomain {
             outbox_guess: Guess::new(),
             update_guess: Guess::new(),
             count: particles.len() as u32,
+            remembers: false,
             staging: Vec::new(),
             spare_staging: Vec::new(),
             domain,
@@ -153,13 +175,8 @@ impl Subdomain {
         if !self.domain.features.rounds || self.count == 0 {
             return Ok(0.0);
         }
-        let lengths = self.list_lengths(device)?;
+        let lengths: Vec<u32> = device.read(&self.particle.neighbour_count, self.count as usize)?;
         Ok(lengths.iter().map(|&length| f64::from(length)).sum::<f64>() / lengths.len() as f64)
-    }
-
-    /// Entries of each particle's neighbour list in the last step.
-    fn list_lengths(&self, device: &Device) -> Result<Vec<u32>, GpuError> {
-        device.read(&self.particle.neighbour_count, self.count as usize)
     }
 
     /// Other cells and peers, from the next step on, whose exchange moves the particles there.
@@ -201,27 +218,29 @@ impl Subdomain {
     }
 
     /// Makes room for `more` particles in the slots after those in use, for `newborns` of an interval, and for
-    /// neighbour lists of `wanted_list`. Particles and bins are copied on the device, in order with the work
+    /// `tails` entries of the tails of neighbour lists. Particles and bins are copied on the device, in order with the work
     /// already submitted.
     ///
     /// # Errors
     /// If the larger buffers are over the device's limits.
-    pub fn make_room(&mut self, device: &Device, more: u64, newborns: u64, wanted_list: u32) -> Result<(), GpuError> {
+    pub fn make_room(&mut self, device: &Device, more: u64, newborns: u64, tails: u64) -> Result<(), GpuError> {
         let needed = u64::from(self.count) + more;
-        let longer = u64::from(wanted_list).next_multiple_of(8);
-        let list = self.particle.list.max(longer);
         let room_for_newborns = self.particle.newborns.size() / size_of::<GpuNewborn>() as u64;
-        if needed <= self.particle.capacity && newborns <= room_for_newborns && list == self.particle.list {
+        let old = &self.particle;
+        if needed <= old.capacity && newborns <= room_for_newborns && tails <= old.tails {
             return Ok(());
         }
-        let capacity = if needed > self.particle.capacity { needed + needed / 4 } else { self.particle.capacity };
+        let capacity = if needed > old.capacity { needed + needed / 4 } else { old.capacity };
+        // More particles of the same gas have more tails.
+        let tails = tails.max(old.tails * capacity / old.capacity);
         let newborn_room = room_for_newborns.max(newborns.next_power_of_two());
-        let grown = ParticleBuffers::new(device, capacity, newborn_room, list, self.domain.features)?;
+        let grown = ParticleBuffers::new(device, capacity, newborn_room, tails, self.domain.features)?;
         let mut encoder = device.encoder();
         for (old, new) in [
             (&self.particle.particles, &grown.particles),
             (&self.particle.bins, &grown.bins),
             (&self.particle.newborns, &grown.newborns),
+            (&self.particle.remembered, &grown.remembered),
         ] {
             encoder.copy_buffer_to_buffer(old, 0, new, 0, old.size().min(new.size()));
         }
@@ -230,20 +249,37 @@ impl Subdomain {
         self.rebind(device)
     }
 
-    /// Copies the particles as they are before the next interval, into `spare` where it has the room.
+    /// Keeps the particles as they are before the next interval, among others in a copy of its own, in `spare` where that has
+    /// the room, if it may have to run again: neighbour lists may need more room, and among others particles may stray.
     ///
     /// # Errors
     /// If the device has no memory for the copy.
-    pub fn remember(&self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
+    pub fn remember(&mut self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
+        let Features { rounds, halo, .. } = self.domain.features;
         let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
-        let particles = match spare.filter(|buffer| buffer.size() >= bytes) {
-            Some(buffer) => buffer,
-            None => device.storage::<GpuParticle>("remembered", self.particle.capacity)?,
+        let copied = |to: &wgpu::Buffer| {
+            let mut encoder = device.encoder();
+            encoder.copy_buffer_to_buffer(&self.particle.particles, 0, to, 0, bytes);
+            device.submit(encoder);
         };
-        let mut encoder = device.encoder();
-        encoder.copy_buffer_to_buffer(&self.particle.particles, 0, &particles, 0, bytes);
-        device.submit(encoder);
-        Ok(Remembered { particles, count: self.count })
+        let kept = if halo {
+            let buffer = match spare.filter(|buffer| buffer.size() >= bytes) {
+                Some(buffer) => buffer,
+                None => device.storage::<GpuParticle>("remembered", self.particle.capacity)?,
+            };
+            copied(&buffer);
+            Kept::Copy(buffer)
+        } else if rounds {
+            // Of a later interval the one before has.
+            if !self.remembers {
+                copied(&self.particle.remembered);
+                self.remembers = true;
+            }
+            Kept::Here
+        } else {
+            Kept::Nothing
+        };
+        Ok(Remembered { kept, count: self.count })
     }
 
     /// At most so many particles are left here (all that have left before the last interval that was submitted are
@@ -254,16 +290,23 @@ impl Subdomain {
         }
     }
 
-    /// Back to a remembered state, as if the intervals since had not run. Their tallies are cleared.
-    pub fn restore(&mut self, device: &Device, remembered: &Remembered) {
+    /// Back to a remembered state, the first of those since that had too little room, as if the intervals since had not run.
+    /// Their tallies are cleared. False, and nothing is done, of one that was not kept.
+    pub fn restore(&mut self, device: &Device, remembered: &Remembered) -> bool {
+        let particles = match &remembered.kept {
+            Kept::Nothing => return false,
+            Kept::Here => &self.particle.remembered,
+            Kept::Copy(copy) => copy,
+        };
         let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
         let mut encoder = device.encoder();
-        encoder.copy_buffer_to_buffer(&remembered.particles, 0, &self.particle.particles, 0, bytes);
+        encoder.copy_buffer_to_buffer(particles, 0, &self.particle.particles, 0, bytes);
         for buffer in [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums] {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);
         self.count = remembered.count;
+        true
     }
 
     /// The particles owned here, in the order of the device; waits for the device.

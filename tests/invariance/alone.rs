@@ -152,7 +152,9 @@ fn growth_of_neighbour_lists_changes_no_bit_and_loses_nothing() {
 /// Gas that is dense from the start has lists that fit from the start, and no interval runs twice.
 #[test]
 fn lists_fit_the_gas_at_the_start() {
-    let model = published("corner.toml", 20_000, 2e-5);
+    let corner = run(&published("corner.toml", 20_000, 2e-5), Options::default());
+    assert_eq!(corner.outcome.repeated, 0);
+    let model = dense(1);
     let fitted = run(&model, Options::default());
     assert_eq!(fitted.outcome.repeated, 0);
     let grown = run(&model, Options { lists_start_short: true, ..Options::default() });

@@ -55,7 +55,12 @@ impl Faulty<'_> {
         // In the way below a step sends particles, then updates before each round but the first; the first step
         // sends updates once more, to count lost collisions.
         let updates = self.sent.get() % 8 != 2;
-        if self.inner.rank() != 1 || self.done.get() || !SPOILT.contains(&self.sent.get()) || message.len() <= SEAL {
+        // What lies in places without a particle may ask for longer lists: then the interval runs again, in other messages.
+        let spoils = match self.fault {
+            Fault::EmptyParticles => self.sent.get() >= SPOILT.start,
+            _ => SPOILT.contains(&self.sent.get()),
+        };
+        if self.inner.rank() != 1 || self.done.get() || !spoils || message.len() <= SEAL {
             return Some(message);
         }
         let fits = match self.fault {

@@ -41,19 +41,12 @@ impl Cloud {
 
     pub fn rig(&self) -> Rig {
         let count = self.particles.len();
-        let mut flat = vec![NOBODY; LIST * count];
-        for (s, list) in self.lists.iter().enumerate() {
-            for (k, &j) in list.iter().enumerate() {
-                flat[k * count + s] = j;
-            }
-        }
         let mut rig = Rig::new(&self.world);
         rig.constant("DIAMETER", DIAMETER);
         rig.constant("CAPPED", f64::from(u8::from(self.capped)));
         rig.put("sorted", &self.particles);
         rig.put("flights", &self.flights);
-        rig.put("neighbours", &flat);
-        rig.put("neighbour_count", &self.lists.iter().map(|list| list.len() as u32).collect::<Vec<_>>());
+        crate::neighbour_lists::put_lists(&mut rig, &self.lists);
         rig.put("rechoose", &vec![0u32; count]);
         rig.put("touched", &vec![0u32; count]);
         rig

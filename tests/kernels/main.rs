@@ -20,8 +20,10 @@ mod lists;
 mod local;
 mod match_pairs;
 mod moved;
+mod neighbour_lists;
 mod neighbours;
 mod philox;
+mod remember;
 mod rig;
 mod scan;
 mod screen;
@@ -47,6 +49,7 @@ fn every_kernel_has_its_test() {
         "fill_outbox",
         "fill_updates",
         "inject",
+        "lengthen",
         "lost",
         "match_pairs",
         "message_starts",
@@ -55,6 +58,7 @@ fn every_kernel_has_its_test() {
         "pack",
         "pack_updates",
         "receive",
+        "remember",
         "reset",
         "scan_cells",
         "scan_chunks",

@@ -1,9 +1,10 @@
-//! `neighbours` against a search of all pairs: exactly.
+//! `neighbours` and `lengthen` against a search of all pairs: exactly.
 
 use std::collections::BTreeSet;
 
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuStep};
 
+use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, tails_of};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -40,23 +41,23 @@ fn crowd(seed: u32) -> Crowd {
     rig.put("cell_start", &start);
     rig.put("middles", &packed);
     rig.put("cells", &of);
-    rig.put("neighbour_count", &vec![9u32; COUNT]);
+    rig.put("neighbour_count", &vec![6u32; COUNT]);
     rig.put("screened", &vec![0u32; COUNT]);
     Crowd { world, middles, rig }
 }
 
 impl Crowd {
-    fn run(&mut self, room: usize) -> Vec<Vec<u32>> {
-        self.run_near(room, CELL_NEAR2)
+    fn run(&mut self) -> Vec<Vec<u32>> {
+        self.run_near(TAILS, CELL_NEAR2)
     }
 
-    fn run_near(&mut self, room: usize, near2: u32) -> Vec<Vec<u32>> {
-        self.rig.step(GpuStep { count: COUNT as u32, list: room as u32, near2, ..GpuStep::default() });
-        self.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
+    /// With room for tails of so many entries.
+    fn run_near(&mut self, tails: usize, near2: u32) -> Vec<Vec<u32>> {
+        self.rig.step(GpuStep { count: COUNT as u32, near2, ..GpuStep::default() });
+        put_room(&mut self.rig, COUNT, tails);
         self.rig.run("neighbours", COUNT);
-        let flat: Vec<u32> = self.rig.get("neighbours", room * COUNT);
-        let counts: Vec<u32> = self.rig.get("neighbour_count", COUNT);
-        (0..COUNT).map(|s| (0..counts[s] as usize).map(|k| flat[k * COUNT + s]).collect()).collect()
+        lengthen(&self.rig, false);
+        lists(&self.rig, COUNT, tails)
     }
 
     fn all_pairs(&self) -> Vec<BTreeSet<u32>> {
@@ -78,7 +79,7 @@ impl Crowd {
 #[test]
 fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
     let mut crowd = crowd(12);
-    let lists = crowd.run(64);
+    let lists = crowd.run();
     let expected = crowd.all_pairs();
     let cells = crowd.world.cells();
     let mut beyond = 0;
@@ -92,7 +93,11 @@ fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
             beyond += usize::from(!near && set.contains(&(j as u32)));
         }
     }
-    assert_eq!(crowd.rig.counter(MOST_NEIGHBOURS), 0);
+    assert_eq!(crowd.rig.counter(TAILS_WANTED), 0);
+    // Both kinds of lists, and room is taken for the long ones alone.
+    let lengths = || expected.iter().map(BTreeSet::len);
+    assert!(lengths().any(|length| length > DIRECT) && lengths().any(|length| length <= DIRECT));
+    assert_eq!(crowd.rig.counter(LIST_TAILS) as usize, tails_of(lengths()));
     // Those with a neighbour, of which one or they themselves are near a wall.
     let near_wall = |s: u32| crowd.world.class(cells.index(cells.cell(crowd.middles[s as usize]))) != CLEAR;
     let to_screen = |s: &u32| {
@@ -113,7 +118,7 @@ fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
     let mut crowd = crowd(17);
     let mut before = usize::MAX;
     for near2 in [12_000, 6_000, 1_500, 40, 1] {
-        let lists = crowd.run_near(64, near2);
+        let lists = crowd.run_near(TAILS, near2);
         let expected = crowd.pairs_near(near2);
         for (s, list) in lists.iter().enumerate() {
             assert_eq!(list.iter().copied().collect::<BTreeSet<u32>>(), expected[s], "particle {s}, {near2}");
@@ -124,36 +129,40 @@ fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
     }
 }
 
-/// Lists that are too short keep what fits and report the longest that was wanted.
+/// Where there is no room for all tails, some lists keep what is interleaved, and what all wanted is told.
 #[test]
-fn a_list_too_short_is_reported_with_the_length_it_needs() {
+fn tails_without_room_are_reported_with_the_room_they_need() {
     let mut crowd = crowd(13);
-    let room = 12;
-    let lists = crowd.run(room);
     let expected = crowd.all_pairs();
-    let longest = expected.iter().map(BTreeSet::len).max().unwrap();
-    assert!(longest > room, "the check can fail only if some list is too short");
-    assert_eq!(crowd.rig.counter(MOST_NEIGHBOURS), longest as u32);
-    for (list, expected) in lists.iter().zip(&expected) {
-        assert_eq!(list.len(), expected.len().min(room));
+    let wanted = tails_of(expected.iter().map(BTreeSet::len));
+    let room = (wanted / 2).next_multiple_of(4);
+    let found = crowd.run_near(room, CELL_NEAR2);
+    assert_eq!(crowd.rig.counter(TAILS_WANTED) as usize, wanted);
+    let mut cut = 0;
+    for (list, expected) in found.iter().zip(&expected) {
+        cut += usize::from(list.len() < expected.len());
+        assert!(list.len() == expected.len() || list.len() == DIRECT && expected.len() > DIRECT);
         assert!(list.iter().all(|j| expected.contains(j)));
     }
+    let long = expected.iter().filter(|list| list.len() > DIRECT).count();
+    assert!(cut > 0 && cut < long, "{cut} of {long}");
+    // With that room all have it.
+    let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
+    assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
 }
 
 /// The outermost ghosts, whose neighbours are not all here, have none; the lists of all others are as ever.
 #[test]
 fn the_outermost_ghosts_have_no_neighbours() {
     let mut crowd = crowd(14);
-    let room = 64;
     let expected = crowd.all_pairs();
     let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
     crowd.rig.put("layers", &layers);
     for depth in [2, 3, 0] {
-        crowd.rig.put("neighbours", &vec![NOBODY; room * COUNT]);
+        put_room(&mut crowd.rig, COUNT, TAILS);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
-            list: room as u32,
             depth,
             size: grid,
             bins: grid.iter().product(),
@@ -183,7 +192,7 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
     crowd.rig.put("flights", &flights);
     crowd.rig.constant("CAPPED", 1.0);
     crowd.rig.constant("DIAMETER2_PACKED", whole);
-    let lists: Vec<BTreeSet<u32>> = crowd.run(64).into_iter().map(|list| list.into_iter().collect()).collect();
+    let lists: Vec<BTreeSet<u32>> = crowd.run().into_iter().map(|list| list.into_iter().collect()).collect();
     let uncapped = crowd.all_pairs();
     let edge = crowd.world.grid.cell;
     let (mut near, mut shorter) = (0, 0);

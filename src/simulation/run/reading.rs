@@ -75,10 +75,10 @@ impl Simulation<'_> {
         let InFlight { interval, before, tallies, phases, .. } = flight;
         let (tallies, stamps, loads) = self.collect(tallies)?;
         let counters = &tallies.counters;
-        if counters.most_neighbours > 0 || counters.strays > 0 {
-            return self.run_again(interval, before, counters.most_neighbours, counters.strays > 0);
+        if counters.tails_wanted > 0 || counters.strays > 0 {
+            return self.run_again(interval, before, counters.tails_wanted, counters.strays > 0);
         }
-        self.spare.push(before.particles);
+        self.spare.extend(before.spare());
         let duration = interval.dt * f64::from(interval.steps);
         self.read_until += duration;
         let plan = &self.model.plan;
@@ -175,7 +175,7 @@ impl Simulation<'_> {
         Ok(dropped)
     }
 
-    /// Runs an interval, and those submitted since, again with neighbour lists of at least `wanted`, and with
+    /// Runs an interval, and those submitted since, again with room for tails of neighbour lists of `wanted` entries and a quarter more, and with
     /// everyone as a peer if particles strayed. All ranks do, since they see the sums.
     fn run_again(
         &mut self,
@@ -186,10 +186,14 @@ impl Simulation<'_> {
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
         self.tuner.disturbed();
-        tracing::debug!("neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
+        tracing::debug!("tails of neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
         let later = self.abandon()?;
-        self.subdomain.restore(self.device, &before);
-        self.subdomain.make_room(self.device, 0, 0, wanted)?;
+        if !self.subdomain.restore(self.device, &before) {
+            let what = "an interval has to run again, and its start was not kept".to_owned();
+            return Err(SimulationError::Lost { time: self.read_until, what });
+        }
+        let wanted = u64::from(wanted);
+        self.subdomain.make_room(self.device, 0, 0, wanted + wanted / 4)?;
         if let Some(decomposition) = &mut self.decomposition {
             // The cuts may have changed since; the first exchange brings the particles home.
             decomposition.scatter();
@@ -197,10 +201,10 @@ impl Simulation<'_> {
                 decomposition.widen();
             }
         }
-        self.spare.push(before.particles);
+        self.spare.extend(before.spare());
         self.submit(first)?;
         for (interval, before) in later {
-            self.spare.push(before.particles);
+            self.spare.extend(before.spare());
             self.submit(interval)?;
         }
         Ok(())

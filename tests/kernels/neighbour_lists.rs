@@ -1,0 +1,62 @@
+//! Neighbour lists as the kernels keep them (`shaders/shared/neighbour_list.wgsl`), written and read by their definition; and
+//! `lengthen` by hand.
+
+use crate::rig::*;
+
+/// Entries that are interleaved with those of the other lists.
+pub const DIRECT: usize = 8;
+/// Room for the tails of a test's lists.
+pub const TAILS: usize = 1 << 16;
+
+/// Empty lists, with room for tails of so many entries.
+pub fn put_room(rig: &mut Rig, count: usize, tails: usize) {
+    rig.put("neighbours", &vec![NOBODY; DIRECT * count + tails]);
+    rig.put("long_lists", &vec![NOBODY; 2 * count]);
+    [LIST_LONG, LIST_LONG_LATE, LIST_TAILS].into_iter().for_each(|list| rig.set_counter(list, 0));
+}
+
+pub fn put_lists(rig: &mut Rig, lists: &[Vec<u32>]) {
+    let count = lists.len();
+    let mut words = vec![NOBODY; DIRECT * count];
+    for (s, list) in lists.iter().enumerate() {
+        let direct = if list.len() > DIRECT { DIRECT - 1 } else { list.len() };
+        for (k, &j) in list[..direct].iter().enumerate() {
+            words[k * count + s] = j;
+        }
+        if list.len() > DIRECT {
+            words[direct * count + s] = (words.len() - direct) as u32;
+            words.extend(&list[direct..]);
+        }
+    }
+    rig.put("neighbours", &words);
+    rig.put("neighbour_count", &lists.iter().map(|list| list.len() as u32).collect::<Vec<_>>());
+}
+
+/// Of a rig with so many particles and so much room for tails.
+pub fn lists(rig: &Rig, count: usize, tails: usize) -> Vec<Vec<u32>> {
+    let words: Vec<u32> = rig.get("neighbours", DIRECT * count + tails);
+    let lengths: Vec<u32> = rig.get("neighbour_count", count);
+    let list = |s: usize| -> Vec<u32> {
+        let length = lengths[s] as usize;
+        let place = |k: usize| {
+            if length <= DIRECT || k + 1 < DIRECT {
+                k * count + s
+            } else {
+                words[(DIRECT - 1) * count + s] as usize + k
+            }
+        };
+        (0..length).map(|k| words[place(k)]).collect()
+    };
+    (0..count).map(list).collect()
+}
+
+/// Runs the kernel over the lists that `neighbours` found to be long, in its first pass or in one over those asked.
+pub fn lengthen(rig: &Rig, late: bool) {
+    let long = rig.counter(if late { LIST_LONG_LATE } else { LIST_LONG });
+    rig.run("lengthen", long as usize);
+}
+
+/// How many entries the tails of such lists have.
+pub fn tails_of(lengths: impl Iterator<Item = usize>) -> usize {
+    lengths.filter(|&length| length > DIRECT).map(|length| length - (DIRECT - 1)).sum()
+}
