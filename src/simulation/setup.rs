@@ -47,6 +47,14 @@ impl Setup {
         Setup::with_particles(model, device, ranks, particles)
     }
 
+    /// For one device, with kernels as if the scene had all that a scene may have: to see what it saves that they have not.
+    ///
+    /// # Errors
+    /// As [`Setup::new`].
+    pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
+        Setup::build(model, device, 1, initial_particles(model)?, true)
+    }
+
     /// For a run that goes on: all particles of that moment instead of the initial ones.
     ///
     /// # Errors
@@ -56,6 +64,16 @@ impl Setup {
         device: &Device,
         ranks: usize,
         particles: Vec<GpuParticle>,
+    ) -> Result<Setup, SimulationError> {
+        Setup::build(model, device, ranks, particles, false)
+    }
+
+    fn build(
+        model: &Model,
+        device: &Device,
+        ranks: usize,
+        particles: Vec<GpuParticle>,
+        whole: bool,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
         if plan.method == Method::ControlVolume {
@@ -91,6 +109,7 @@ impl Setup {
             patches: tallied,
             vent_entries: model.coats.vent_entries(),
             among_others: ranks > 1,
+            whole,
         };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),

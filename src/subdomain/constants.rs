@@ -86,6 +86,12 @@ impl Features {
             halo: among_others && plan.method != Method::None,
         }
     }
+
+    /// With what any scene of this method may have, as if nothing were left out.
+    #[must_use]
+    pub fn whole(self) -> Features {
+        Features { spin: true, orifices: true, surfaces: true, coats: true, vents: true, moving: true, ..self }
+    }
 }
 
 pub fn constants(

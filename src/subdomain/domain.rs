@@ -25,6 +25,8 @@ pub struct DomainInput<'a> {
     pub vent_entries: usize,
     /// Whether other subdomains own particles too.
     pub among_others: bool,
+    /// Kernels are compiled for what the scene lacks too.
+    pub whole: bool,
 }
 
 pub struct Domain {
@@ -48,7 +50,8 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let features = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
+        let needed = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
+        let features = if input.whole { needed.whole() } else { needed };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
