@@ -46,7 +46,7 @@ fn bytes(count: u64) -> String {
 mod tests {
     use super::*;
 
-    /// 16 neighbours of 4 bytes are 64 bytes a particle.
+    /// A particle is 32 bytes, and the tail of its neighbour list 4.
     #[test]
     fn the_binding_limits_the_particles() {
         assert_eq!(most_particles(128 << 20), (128 << 20) / 36);

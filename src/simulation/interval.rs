@@ -175,7 +175,7 @@ pub struct Machine<'a, 'b> {
     pub timer: Option<&'a PhaseTimer>,
     /// Steps per submission.
     pub batch: u32,
-    /// Whether neighbour lists are made long enough for the first step before it runs.
+    /// Whether neighbour lists get the room that the first step wants before it runs.
     pub fit_lists: bool,
 }
 

@@ -189,12 +189,7 @@ impl Subdomain {
         if words[counters::DROPPED] > 0 {
             return Ok(());
         }
-        let wanted = u64::from(words[counters::TAILS]);
-        match self.make_room(device, 0, 0, wanted + wanted / 2) {
-            // A device may have room for what is wanted and not for more.
-            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, wanted),
-            made => made,
-        }
+        self.make_room_for_tails(device, words[counters::TAILS].into(), 0.5)
     }
 
     /// Starts a step of a device among others, whose number of particles is known only now.

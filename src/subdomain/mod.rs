@@ -231,8 +231,9 @@ impl Subdomain {
             return Ok(());
         }
         let capacity = if needed > old.capacity { needed + needed / 4 } else { old.capacity };
-        // More particles of the same gas have more tails.
-        let tails = tails.max(old.tails * capacity / old.capacity);
+        // More particles of the same gas have more tails. Among others what another device wanted may have been made here.
+        let grown_tails = if self.domain.features.halo { old.tails } else { old.tails * capacity / old.capacity };
+        let tails = tails.max(grown_tails);
         let newborn_room = room_for_newborns.max(newborns.next_power_of_two());
         let grown = ParticleBuffers::new(device, capacity, newborn_room, tails, self.domain.features)?;
         let mut encoder = device.encoder();
@@ -247,6 +248,17 @@ impl Subdomain {
         device.submit(encoder);
         self.particle = grown;
         self.rebind(device)
+    }
+
+    /// Makes room for tails of neighbour lists of `wanted` entries, and for a share of that more if the device has it.
+    ///
+    /// # Errors
+    /// If it has no room for those that are wanted.
+    pub fn make_room_for_tails(&mut self, device: &Device, wanted: u64, more: f64) -> Result<(), GpuError> {
+        match self.make_room(device, 0, 0, wanted + (wanted as f64 * more) as u64) {
+            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, wanted),
+            made => made,
+        }
     }
 
     /// Keeps the particles as they are before the next interval, among others in a copy of its own, in `spare` where that has

@@ -176,7 +176,8 @@ fn a_spoilt_message_is_seen() {
     }
     // So many are missing that no run goes on.
     let fewer = outcome(Fault::EmptyParticles);
-    assert!(fewer.is_err(), "{fewer:?}");
+    let missed = ["updates of ghosts", "particles are there"];
+    assert!(fewer.as_ref().is_err_and(|error| missed.iter().any(|what| error.contains(what))), "{fewer:?}");
     // Ranks that know other speeds of a particle both take it for theirs, or neither: the count after an interval is off.
     let doubled = outcome(Fault::AlterParticles);
     assert!(doubled.as_ref().is_err_and(|error| error.contains("particles are there")), "{doubled:?}");

@@ -192,8 +192,7 @@ impl Simulation<'_> {
             let what = "an interval has to run again, and its start was not kept".to_owned();
             return Err(SimulationError::Lost { time: self.read_until, what });
         }
-        let wanted = u64::from(wanted);
-        self.subdomain.make_room(self.device, 0, 0, wanted + wanted / 4)?;
+        self.subdomain.make_room_for_tails(self.device, wanted.into(), 0.25)?;
         if let Some(decomposition) = &mut self.decomposition {
             // The cuts may have changed since; the first exchange brings the particles home.
             decomposition.scatter();

@@ -52,7 +52,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
             let of_rounds = if rounds { n * (FLIGHT + 2.0 * WORD) } else { 0.0 };
             n * 4.0 * WORD + filled * WORD + order + of_rounds
         }
-        // Middle, cell and layer in; the lists and their lengths out.
+        // Middle, cell and layer in; the lists and their lengths out. (The few that are longer than eight are sought twice.)
         "neighbours" => n * 4.0 * WORD + filled * WORD + candidates * WORD,
         // The first round: lists, states and flights in, choices out. Later ones look at few.
         "choose" => candidates * WORD + n * (WORD + PARTICLE + FLIGHT + 2.0 * WORD),
