@@ -162,7 +162,8 @@ impl Page {
             "{TITLE}\n\n\
              Reference cases and what a run gave for them, as printed by\n\n```sh\n{}\n```\n\n\
              on {}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
-             a check passes if the measured figure is within it, and if its standard error is at most a third of it.\n\n",
+             a check passes if the measured figure is within it, and if its standard error is at most a third of it. One that \
+             differs is of a figure that the specification has and runs do not find.\n\n",
             self.command, self.device
         );
         let _ = writeln!(text, "{}.\n\n| {} |", tally.in_words(failures.len()), TITLES.join(" | "));
