@@ -10,7 +10,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use corpuscle::gas::philox4x32_10;
+use corpuscle::gas::{Draws, Purpose};
 use corpuscle::gpu::{Access, Binding, BoundKernel, Device, Kernel, KernelSource, Recording, fold};
 use corpuscle::subdomain::GpuStep;
 
@@ -371,25 +371,20 @@ impl Cloud {
     }
 }
 
-/// Equal numbers in every run: a counter and a key.
-struct Numbers([u32; 4], [u32; 2]);
+/// Equal numbers in every run.
+struct Numbers(Draws);
 
 impl Numbers {
-    fn of(seed: u32) -> Numbers {
-        Numbers([0; 4], [seed, 0])
-    }
-
-    fn next(&mut self) -> u32 {
-        self.0[0] += 1;
-        philox4x32_10(self.0, self.1)[0]
+    fn of(seed: u64) -> Numbers {
+        Numbers(Draws::new(seed, Purpose::InitialPosition, 0))
     }
 
     fn below(&mut self, limit: u32) -> u32 {
-        self.next() % limit
+        ((self.0.uniform() * f64::from(limit)) as u32).min(limit - 1)
     }
 
     fn uniform(&mut self) -> f32 {
-        (self.next() >> 8) as f32 / (1 << 24) as f32
+        self.0.uniform() as f32
     }
 }
 

@@ -13,6 +13,7 @@ use std::time::Instant;
 use corpuscle::gpu::Device;
 use corpuscle::ranks::Solo;
 use corpuscle::simulation::{Model, Options, Setup, Simulation};
+use corpuscle::study::emulation::median;
 
 const REPEATS: usize = 5;
 const BARE: &str = "[[gas]]\nname = \"a\"\nmolar_mass = 0.028\ngamma = 1.66666667\n";
@@ -86,13 +87,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     for ((name, ..), own) in models.iter().zip(&seconds) {
-        let ratio = median(own.iter().zip(&seconds[0]).map(|(own, bare)| own / bare).collect());
-        println!("{name:45} {:8.3} M particle-steps/s, {ratio:.2} of bare", 1e-6 / median(own.clone()));
+        let ratio = median(own.iter().zip(&seconds[0]).map(|(own, bare)| own / bare)).ok_or("no turns")?;
+        let own = median(own.iter().copied()).ok_or("no turns")?;
+        println!("{name:45} {:8.3} M particle-steps/s, {ratio:.2} of bare", 1e-6 / own);
     }
     Ok(())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }

@@ -175,8 +175,8 @@ impl Simulation<'_> {
         Ok(dropped)
     }
 
-    /// Runs an interval, and those submitted since, again with room for tails of neighbour lists of `wanted` entries and a quarter more, and with
-    /// everyone as a peer if particles strayed. All ranks do, since they see the sums.
+    /// Runs an interval, and those submitted since, again with room for tails of neighbour lists of `wanted` entries and a
+    /// quarter more, and with everyone as a peer if particles strayed. All ranks do, since they see the sums.
     fn run_again(
         &mut self,
         first: Interval,
