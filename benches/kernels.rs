@@ -175,7 +175,6 @@ impl Bench {
         let kept = device.storage_of("kept", counts)?;
         let buffers = [
             ("step", step),
-            ("cell_count", device.storage::<u32>("cell_count", cells as u64)?),
             ("chunk_sums", device.storage::<u32>("chunk_sums", chunks as u64 + 1)?),
             ("cell_start", device.storage::<u32>("cell_start", cells as u64 + 1)?),
         ];
@@ -191,9 +190,9 @@ impl Bench {
         Ok(Way {
             name: format!("chunks of {chunk} cells, a thread each"),
             dispatches,
-            // It leaves zeros.
-            restores: vec![(kept, buffers[1].1.clone())],
-            result: buffers[3].1.clone(),
+            // It leaves starts where the counts were.
+            restores: vec![(kept, buffers[2].1.clone())],
+            result: buffers[2].1.clone(),
             words: cells + 1,
         })
     }

@@ -2,7 +2,7 @@
 // Flies the particles that meet no wall to the end of the step.
 //
 // Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes of the
-// cells, `wall_start` and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
+// cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds pass a cell that has one (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
 

@@ -3,9 +3,9 @@
 // are then), and finds those that other devices need.
 //
 // Reads `particles`; writes `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
-// owned here nor lies in the halo) and `cell_count`, and appends the earlier particles in cells that
-// others own or have in their halo to `border` (slot, cell). One thread per slot. The slot within the cell
-// depends on the order of the threads; `order` replaces it by the rank of the id.
+// owned here nor lies in the halo) and the counts where `scan_cells` puts the starts (`cell_start`, zero before), and appends the
+// earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
+// within the cell depends on the order of the threads; `order` replaces it by the rank of the id.
 
 // What part of the step's flight is flown to the place that decides the cell.
 override FLOWN: f32 = 0.5;
@@ -13,7 +13,7 @@ override FLOWN: f32 = 0.5;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
-@group(0) @binding(6) var<storage, read_write> cell_count: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> cell_start: array<atomic<u32>>;
 @group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -32,7 +32,7 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
     // The border layer of the box has no bins to fill.
     if (all(cell - step.low - 1u < step.size - 2u)) {
         let index = local_index(cell);
-        bins[i] = vec2<u32>(index, atomicAdd(&cell_count[index], 1u));
+        bins[i] = vec2<u32>(index, atomicAdd(&cell_start[index], 1u));
     } else {
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);

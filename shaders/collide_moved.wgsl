@@ -145,8 +145,9 @@ fn sees(p: vec3<u32>, q: vec3<u32>) -> bool {
         }
     }
     if (still_parts) {
-        let cell = cell_index(here);
-        for (var k = wall_start[cell]; k < wall_start[cell + 1u]; k++) {
+        let row = walled_row(Cells(here, here), here.y, here.z);
+        let list_end = wall_start[row.y];
+        for (var k = wall_start[row.x]; k < list_end; k++) {
             if (parts(wall_list[k], p, q, along)) {
                 return false;
             }

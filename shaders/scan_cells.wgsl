@@ -1,14 +1,12 @@
 //! uses: step.wgsl
-// Scan, part 3: where each cell's particles start. Clears the counts for the next step.
+// Scan, part 3: where each cell's particles start, in place of how many they are.
 //
-// Reads `cell_count` and `chunk_sums`; writes `cell_start` (one more than there are cells) and
-// `cell_count`. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no
-// particle: of these nothing is read and nothing cleared.
+// Reads `chunk_sums`; reads counts and writes starts in `cell_start` (one more than there are cells). One thread per chunk. Where
+// a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no count is read.
 
 override CHUNK: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(6) var<storage, read_write> cell_count: array<u32>;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<u32>;
 
@@ -24,9 +22,8 @@ fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     var cell = begin;
     let filled = select(end, begin, chunk_sums[chunk + 1u] == before);
     for (; cell < filled; cell++) {
-        let own = cell_count[cell];
+        let own = cell_start[cell];
         cell_start[cell] = before;
-        cell_count[cell] = 0u;
         before += own;
     }
     for (; cell < end; cell++) {

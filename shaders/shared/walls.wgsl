@@ -62,7 +62,8 @@ override TOLERANCE: f32;
 @group(0) @binding(20) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(21) var<storage, read> wall_list: array<u32>;
 @group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
-@group(0) @binding(23) var<storage, read> cell_class: array<u32>;
+// The classes of sixteen cells, two bits each, and how many cells before these have walls.
+@group(0) @binding(23) var<storage, read> cell_class: array<vec2<u32>>;
 
 // A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
 // (The surface of a convex cavity cannot.)
@@ -80,7 +81,15 @@ fn may_part(c: vec3<u32>) -> bool {
 }
 
 fn class_of(cell: u32) -> u32 {
-    return (cell_class[cell >> 4u] >> ((cell & 15u) * 2u)) & 3u;
+    return (cell_class[cell >> 4u].x >> ((cell & 15u) * 2u)) & 3u;
+}
+
+// How many cells before this one have walls: `wall_start` has an entry for each of those alone.
+fn walled_before(cell: u32) -> u32 {
+    let classes = cell_class[cell >> 4u];
+    // The upper bit of each that is CLASS_CUT, 2.
+    let walled = classes.x & ~(classes.x << 1u) & 0xaaaaaaaau;
+    return classes.y + countOneBits(walled & ((1u << ((cell & 15u) * 2u)) - 1u));
 }
 
 // Whether a point of the triangle's plane (relative to corner a) is at most `reach` outside its edges.
@@ -107,10 +116,16 @@ fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
-// Where in `wall_list` the triangles of an x-row of cells are: neighbours in memory, as are the cells.
-fn row_list(cells: Cells, y: u32, z: u32) -> vec2<u32> {
+// Where in `wall_start` the cells with walls of an x-row of cells are: neighbours in memory, as are the cells.
+fn walled_row(cells: Cells, y: u32, z: u32) -> vec2<u32> {
     let row = cell_index(vec3<u32>(cells.low.x, y, z));
-    return vec2<u32>(wall_start[row], wall_start[row + cells.high.x - cells.low.x + 1u]);
+    return vec2<u32>(walled_before(row), walled_before(row + cells.high.x - cells.low.x + 1u));
+}
+
+// And where in `wall_list` their triangles are.
+fn row_list(cells: Cells, y: u32, z: u32) -> vec2<u32> {
+    let row = walled_row(cells, y, z);
+    return vec2<u32>(wall_start[row.x], wall_start[row.y]);
 }
 
 // Takes the triangle into account as the first wall that a flight meets that is at `from_point` at the time `start`.
@@ -146,8 +161,8 @@ fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
     let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
-            let list = row_list(cells, y, z);
-            if (list.x < list.y) {
+            let row = walled_row(cells, y, z);
+            if (row.x < row.y) {
                 return true;
             }
         }

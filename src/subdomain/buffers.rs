@@ -148,13 +148,13 @@ pub fn step_stride(device: &Device) -> u64 {
 }
 
 /// Bytes of these buffers for each bin.
-pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 + 4.0 / CHUNK as f64;
+pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64;
 
-/// What grows with the number of cells that have bins. `cell_count` is zero between steps.
+/// What grows with the number of cells that have bins.
 pub struct CellBuffers {
     pub capacity: u64,
-    pub cell_count: wgpu::Buffer,
     pub chunk_sums: wgpu::Buffer,
+    /// First the counts of a step's cells, then where their particles start.
     pub cell_start: wgpu::Buffer,
 }
 
@@ -162,7 +162,6 @@ impl CellBuffers {
     pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
         Ok(CellBuffers {
             capacity: bins,
-            cell_count: device.storage::<u32>("cell_count", bins)?,
             chunk_sums: device.storage::<u32>("chunk_sums", bins.div_ceil(CHUNK) + 1)?,
             cell_start: device.storage::<u32>("cell_start", bins + 1)?,
         })
@@ -171,7 +170,7 @@ impl CellBuffers {
 
 impl CellBuffers {
     pub fn bytes(&self) -> u64 {
-        [&self.cell_count, &self.chunk_sums, &self.cell_start].iter().map(|buffer| buffer.size()).sum()
+        self.chunk_sums.size() + self.cell_start.size()
     }
 }
 
@@ -372,7 +371,6 @@ impl<'a> Buffers<'a> {
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
-            (_, "cell_count") => &cell.cell_count,
             (_, "chunk_sums") => &cell.chunk_sums,
             (_, "cell_start") => &cell.cell_start,
             (_, "wall_start") => &domain.wall_start,

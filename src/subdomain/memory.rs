@@ -17,8 +17,9 @@ pub struct Memory {
     pub all: f64,
 }
 
-/// Start of the list of walls; class; whether a wall may part the gas there: bytes of a cell (`DomainBuffers`).
-const WALLS_OF_A_CELL: f64 = 4.0 + 2.0 / 8.0 + 1.0 / 8.0;
+/// Its class, and its share of how many cells before sixteen have walls; whether a wall may part the gas there: bytes of a cell
+/// (`DomainBuffers`). The lists of the cells that have walls are not counted.
+const WALLS_OF_A_CELL: f64 = 8.0 / 16.0 + 1.0 / 8.0;
 /// What walls at rest leave of it, and its place in the list of those that moving walls touch.
 const MOVED_OF_A_CELL: f64 = size_of::<GpuStillGas>() as f64 + 4.0;
 

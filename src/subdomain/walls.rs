@@ -13,11 +13,12 @@ const TOLERANCE: f64 = 1e-6;
 
 pub struct Walls {
     pub triangles: Vec<GpuTriangle>,
-    /// First entry of each cell in `list`, and the end.
+    /// First entry in `list` of each cell that has any, and the end.
     pub start: Vec<u32>,
     pub list: Vec<u32>,
-    /// Two bits per cell.
-    pub class: Vec<u32>,
+    /// The classes of sixteen cells each, two bits per cell, and how many cells before them have walls. One more than there are
+    /// such sixteens, for the cell behind the last.
+    pub class: Vec<[u32; 2]>,
     /// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
     pub parting: Vec<u32>,
     /// m.
@@ -62,7 +63,8 @@ impl Walls {
                 }
             })
             .collect();
-        let mut class = vec![0u32; triangle_grid.class.len().div_ceil(16)];
+        let mut class = vec![[0u32; 2]; triangle_grid.class.len() / 16 + 1];
+        let mut start = Vec::new();
         for (cell, kind) in triangle_grid.class.iter().enumerate() {
             let bits = match kind {
                 CellClass::Clear => 0,
@@ -70,11 +72,21 @@ impl Walls {
                 CellClass::Cut => 2,
                 CellClass::Solid => 3,
             };
-            class[cell / 16] |= bits << (2 * (cell % 16));
+            if cell % 16 == 0 {
+                class[cell / 16][1] = start.len() as u32;
+            }
+            class[cell / 16][0] |= bits << (2 * (cell % 16));
+            if *kind == CellClass::Cut {
+                start.push(triangle_grid.start[cell]);
+            }
         }
+        if triangle_grid.class.len() % 16 == 0 {
+            class[triangle_grid.class.len() / 16][1] = start.len() as u32;
+        }
+        start.extend(triangle_grid.start.last());
         Walls {
             triangles,
-            start: triangle_grid.start.clone(),
+            start,
             list: triangle_grid.list.clone(),
             class,
             parting: parting(triangle_grid, grid, parts),
@@ -118,4 +130,45 @@ fn parting(triangle_grid: &TriangleGrid, grid: &Grid, parts: impl Fn(usize) -> b
         }
     }
     bits
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::geometry::Vessel;
+    use crate::scene;
+    use std::path::Path;
+
+    use super::*;
+
+    /// The cells before a cell that have walls, as `walled_before` of `shaders/shared/walls.wgsl` counts them.
+    fn walled_before(class: &[[u32; 2]], cell: usize) -> usize {
+        let [bits, before] = class[cell / 16];
+        let walled = bits & !(bits << 1) & 0xaaaa_aaaa;
+        (before + (walled & ((1 << (cell % 16 * 2)) - 1)).count_ones()) as usize
+    }
+
+    /// Each cell's triangles are found by how many cells before it have any; behind the last cell is the end.
+    #[test]
+    fn the_lists_of_cells_with_walls_are_found_by_their_number() {
+        let text = include_str!("../../scenes/tank.toml");
+        let vessel = Vessel::build(&scene::parse(text, "tank.toml", Path::new("")).unwrap().walls).unwrap();
+        let (low, high) = vessel.bounds;
+        // Numbers of cells that fill the sixteens, and that do not.
+        let mut filled = [false; 2];
+        for edge in (10..30).map(|k| f64::from(k) * 1e-3) {
+            let grid = Grid::around(low, high, edge).unwrap();
+            let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
+            let walls = Walls::new(&built, &grid, &[], &[], |_| true);
+            let mut listed = 0;
+            for cell in 0..grid.cell_count() {
+                let ends = [cell, cell + 1].map(|cell| walls.start[walled_before(&walls.class, cell)] as usize);
+                assert_eq!(&walls.list[ends[0]..ends[1]], built.in_cell(cell), "cell {cell}");
+                listed += usize::from(ends[0] < ends[1]);
+            }
+            assert_eq!(walls.start.len(), listed + 1, "an entry for each cell with walls, and the end");
+            assert!(listed > 0 && listed < grid.cell_count());
+            filled[usize::from(grid.cell_count().is_multiple_of(16))] = true;
+        }
+        assert_eq!(filled, [true; 2]);
+    }
 }

@@ -30,7 +30,7 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
     let mut rig = Rig::new(&world);
     rig.put("particles", &particles);
     rig.put("bins", &vec![[7u32; 2]; COUNT]);
-    rig.put("cell_count", &vec![0u32; local.step().bins as usize]);
+    rig.put("cell_start", &vec![0u32; local.step().bins as usize]);
     rig.put("border", &vec![[NOBODY; 2]; COUNT]);
     let placed = GpuStep { count: count as u32, newborns: born as u32, dt: DT, ..local.step() };
     let first = count + born;
@@ -46,7 +46,7 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
                 counts[bin as usize] += 1;
             }
         }
-        assert_eq!(rig.get::<u32>("cell_count", counts.len()), counts);
+        assert_eq!(rig.get::<u32>("cell_start", counts.len()), counts);
         // The slots of a bin are 0, 1, ..: none twice.
         let kept = found[..here].iter().filter(|bin| bin[0] != NOBODY);
         let places: BTreeSet<[u32; 2]> = kept.clone().copied().collect();

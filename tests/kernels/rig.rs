@@ -52,6 +52,7 @@ pub const NEVER: f32 = 1e30;
 pub const CELL_NEAR2: u32 = 16_831;
 /// Cell classes of `shaders/shared/grid.wgsl`.
 pub const CLEAR: u32 = 0;
+pub const CUT: u32 = 2;
 pub const SOLID: u32 = 3;
 /// Marks of `layers` (`shaders/shared/local.wgsl`).
 pub const SHARED: u32 = 0x100;
@@ -132,11 +133,11 @@ impl World {
 
     /// Whether a triangle is listed in the cell.
     pub fn has_triangle(&self, cell: u32) -> bool {
-        self.walls.start[cell as usize] < self.walls.start[cell as usize + 1]
+        self.class(cell) == CUT
     }
 
     pub fn class(&self, cell: u32) -> u32 {
-        self.walls.class[cell as usize / 16] >> (2 * (cell % 16)) & 3
+        self.walls.class[cell as usize / 16][0] >> (2 * (cell % 16)) & 3
     }
 
     pub fn metres(&self, p: [u32; 3]) -> Vector {

@@ -43,7 +43,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "inject" => work.newborns * (NEWBORN + PARTICLE),
         // State in; cell and place in the cell out; the cells' counters.
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
-        // Counters in, and the starts out; where there are particles the counters again, and cleared.
+        // Counters in, and the starts out in their place; where there are particles the counters again. (They are cleared outside of
+        // the phases.)
         "scan" => cells * 2.0 * WORD,
         // scatter: bins in, slots out; order: slots and bins in, state in and out, cell and layer out.
         "sort" => {

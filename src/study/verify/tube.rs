@@ -35,6 +35,7 @@ pub struct Tube {
     /// In LENGTH / sqrt(p/rho) of the left.
     pub end: f64,
     pub snapshots: u32,
+    pub seed: u64,
 }
 
 impl Tube {
@@ -52,7 +53,7 @@ impl Tube {
     /// # Errors
     /// If its figures make no scene.
     pub fn scene(&self) -> Result<Scene, StudyError> {
-        let Tube { particles, gamma, width, snapshots, .. } = *self;
+        let Tube { particles, gamma, width, snapshots, seed, .. } = *self;
         let [pressure, temperature] = self.right;
         let right = if pressure > 0.0 {
             format!(
@@ -64,7 +65,7 @@ impl Tube {
             String::new()
         };
         let text = format!(
-            "end_time = {end:e}\nseed = 5\n[[gas]]\nname = \"gas\"\nmolar_mass = {MOLAR_MASS}\ngamma = {gamma}\n\
+            "end_time = {end:e}\nseed = {seed}\n[[gas]]\nname = \"gas\"\nmolar_mass = {MOLAR_MASS}\ngamma = {gamma}\n\
              [[wall]]\nname = \"tube\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{LENGTH}, {width}, {width}]\n\
              gas = \"inside\"\n\
              [[chamber]]\nname = \"left\"\npressure = {PRESSURE}\ntemperature = {TEMPERATURE}\ngas = \"gas\"\n\
@@ -168,7 +169,8 @@ pub fn mean_differences(profile: &[Slice]) -> [f64; 2] {
     [mean(|slice| slice.density), mean(|slice| slice.velocity)]
 }
 
-pub const SOD: Tube = Tube { particles: 160_000, gamma: 1.4, right: [0.1, 0.8], width: 0.1, end: 0.2, snapshots: 0 };
+pub const SOD: Tube =
+    Tube { particles: 160_000, gamma: 1.4, right: [0.1, 0.8], width: 0.1, end: 0.2, snapshots: 0, seed: 5 };
 
 #[cfg(test)]
 mod tests {
