@@ -3,9 +3,9 @@
 // probes).
 //
 // Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles,
-// one zone (y) and one gas (z); each thread adds its own, then the workgroup, then the zone's sums. Fixed-point
-// integers with a carry: the sums do not depend on order. A value out of range is counted, and the host
-// stops the run.
+// one zone (y) and one gas (z); each thread adds its own, then the workgroup, then the zone's sums. Where chambers have all of the
+// gas, they are what is added up for the whole. Fixed-point integers with a carry: the sums do not depend on order. A value
+// out of range is counted, and the host stops the run.
 
 struct Zone {
     // Box: corners. Sphere: low is the centre. Cylinder: low is the base.
@@ -114,11 +114,16 @@ fn tally(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
+    let zone = group.y;
+    // The last chamber has what the others leave.
+    let chambers_have_all = CHAMBERS > 0u && zones[CHAMBERS].kind == EVERYWHERE;
+    if (zone == 0u && chambers_have_all) {
+        return;
+    }
     if (thread < WORDS) {
         atomicStore(&shared_sums[thread], 0u);
     }
     workgroupBarrier();
-    let zone = group.y;
     let gas = group.z;
     // Once, not for each particle.
     let here = zones[zone];
@@ -168,7 +173,11 @@ fn tally(
     }
     workgroupBarrier();
     if (thread < WORDS / 2u) {
-        let slot = (zone * GASES + gas) * WORDS + 2u * thread;
-        add64(slot, atomicLoad(&shared_sums[2u * thread]), atomicLoad(&shared_sums[2u * thread + 1u]));
+        let low = atomicLoad(&shared_sums[2u * thread]);
+        let high = atomicLoad(&shared_sums[2u * thread + 1u]);
+        add64((zone * GASES + gas) * WORDS + 2u * thread, low, high);
+        if (chambers_have_all && zone <= CHAMBERS) {
+            add64(gas * WORDS + 2u * thread, low, high);
+        }
     }
 }

@@ -21,10 +21,11 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
     let device = Device::open(raw.gpu.as_deref())?;
     let ceilings = Ceilings::measure(&device).map_err(StudyError::from)?;
     say(&format!(
-        "{}: copies {:.2} GB/s (read and written), {:.1} G operations/s\n",
+        "{}: copies {:.2} GB/s (read and written), {:.1} G operations/s, {:.2} G reads/s of words in a cache\n",
         device.adapter().info.name,
         1e-9 * ceilings.copy,
-        1e-9 * ceilings.arithmetic
+        1e-9 * ceilings.arithmetic,
+        1e-9 * ceilings.loads
     ))?;
     let (mut all, mut failed) = (Vec::new(), Vec::new());
     for scene in scenes {

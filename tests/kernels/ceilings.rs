@@ -1,5 +1,5 @@
-//! `ceiling_copy` and `ceiling_arithmetic` do the work that `corpuscle bench` counts: every word is copied, every
-//! multiplication and addition is made.
+//! `ceiling_copy`, `ceiling_arithmetic` and `ceiling_loads` do the work that `corpuscle bench` counts: every word is copied,
+//! every multiplication and addition is made, every read is of another word.
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -34,4 +34,23 @@ fn all_operations_are_made() {
             assert!((f64::from(found) / sum - 1.0).abs() < 1e-5, "{k} {axis}: {found} {sum}");
         }
     }
+}
+
+/// The words at four places that go on by 13: their sums, exactly.
+#[test]
+fn all_words_are_read() {
+    let loops = 40;
+    let mut stream = Stream::new(4);
+    let table: Vec<u32> = (0..4096).map(|_| stream.word()).collect();
+    let mut rig = Rig::new(&World::plain());
+    rig.constant("LOOPS", f64::from(loops));
+    rig.put("copy_from", &table);
+    rig.put("copy_to", &vec![[0u32; 4]; ITEMS]);
+    rig.run("ceiling_loads", ITEMS);
+    let expected = |k: usize| {
+        [0, 1021, 2039, 3067].map(|from| {
+            (0..loops).fold(0u32, |sum, i| sum.wrapping_add(table[(7 * k + from + 13 * i as usize) % 4096]))
+        })
+    };
+    assert_eq!(rig.get::<[u32; 4]>("copy_to", ITEMS), (0..ITEMS).map(expected).collect::<Vec<_>>());
 }

@@ -1,4 +1,5 @@
-//! What the device can do at most, measured in the same run: bytes per second of a copy, and fused multiply-adds.
+//! What the device can do at most, measured in the same run: bytes per second of a copy, fused multiply-adds, and reads of words
+//! that caches have.
 
 use std::time::Instant;
 
@@ -12,6 +13,8 @@ const TURNS: u32 = 4;
 const LOOPS: f64 = 64.0;
 /// Multiplications and additions of a thread in a loop: four vectors of four, two each.
 const OPERATIONS: f64 = 32.0;
+/// Reads of a thread in a loop.
+const READS: f64 = 4.0;
 const WORKGROUP: u32 = 64;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +23,8 @@ pub struct Ceilings {
     pub copy: f64,
     /// Single-precision operations per second.
     pub arithmetic: f64,
+    /// Words read from a table that the nearest cache has, per second.
+    pub loads: f64,
 }
 
 impl Ceilings {
@@ -57,6 +62,7 @@ impl Ceilings {
         Ok(Ceilings {
             copy: 2.0 * ITEM_BYTES * ITEMS as f64 / best("ceiling_copy", 8)?,
             arithmetic: OPERATIONS * LOOPS * ITEMS as f64 / best("ceiling_arithmetic", 1)?,
+            loads: READS * LOOPS * ITEMS as f64 / best("ceiling_loads", 1)?,
         })
     }
 }

@@ -105,6 +105,7 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
         "software_threads": if device.adapter().is_cpu() { Some(super::threads()) } else { None },
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,
+        "cached_loads_per_second": ceilings.loads,
         "runs": runs.collect::<Vec<_>>(),
         "not_measured": missing.iter().map(|(run, why)| json!({ "run": run, "why": why })).collect::<Vec<_>>(),
     })
