@@ -25,10 +25,18 @@ fn gap(at: i32, side: i32) -> i32 {
     return select(select(0, at + 1, side < 0), 128 - at, side > 0);
 }
 
+// A row of three cells, neighbours in memory, without those that are too far away: where it begins, and how many it has.
+fn row_at(first: u32, left: i32, before: i32, after: i32, astray: bool) -> vec2<u32> {
+    if (left <= 0 && !astray) {
+        return vec2<u32>(0u);
+    }
+    let begin = cell_start[first + select(1u, 0u, before < left || astray)];
+    return vec2<u32>(begin, cell_start[first + select(2u, 3u, after < left || astray)] - begin);
+}
+
 // Writes what it finds: the first `direct` interleaved, the others, where there is a tail, there.
 fn search(s: u32, direct: u32, tail: u32) -> Found {
     let middle = middles[s];
-    let corner = cells[s] - step.size.x * step.size.y - step.size.x - 1u;
     let stride = arrayLength(&neighbour_count);
     var share = FULL_SHARE;
     if (CAPPED) {
@@ -36,32 +44,58 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
     }
     let own_near2 = near2(share);
     let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
-    let before = gap(at.x, -1) * gap(at.x, -1);
-    let after = gap(at.x, 1) * gap(at.x, 1);
+    let low = vec3<i32>(gap(at.x, -1), gap(at.y, -1), gap(at.z, -1));
+    let high = vec3<i32>(gap(at.x, 1), gap(at.y, 1), gap(at.z, 1));
+    let low2 = low * low;
+    let high2 = high * high;
     let astray = (middle & ASTRAY) != 0u;
+    // The nine rows around. The border layer makes every index valid.
+    let y_step = step.size.x;
+    let z_step = step.size.x * step.size.y;
+    let here = cells[s] - 1u;
+    let n = own_near2;
+    let r0 = row_at(here - z_step - y_step, n - low2.z - low2.y, low2.x, high2.x, astray);
+    let r1 = row_at(here - z_step, n - low2.z, low2.x, high2.x, astray);
+    let r2 = row_at(here - z_step + y_step, n - low2.z - high2.y, low2.x, high2.x, astray);
+    let r3 = row_at(here - y_step, n - low2.y, low2.x, high2.x, astray);
+    let r4 = row_at(here, n, low2.x, high2.x, astray);
+    let r5 = row_at(here + y_step, n - high2.y, low2.x, high2.x, astray);
+    let r6 = row_at(here + z_step - y_step, n - high2.z - low2.y, low2.x, high2.x, astray);
+    let r7 = row_at(here + z_step, n - high2.z, low2.x, high2.x, astray);
+    let r8 = row_at(here + z_step + y_step, n - high2.z - high2.y, low2.x, high2.x, astray);
+    // How many candidates there are before the end of each.
+    let e0 = r0.y;
+    let e1 = e0 + r1.y;
+    let e2 = e1 + r2.y;
+    let e3 = e2 + r3.y;
+    let e4 = e3 + r4.y;
+    let e5 = e4 + r5.y;
+    let e6 = e5 + r6.y;
+    let e7 = e6 + r7.y;
+    let e8 = e7 + r8.y;
     var found = 0u;
     var flags = middle;
-    for (var row = 0u; row < 9u; row++) {
-        let y = gap(at.y, i32(row % 3u) - 1);
-        let z = gap(at.z, i32(row / 3u) - 1);
-        let left = select(own_near2 - y * y - z * z, own_near2, astray);
-        if (left <= 0) {
-            continue;
-        }
-        // Rows of three cells, neighbours in memory, without those too far away; the border layer makes every index valid.
-        let first = corner + (row / 3u) * step.size.x * step.size.y + (row % 3u) * step.size.x;
-        let end = cell_start[first + select(2u, 3u, after < left || astray)];
-        for (var j = cell_start[first + select(1u, 0u, before < left || astray)]; j < end; j++) {
-            let other = middles[j];
-            let distance2 = packed_distance2(middle, other);
-            // Of the pair's diameter, so that either is in the other's list.
-            if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
-                flags |= other;
-                if (found < direct || tail != NOBODY) {
-                    neighbours[select(tail + found, found * stride + s, found < direct)] = j;
-                }
-                found++;
+    // One loop over all of them: threads that run together wait for the one with the most candidates, not for the fullest row of each.
+    for (var k = 0u; k < e8; k++) {
+        var base = r0.x;
+        base = select(base, r1.x - e0, k >= e0);
+        base = select(base, r2.x - e1, k >= e1);
+        base = select(base, r3.x - e2, k >= e2);
+        base = select(base, r4.x - e3, k >= e3);
+        base = select(base, r5.x - e4, k >= e4);
+        base = select(base, r6.x - e5, k >= e5);
+        base = select(base, r7.x - e6, k >= e6);
+        base = select(base, r8.x - e7, k >= e7);
+        let j = base + k;
+        let other = middles[j];
+        let distance2 = packed_distance2(middle, other);
+        // Of the pair's diameter, so that either is in the other's list.
+        if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
+            flags |= other;
+            if (found < direct || tail != NOBODY) {
+                neighbours[select(tail + found, found * stride + s, found < direct)] = j;
             }
+            found++;
         }
     }
     return Found(found, flags);
