@@ -12,8 +12,8 @@ override ORIFICES: bool = true;
 override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
@@ -24,26 +24,24 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (s >= step.total) {
         return;
     }
-    // Of a struct that is not copied whole only the fields that are used are read.
-    var tag: u32;
-    var position: vec3<u32>;
-    var velocity: vec3<f32>;
+    var place: vec4<u32>;
+    var motion: vec4<f32>;
     if (COLLISIONS) {
         if ((layers[s] & LAYER) != 0u) {
-            particles[s].tag = NOBODY;
+            particles[s].place.w = NOBODY;
             return;
         }
-        tag = sorted[s].tag;
-        position = sorted[s].position;
-        velocity = sorted[s].velocity;
+        place = sorted[s].place;
+        motion = sorted[s].motion;
     } else {
-        tag = particles[s].tag;
-        if (VENTS && tag == NOBODY) {
+        place = particles[s].place;
+        if (VENTS && place.w == NOBODY) {
             return;
         }
-        position = particles[s].position;
-        velocity = particles[s].velocity;
+        motion = particles[s].motion;
     }
+    let position = place.xyz;
+    let velocity = motion.xyz;
     // Most gas is far from walls.
     var far = false;
     var meets_wall: bool;
@@ -52,7 +50,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     } else {
         var start = 0.0;
         if (ORIFICES) {
-            start = birth_time(id_of(tag));
+            start = birth_time(id_of(place.w));
         }
         far = !may_hit(position, velocity, start, step.dt);
         meets_wall = !far && passes_walls(position, velocity, start, step.dt);
@@ -73,8 +71,8 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         }
     }
     if (COLLISIONS) {
-        particles[s] = Particle(end, tag, velocity, sorted[s].spin);
+        particles[s] = Packed(vec4<u32>(end, place.w), motion);
     } else {
-        particles[s].position = end;
+        particles[s].place = vec4<u32>(end, place.w);
     }
 }

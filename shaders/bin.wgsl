@@ -11,7 +11,7 @@
 override FLOWN: f32 = 0.5;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<atomic<u32>>;
 @group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
@@ -22,12 +22,13 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
-    if (particles[i].tag == NOBODY) {
+    let place = particles[i].place;
+    if (place.w == NOBODY) {
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);
         return;
     }
-    let middle = shifted(particles[i].position, particles[i].velocity * (FLOWN * step.dt));
+    let middle = shifted(place.xyz, particles[i].motion.xyz * (FLOWN * step.dt));
     let cell = nearest_cell(middle);
     // The border layer of the box has no bins to fill.
     if (all(cell - step.low - 1u < step.size - 2u)) {

@@ -13,8 +13,8 @@
 override RIGID: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+@group(0) @binding(11) var<storage, read> flights: array<vec4<u32>>;
 @group(0) @binding(13) var<storage, read> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
@@ -41,16 +41,17 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         choices[s] = best;
         return;
     }
-    let position = sorted[s].position;
-    let velocity = sorted[s].velocity;
-    let own_flight = flights[s];
+    let place = sorted[s].place;
+    let velocity = sorted[s].motion.xyz;
+    let own_flight = flight_of(flights[s]);
     let own_latest = min(step.dt, own_flight.wall);
     let stride = arrayLength(&neighbour_count);
     let tail = tail_of(s, listed, stride);
     for (var k = 0u; k < listed; k++) {
         let j = neighbours[entry_of(s, k, listed, stride, tail)];
-        let r = between(position, sorted[j].position);
-        let g = sorted[j].velocity - velocity;
+        let other = sorted[j].place;
+        let r = between(place.xyz, other.xyz);
+        let g = sorted[j].motion.xyz - velocity;
         let g2 = dot(g, g);
         if (g2 == 0.0) {
             continue;
@@ -65,7 +66,7 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (miss2 >= DIAMETER * DIAMETER) {
             continue;
         }
-        let other_flight = flights[j];
+        let other_flight = flight_of(flights[j]);
         let earliest = max(own_flight.start, other_flight.start);
         let latest = min(own_latest, other_flight.wall);
         if (!RIGID && !(time >= earliest && time < latest)) {
@@ -83,11 +84,10 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 continue;
             }
         }
-        let tag = sorted[j].tag;
-        if (own_flight.partner == tag && other_flight.partner == sorted[s].tag) {
+        if (own_flight.partner == other.w && other_flight.partner == place.w) {
             continue;
         }
-        let other_id = id_of(tag);
+        let other_id = id_of(other.w);
         if (time > best_time || (time == best_time && other_id >= best_id)) {
             continue;
         }

@@ -9,12 +9,12 @@
 // the number of lower ids in the cell: a function of the set, not of any order.
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(9) var<storage, read> slots: array<vec2<u32>>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
+@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(28) var<storage, read_write> touched: array<u32>;
@@ -58,8 +58,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     for (var k = begin; k < end; k++) {
         place += select(0u, 1u, slots[k].y < slot.y);
     }
-    let particle = particles[slot.x];
-    sorted[place] = particle;
+    let whole = particles[slot.x];
+    sorted[place] = whole;
+    let particle = particle_of(whole);
     let place_in_grid = cell_of(cell);
     let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
     var mark = 0u;
@@ -90,7 +91,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (CAPPED) {
         share = shares[block_of(place_in_grid)];
     }
-    flights[place] = Flight(start, NEVER, NOBODY, share << SHARE_AT);
+    flights[place] = packed_flight(Flight(start, NEVER, NOBODY, share << SHARE_AT));
     if (may_hit(particle.position, particle.velocity, start, step.dt)) {
         near_walls[append(LIST_NEAR_WALLS)] = place;
         mark |= NEAR;

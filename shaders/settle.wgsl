@@ -17,8 +17,8 @@ override RIGID: bool = false;
 override FASTEST2: f32;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
+@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(13) var<storage, read> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
@@ -96,8 +96,10 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     let pair = pairs[k];
     let time = bitcast<f32>(choices[pair.x].y);
-    var i = sorted[pair.x];
-    var j = sorted[pair.y];
+    var i = particle_of(sorted[pair.x]);
+    var j = particle_of(sorted[pair.y]);
+    let flight_i = flight_of(flights[pair.x]);
+    let flight_j = flight_of(flights[pair.y]);
     let mass_i = gases[kind_of(i.tag)].mass;
     let mass_j = gases[kind_of(j.tag)].mass;
     let mu = mass_i * mass_j / (mass_i + mass_j);
@@ -108,8 +110,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let place_i = shifted(i.position, i.velocity * time);
     if (may_part(nearest_cell(place_i))
         && blocked(place_i, shifted(j.position, j.velocity * time), time)) {
-        flights[pair.x].partner = j.tag;
-        flights[pair.y].partner = i.tag;
+        flights[pair.x].z = j.tag;
+        flights[pair.y].z = i.tag;
         if ((layers[pair.x] & LAYER) == 0u) {
             atomicAdd(&counters[BLOCKED], 1u);
         }
@@ -139,7 +141,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (RIGID) {
         relative = thrown_back(miss, g, exchange.speed);
     } else {
-        relative = turned(diameter2(flights[pair.x], flights[pair.y]), miss, g, exchange.speed, draw2.z);
+        relative = turned(diameter2(flight_i, flight_j), miss, g, exchange.speed, draw2.z);
     }
     let old_i = i.velocity;
     let old_j = j.velocity;
@@ -153,10 +155,10 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     touch_neighbours(pair.y);
     i.position = shifted(i.position, (old_i - i.velocity) * time);
     j.position = shifted(j.position, (old_j - j.velocity) * time);
-    sorted[pair.x] = i;
-    sorted[pair.y] = j;
-    let flown_i = flights[pair.x].collisions;
-    let flown_j = flights[pair.y].collisions;
-    flights[pair.x] = Flight(time, wall_time(i.position, i.velocity, time, step.dt), j.tag, flown_i + 1u);
-    flights[pair.y] = Flight(time, wall_time(j.position, j.velocity, time, step.dt), i.tag, flown_j + 1u);
+    sorted[pair.x] = packed_of(i);
+    sorted[pair.y] = packed_of(j);
+    let wall_i = wall_time(i.position, i.velocity, time, step.dt);
+    let wall_j = wall_time(j.position, j.velocity, time, step.dt);
+    flights[pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
+    flights[pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
 }

@@ -41,7 +41,7 @@ const WORDS: u32 = 12;
 const ENERGY_RANGE: f32 = 4.29e9;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(18) var<storage, read> zones: array<Zone>;
@@ -139,18 +139,19 @@ fn tally(
         if (i >= count) {
             break;
         }
-        let tag = particles[i].tag;
-        if (tag == NOBODY || gas_of(tag) != gas) {
+        let place = particles[i].place;
+        if (place.w == NOBODY || gas_of(place.w) != gas) {
             continue;
         }
-        let position = particles[i].position;
+        let position = place.xyz;
         if (!contains(here, position) || taken(zone, position)) {
             continue;
         }
-        let v = particles[i].velocity;
+        let motion = particles[i].motion;
+        let v = motion.xyz;
         let velocity = v * VELOCITY_SCALE;
         let kinetic = 0.5 * dot(v, v) * ENERGY_SCALE;
-        let spin = particles[i].spin * ENERGY_SCALE;
+        let spin = motion.w * ENERGY_SCALE;
         if (any(abs(velocity) >= vec3<f32>(1073741824.0)) || kinetic >= ENERGY_RANGE || spin >= ENERGY_RANGE) {
             atomicAdd(&counters[TALLY_OVERFLOW], 1u);
             continue;

@@ -21,6 +21,29 @@ struct Flight {
     collisions: u32,
 }
 
+// The same bytes in as few reads and writes as there are: position and tag; velocity and spin.
+struct Packed {
+    place: vec4<u32>,
+    motion: vec4<f32>,
+}
+
+fn particle_of(whole: Packed) -> Particle {
+    return Particle(whole.place.xyz, whole.place.w, whole.motion.xyz, whole.motion.w);
+}
+
+fn packed_of(particle: Particle) -> Packed {
+    return Packed(vec4<u32>(particle.position, particle.tag), vec4<f32>(particle.velocity, particle.spin));
+}
+
+// And a flight in one.
+fn flight_of(whole: vec4<u32>) -> Flight {
+    return Flight(bitcast<f32>(whole.x), bitcast<f32>(whole.y), whole.z, whole.w);
+}
+
+fn packed_flight(flight: Flight) -> vec4<u32> {
+    return vec4<u32>(bitcast<u32>(flight.start), bitcast<u32>(flight.wall), flight.partner, flight.collisions);
+}
+
 const NOBODY: u32 = 0xffffffff;
 const NEVER: f32 = 1e30;
 const ID_MASK: u32 = 0x0fffffff;
