@@ -27,7 +27,8 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var place: vec4<u32>;
     var motion: vec4<f32>;
     if (COLLISIONS) {
-        if ((layers[s] & LAYER) != 0u) {
+        // A ghost, or a slot whose particle has left.
+        if ((HALO || VENTS) && (layers[s] & LAYER) != 0u) {
             particles[s].place.w = NOBODY;
             return;
         }

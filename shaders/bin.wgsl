@@ -38,11 +38,11 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);
     }
-    if (i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {
+    if (HALO && i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {
         atomicAdd(&counters[MOVED], 1u);
     }
     // Every device has the newborns of its own cells and halo by itself; arrivals are sent by no other.
-    if (step.peers > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
+    if (HALO && step.peers > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
         border[append(LIST_BORDER)] = vec2<u32>(i, cell_index(cell));
     }
 }

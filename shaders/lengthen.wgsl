@@ -10,7 +10,7 @@
 
 @compute @workgroup_size(WORKGROUP)
 fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let late = step.ghosts == GHOSTS_ASKED;
+    let late = HALO && step.ghosts == GHOSTS_ASKED;
     let stride = arrayLength(&neighbour_count);
     let entry = linear(id, groups);
     if (entry >= atomicLoad(&counters[select(LIST_LONG, LIST_LONG_LATE, late)])) {

@@ -31,14 +31,17 @@ fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
     if (both && !first) {
         return;
     }
-    // Farther from the own cells the choices of this round may lack what other devices know.
-    let own_layer = layers[s] & LAYER;
-    let other_layer = layers[other] & LAYER;
-    if (min(own_layer, other_layer) > step.reach) {
-        return;
+    var counted = true;
+    if (HALO) {
+        // Farther from the own cells the choices of this round may lack what other devices know.
+        let own_layer = layers[s] & LAYER;
+        let other_layer = layers[other] & LAYER;
+        if (min(own_layer, other_layer) > step.reach) {
+            return;
+        }
+        // The owner of the lower id counts the pair.
+        counted = select(other_layer, own_layer, first) == 0u;
     }
-    // The owner of the lower id counts the pair.
-    let counted = select(other_layer, own_layer, first) == 0u;
     if (step.round < ROUNDS) {
         if (!counted) {
             atomicAdd(&counters[FOREIGN], 1u);

@@ -15,7 +15,7 @@ override VENTS: bool = true;
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     var s = linear(id, groups);
-    let late = step.ghosts == GHOSTS_ASKED;
+    let late = HALO && step.ghosts == GHOSTS_ASKED;
     if (late) {
         s = asked_of(s);
         if (s == NOBODY || (layers[s] & SEARCHED) != 0u) {
@@ -25,10 +25,12 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         return;
     }
     // The outermost ghosts have no neighbours beyond them here, and choose nobody; nor do slots without particle.
-    let layer = layers[s] & LAYER;
-    if ((VENTS || step.depth > 0u) && (layer >= max(step.depth, 1u) || waits(layer))) {
-        neighbour_count[s] = 0u;
-        return;
+    if (VENTS || HALO) {
+        let layer = layers[s] & LAYER;
+        if ((VENTS || step.depth > 0u) && (layer >= max(step.depth, 1u) || waits(layer))) {
+            neighbour_count[s] = 0u;
+            return;
+        }
     }
     let found = search(s, DIRECT, NOBODY);
     neighbour_count[s] = found.count;

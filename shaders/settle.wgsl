@@ -65,11 +65,17 @@ fn turned(sigma2: f32, miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> 
 
 // Notes a particle that other devices have as a ghost.
 fn tell(s: u32) {
-    let mark = layers[s];
-    if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
-        layers[s] = mark | LISTED;
-        changed[append(LIST_CHANGED)] = s;
+    if (HALO) {
+        let mark = layers[s];
+        if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
+            layers[s] = mark | LISTED;
+            changed[append(LIST_CHANGED)] = s;
+        }
     }
+}
+
+fn is_own(s: u32) -> bool {
+    return !HALO || (layers[s] & LAYER) == 0u;
 }
 
 fn touch_neighbours(s: u32) {
@@ -112,7 +118,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         && blocked(place_i, shifted(j.position, j.velocity * time), time)) {
         flights[pair.x].z = j.tag;
         flights[pair.y].z = i.tag;
-        if ((layers[pair.x] & LAYER) == 0u) {
+        if (is_own(pair.x)) {
             atomicAdd(&counters[BLOCKED], 1u);
         }
         tell(pair.x);
@@ -125,7 +131,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         touch_neighbours(pair.y);
         return;
     }
-    if (dot(g, g) > FASTEST2 && (layers[pair.x] & LAYER) == 0u) {
+    if (dot(g, g) > FASTEST2 && is_own(pair.x)) {
         atomicAdd(&counters[FAST_PAIRS], 1u);
     }
     let key = vec2<u32>(SEED_LOW, SEED_HIGH);

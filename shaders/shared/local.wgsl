@@ -1,6 +1,9 @@
 // The cells that have bins on this device: a box of the one global grid, in the grid's order, so that the
 // order by (cell, id) is the same on every device.
 
+// There are others.
+override HALO: bool = true;
+
 // The bin of a cell; only for cells of the box.
 fn local_index(c: vec3<u32>) -> u32 {
     let o = c - step.low;

@@ -142,6 +142,7 @@ pub fn constants(
         ("SURFACES", flag(features.surfaces)),
         ("COATS", flag(features.coats)),
         ("VENTS", flag(features.vents)),
+        ("HALO", flag(features.halo)),
         ("COATS_AT", coats_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),
