@@ -114,21 +114,25 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     // Neighbours are screened where the step starts; here, where the pair would meet. A pair that a wall
     // parts passes on as if it had collided, so that its particles choose others in the next round.
     let place_i = shifted(i.position, i.velocity * time);
-    if (may_part(nearest_cell(place_i))
-        && blocked(place_i, shifted(j.position, j.velocity * time), time)) {
+    let apart = may_part(nearest_cell(place_i))
+        && blocked(place_i, shifted(j.position, j.velocity * time), time);
+    tell(pair.x);
+    tell(pair.y);
+    if (apart) {
+        // Whom either met before may meet it again.
+        touch(pair.x);
+        touch(pair.y);
+    }
+    // All whose choice this can change must choose again, whether they collided or not: the choices are a function of the
+    // state alone, whoever else is asked to choose. (The two are in each other's lists.)
+    touch_neighbours(pair.x);
+    touch_neighbours(pair.y);
+    if (apart) {
         flights[pair.x].z = j.tag;
         flights[pair.y].z = i.tag;
         if (is_own(pair.x)) {
             atomicAdd(&counters[BLOCKED], 1u);
         }
-        tell(pair.x);
-        tell(pair.y);
-        // Whom either met before may meet it again. (All whose choice this can change must choose again, here as
-        // after a collision: the choices are a function of the state alone, whoever else is asked to choose.)
-        touch(pair.x);
-        touch(pair.y);
-        touch_neighbours(pair.x);
-        touch_neighbours(pair.y);
         return;
     }
     if (dot(g, g) > FASTEST2 && is_own(pair.x)) {
@@ -154,11 +158,6 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let after = deflected(i, j, mu, relative - g, exchange);
     i = after.i;
     j = after.j;
-    tell(pair.x);
-    tell(pair.y);
-    // The two are in each other's lists.
-    touch_neighbours(pair.x);
-    touch_neighbours(pair.y);
     i.position = shifted(i.position, (old_i - i.velocity) * time);
     j.position = shifted(j.position, (old_j - j.velocity) * time);
     sorted[pair.x] = packed_of(i);
