@@ -171,12 +171,15 @@ impl Bench {
         let (device, cells) = (&self.device, counts.len());
         let step = device.uniform("step", size_of::<GpuStep>() as u64)?;
         device.write(&step, 0, &[GpuStep { bins: cells as u32, ..GpuStep::default() }]);
-        let chunks = cells.div_ceil(chunk);
-        let kept = device.storage_of("kept", counts)?;
+        let chunks = cells / chunk + 1;
+        // Zeros to the end of the four that has the cell behind the last.
+        let mut all = counts.to_vec();
+        all.resize(4 * (cells / 4 + 1), 0);
+        let kept = device.storage_of("kept", &all)?;
         let buffers = [
             ("step", step),
             ("chunk_sums", device.storage::<u32>("chunk_sums", chunks as u64 + 1)?),
-            ("cell_start", device.storage::<u32>("cell_start", cells as u64 + 1)?),
+            ("cell_start", device.storage::<u32>("cell_start", all.len() as u64)?),
         ];
         let constants = [("CHUNK", chunk as f64)];
         let mut dispatches = Vec::new();

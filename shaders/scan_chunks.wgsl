@@ -13,7 +13,8 @@ var<workgroup> shares: array<u32, SCAN_THREADS>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn scan_chunks(@builtin(local_invocation_index) thread: u32) {
-    let count = (step.bins + CHUNK - 1u) / CHUNK;
+    // With the cell behind the last.
+    let count = step.bins / CHUNK + 1u;
     let share = (count + SCAN_THREADS - 1u) / SCAN_THREADS;
     let begin = min(thread * share, count);
     let end = min(begin + share, count);

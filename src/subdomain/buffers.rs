@@ -162,13 +162,18 @@ impl CellBuffers {
     pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
         Ok(CellBuffers {
             capacity: bins,
-            chunk_sums: device.storage::<u32>("chunk_sums", bins.div_ceil(CHUNK) + 1)?,
-            cell_start: device.storage::<u32>("cell_start", bins + 1)?,
+            chunk_sums: device.storage::<u32>("chunk_sums", bins / CHUNK + 2)?,
+            cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
         })
     }
 }
 
 impl CellBuffers {
+    /// Of the starts of so many bins and of the end, which kernels write by fours.
+    pub fn start_bytes(bins: u64) -> u64 {
+        16 * (bins / 4 + 1)
+    }
+
     pub fn bytes(&self) -> u64 {
         self.chunk_sums.size() + self.cell_start.size()
     }

@@ -3,7 +3,7 @@
 use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 
-use super::buffers::{CHUNK, step_stride};
+use super::buffers::{CHUNK, CellBuffers, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -308,7 +308,7 @@ impl Subdomain {
     /// The particles that are here; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if self.kernels.sort.is_some() {
-            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(4 * self.bins()));
+            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(CellBuffers::start_bytes(self.bins())));
         }
         let slots = u64::from(step.count) + u64::from(step.newborns);
         self.bin_slots(rec, step, slots);
@@ -324,7 +324,7 @@ impl Subdomain {
     pub fn scan(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
-            let chunks = threads(device, self.bins().div_ceil(CHUNK));
+            let chunks = threads(device, self.bins() / CHUNK + 1);
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
             kernels.scan_sums.dispatch(pass, offset, chunks);

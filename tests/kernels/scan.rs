@@ -28,8 +28,15 @@ fn prefix(counts: &[u32]) -> Vec<u32> {
     sums
 }
 
-/// Numbers of cells around whole chunks and workgroups of chunks; a buffer holds a multiple of four.
-const CELLS: [usize; 4] = [4, 64, 64 * 64 + 4, 30_000];
+/// Numbers of cells around whole fours, chunks and workgroups of chunks.
+const CELLS: [usize; 8] = [4, 61, 62, 63, 64, 64 * 64 - 1, 64 * 64 + 4, 30_001];
+
+/// The counts, and zeros to the end of the four that has the cell behind the last.
+fn with_end(counts: &[u32]) -> Vec<u32> {
+    let mut all = counts.to_vec();
+    all.resize(4 * (counts.len() / 4 + 1), 0);
+    all
+}
 
 #[test]
 fn scan_sums_adds_each_chunk() {
@@ -37,11 +44,11 @@ fn scan_sums_adds_each_chunk() {
     for cells in CELLS {
         let mut rig = rig(cells);
         let counts = counts(&mut stream, cells);
-        let chunks = cells.div_ceil(CHUNK);
-        rig.put("cell_start", &counts);
+        let chunks = cells / CHUNK + 1;
+        rig.put("cell_start", &with_end(&counts));
         rig.put("chunk_sums", &vec![7u32; chunks]);
         rig.run("scan_sums", chunks);
-        let sums: Vec<u32> = counts.chunks(CHUNK).map(|chunk| chunk.iter().sum()).collect();
+        let sums: Vec<u32> = with_end(&counts).chunks(CHUNK).map(|chunk| chunk.iter().sum()).collect();
         let found: Vec<u32> = rig.get("chunk_sums", chunks);
         assert_eq!(found, sums);
         // The check can fail: the last count matters.
@@ -53,7 +60,8 @@ fn scan_sums_adds_each_chunk() {
 fn scan_chunks_is_an_exclusive_prefix_sum() {
     let mut stream = Stream::new(5);
     for chunks in [4, 128, 132, 5000] {
-        let mut rig = rig(chunks * CHUNK);
+        // The cell behind the last is in the last chunk.
+        let mut rig = rig(chunks * CHUNK - 1);
         let sums = counts(&mut stream, chunks);
         rig.put("chunk_sums", &[&sums[..], &[7]].concat());
         rig.run_groups("scan_chunks", [1, 1, 1]);
@@ -73,10 +81,10 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         // Chunks without particles, among others and at the end.
         counts.chunks_mut(CHUNK).skip(1).step_by(3).for_each(|chunk| chunk.fill(0));
         let starts = prefix(&counts);
-        let chunks = cells.div_ceil(CHUNK);
+        let chunks = cells / CHUNK + 1;
         let chunk_starts: Vec<u32> = (0..=chunks).map(|chunk| starts[(chunk * CHUNK).min(cells)]).collect();
         rig.put("chunk_sums", &chunk_starts);
-        rig.put("cell_start", &[&counts[..], &[7]].concat());
+        rig.put("cell_start", &with_end(&counts));
         rig.run("scan_cells", chunks);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
         assert_ne!(starts[cells], 0, "the check can fail: there were particles");
