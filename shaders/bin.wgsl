@@ -23,26 +23,24 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         return;
     }
     let place = particles[i].place;
-    if (place.w == NOBODY) {
-        bins[i] = vec2<u32>(NOBODY, 0u);
-        atomicAdd(&counters[COUNT_DROPPED], 1u);
-        return;
-    }
     let middle = shifted(place.xyz, particles[i].motion.xyz * (FLOWN * step.dt));
     let cell = nearest_cell(middle);
+    let there = place.w != NOBODY;
     // The border layer of the box has no bins to fill.
-    if (all(cell - step.low - 1u < step.size - 2u)) {
+    if (there && all(cell - step.low - 1u < step.size - 2u)) {
         let index = local_index(cell);
         bins[i] = vec2<u32>(index, atomicAdd(&cell_start[index], 1u));
     } else {
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);
     }
-    if (HALO && i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {
-        atomicAdd(&counters[MOVED], 1u);
-    }
-    // Every device has the newborns of its own cells and halo by itself; arrivals are sent by no other.
-    if (HALO && step.peers > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
-        border[append(LIST_BORDER)] = vec2<u32>(i, cell_index(cell));
+    if (HALO && there) {
+        if (i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {
+            atomicAdd(&counters[MOVED], 1u);
+        }
+        // Every device has the newborns of its own cells and halo by itself; arrivals are sent by no other.
+        if (step.peers > 0u && i < step.count && !in_box(cell, step.inner_low, step.inner_high)) {
+            border[append(LIST_BORDER)] = vec2<u32>(i, cell_index(cell));
+        }
     }
 }
