@@ -80,7 +80,7 @@ impl Walls {
                 start.push(triangle_grid.start[cell]);
             }
         }
-        if triangle_grid.class.len() % 16 == 0 {
+        if triangle_grid.class.len().is_multiple_of(16) {
             class[triangle_grid.class.len() / 16][1] = start.len() as u32;
         }
         start.extend(triangle_grid.start.last());
