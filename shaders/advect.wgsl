@@ -28,7 +28,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var motion: vec4<f32>;
     if (COLLISIONS) {
         // A ghost, or a slot whose particle has left.
-        if ((HALO || VENTS) && (layers[s] & LAYER) != 0u) {
+        if ((layers[s] & LAYER) != 0u) {
             particles[s].place.w = NOBODY;
             return;
         }

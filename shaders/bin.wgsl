@@ -34,7 +34,7 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);
     }
-    if (HALO && there) {
+    if (there) {
         if (i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {
             atomicAdd(&counters[MOVED], 1u);
         }

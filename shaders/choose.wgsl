@@ -27,7 +27,7 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (s == NOBODY) {
         return;
     }
-    if (HALO && step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&layers[s]) & LAYER)) {
+    if (step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&layers[s]) & LAYER)) {
         if (step.round == 0u) {
             choices[s] = vec2<u32>(NOBODY, 0u);
         }
@@ -96,7 +96,7 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         best_id = other_id;
     }
     choices[s] = best;
-    if (HALO && step.ghosts == GHOSTS_WAIT && best.x != NOBODY && waits(atomicLoad(&layers[best.x]) & LAYER)) {
+    if (step.ghosts == GHOSTS_WAIT && best.x != NOBODY && waits(atomicLoad(&layers[best.x]) & LAYER)) {
         if ((atomicOr(&layers[best.x], ASKED) & ASKED) == 0u) {
             asked[append(LIST_ASKED)] = best.x;
         }

@@ -64,7 +64,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let place_in_grid = cell_of(cell);
     let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
     var mark = 0u;
-    if (HALO && step.depth > 0u) {
+    if (step.depth > 0u) {
         origins[place] = slot.x;
         mark = layer_of(place_in_grid);
         if (mark > 0u && ROUNDS_OF_PAIRS) {

@@ -18,7 +18,7 @@
 
 // Where a flight starts in this step.
 fn first_place(s: u32) -> vec3<u32> {
-    if (HALO && step.ghosts == GHOSTS_ASKED) {
+    if (step.ghosts == GHOSTS_ASKED) {
         let particle = particles[origins[s]];
         return shifted(particle.position, particle.velocity * birth_time(id_of(particle.tag)));
     }
@@ -29,7 +29,7 @@ fn first_place(s: u32) -> vec3<u32> {
 fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = linear(id, groups);
     var s = NOBODY;
-    if (HALO && step.ghosts == GHOSTS_ASKED) {
+    if (step.ghosts == GHOSTS_ASKED) {
         s = asked_of(entry);
         if (s == NOBODY || (layers[s] & UNSCREENED) == 0u) {
             return;

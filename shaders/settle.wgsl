@@ -65,17 +65,15 @@ fn turned(sigma2: f32, miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> 
 
 // Notes a particle that other devices have as a ghost.
 fn tell(s: u32) {
-    if (HALO) {
-        let mark = layers[s];
-        if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
-            layers[s] = mark | LISTED;
-            changed[append(LIST_CHANGED)] = s;
-        }
+    let mark = layers[s];
+    if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
+        layers[s] = mark | LISTED;
+        changed[append(LIST_CHANGED)] = s;
     }
 }
 
 fn is_own(s: u32) -> bool {
-    return !HALO || (layers[s] & LAYER) == 0u;
+    return (layers[s] & LAYER) == 0u;
 }
 
 fn touch_neighbours(s: u32) {

@@ -24,6 +24,14 @@ macro_rules! twin {
     };
 }
 
+/// `GpuParticle` as kernels read it that read all of it.
+#[repr(C)]
+#[allow(dead_code)] // Only its layout is used.
+struct Packed {
+    place: [u32; 4],
+    motion: [f32; 4],
+}
+
 fn twins() -> Vec<Twin> {
     vec![
         twin!(
@@ -59,6 +67,7 @@ fn twins() -> Vec<Twin> {
             near2
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
+        twin!("Packed", Packed, place, motion),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
@@ -141,6 +150,16 @@ fn every_struct_in_a_buffer_has_a_twin() {
     let known: BTreeSet<String> = twins().iter().map(|twin| twin.name.to_string()).collect();
     let held: BTreeSet<String> = modules().iter().flat_map(|(_, module)| held(module)).collect();
     assert_eq!(held, known);
+}
+
+/// The same 32 bytes: position and tag, velocity and spin.
+#[test]
+fn a_packed_particle_is_a_particle() {
+    let words = [offset_of!(Packed, place), offset_of!(Packed, motion)].map(|at| [at, at + 12]);
+    let [[position, tag], [velocity, spin]] = words;
+    assert_eq!(size_of::<Packed>(), size_of::<GpuParticle>());
+    assert_eq!([position, tag], [offset_of!(GpuParticle, position), offset_of!(GpuParticle, tag)]);
+    assert_eq!([velocity, spin], [offset_of!(GpuParticle, velocity), offset_of!(GpuParticle, spin)]);
 }
 
 /// The check can fail: a member left out, swapped or of another size is found.

@@ -15,7 +15,7 @@ const GHOSTS_ASKED: u32 = 2;
 
 // Whether a particle of this layer waits until it is asked.
 fn waits(layer: u32) -> bool {
-    return HALO && step.ghosts == GHOSTS_WAIT && layer + 1u == step.depth;
+    return step.ghosts == GHOSTS_WAIT && layer + 1u == step.depth;
 }
 
 // The particle of a thread in the pass over those that were asked, or NOBODY.

@@ -5,7 +5,7 @@
 
 // The particle of a thread, or NOBODY.
 fn chooser(thread: u32) -> u32 {
-    if (HALO && step.ghosts == GHOSTS_ASKED) {
+    if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
     }
     if (step.round == 0u) {

@@ -123,7 +123,7 @@ pub fn measure(
         collisions: outcome.collisions as f64,
         bounces: outcome.bounces as f64,
         tallies: (steps / f64::from(plan.tally_every)).floor(),
-        zones: (1 + plan.chambers.len() + model.scene.probes.len()) as f64,
+        zones: zones_read(&model) as f64,
         intervals: (steps / f64::from(plan.steps_per_interval)).ceil(),
     };
     Ok(Measured {
@@ -141,6 +141,13 @@ pub fn measure(
     })
 }
 
+/// Zones whose tally reads the particles: of the whole only where the chambers have not all of them.
+fn zones_read(model: &Model) -> usize {
+    let chambers = &model.scene.chambers;
+    let covered = chambers.last().is_some_and(|chamber| chamber.region.is_none());
+    usize::from(!covered) + chambers.len() + model.scene.probes.len()
+}
+
 type Ran = (f64, crate::simulation::Outcome, f64, [u64; 2]);
 
 fn run(device: &Device, model: &Model, steps: u64) -> Result<Ran, StudyError> {
@@ -155,4 +162,26 @@ fn run(device: &Device, model: &Model, steps: u64) -> Result<Ran, StudyError> {
     let buffers = simulation.buffer_bytes();
     let outcome = simulation.finish(&mut ())?;
     Ok((seconds, outcome, candidates, buffers))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::Region;
+
+    use super::*;
+    use crate::study::verify::model_from;
+
+    /// The box has one chamber without a region; the tank two, the last without one, and a probe.
+    #[test]
+    fn the_whole_is_read_only_where_chambers_have_not_all() {
+        let zones = SCENES.map(|scene| {
+            let asked = scene_of(scene.name, scene.text).expect("a scene");
+            let mut model = model_from(scene.name, asked).expect("a plan");
+            let covered = zones_read(&model);
+            let last = model.scene.chambers.len() - 1;
+            model.scene.chambers[last].region = Some(Region::Box { min: [0.0; 3], max: [0.01; 3] });
+            [covered, zones_read(&model)]
+        });
+        assert_eq!(zones, [[1, 2], [3, 4], [2, 3]]);
+    }
 }

@@ -86,9 +86,10 @@ const FIVE_MODES: &str = "[[gas]]\nname = \"five\"\nmolar_mass = 0.028\ngamma = 
 /// Z of a gas with `zeta` internal degrees of freedom ([`TWO`] or [`FIVE`]) from a run that starts without spin and stops when
 /// about 1 - exp(-.83) of the difference of the temperatures is gone, and its standard error.
 ///
-/// The start has D = T_tr - T_int without noise. At a = (1 + zeta/3) s / Z thermal noise gives D an error of
-/// sqrt(2 (1/3 + 1/zeta) / N) sqrt(1 - exp(-2a)) T, T = 3/(3 + zeta) of that at the start: relative to D = T_start exp(-a) and to
-/// a = .83, 2.5 sqrt(2 (1/3 + 1/zeta) / N) 3/(3 + zeta), for two degrees 1.5 sqrt(5/(3N)).
+/// The start has D = T_tr - T_int without noise. At a = (1 + zeta/3) s / Z exchange at the temperature T gives D an error of
+/// sqrt(2 (1/3 + 1/zeta) / N) sqrt(1 - exp(-2a)) T. The first exchanges are among pairs as hot as the start, where T is (3 + zeta)/3
+/// of that at the end: with the start's the error is certainly not more, relative to D = T exp(-a) and to a = .83
+/// 2.5 sqrt(2 (1/3 + 1/zeta) / N).
 ///
 /// # Errors
 /// If the run fails.
@@ -127,7 +128,7 @@ pub fn collision_number(
     let per_particle = 2.0 * run.outcome.collisions as f64 / particles as f64;
     let decay = (start / (translation - spin)).ln();
     let noise = (2.0 * (1.0 / 3.0 + 1.0 / zeta) / particles as f64).sqrt();
-    Ok((rate * per_particle / decay, 2.5 * noise * 3.0 / (3.0 + zeta) * asked))
+    Ok((rate * per_particle / decay, 2.5 * noise * asked))
 }
 
 /// The law is that of molecular chaos: of closest approach in a thin gas, of cells in any.
