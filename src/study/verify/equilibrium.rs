@@ -101,7 +101,7 @@ pub fn collision_number(
     occupancy: f64,
     step_over_tau: f64,
 ) -> Result<(f64, f64), StudyError> {
-    let particles = 50_000u64;
+    let particles = 110_000u64;
     let (gases, mixture) = if zeta == TWO { (NITROGEN, "\"nitrogen\"") } else { (FIVE_MODES, "\"five\"") };
     let rate = 1.0 + zeta / 3.0;
     let steps = (5.0 / 6.0 * asked / rate / step_over_tau).round() as u32;
