@@ -30,6 +30,9 @@ const TABLE: [Row; 8] = [
 /// runs as it is: if it falls as a power of the particles, it is the root of their product.
 const SERIES: [usize; 3] = [1, 2, 6];
 
+/// Runs whose scatter is known to a quarter; of fewer the error is that of counting noise.
+const SCATTERED: u64 = 8;
+
 /// What the table's figures are known to, besides counting noise.
 const KNOWN: f64 = 0.05;
 
@@ -53,11 +56,11 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
             runs.iter_mut().zip(found).for_each(|(runs, found)| runs.push(found));
             noise = counting_noise(&profile).map(|(_, deviation)| deviation);
         }
-        // Counting noise alone makes less of it than runs scatter where the difference is beyond the noise. (One run knows no scatter.)
+        // Counting noise alone makes less of it than runs scatter where the difference is beyond the noise.
         let found = [0, 1].map(|k| {
             let (mean, scatter) = mean_and_error(&runs[k]);
             let counted = noise[k] / (seeds as f64).sqrt();
-            (mean, if scatter > counted { scatter } else { counted })
+            (mean, if seeds >= SCATTERED { scatter.max(counted) } else { counted })
         });
         single[row] = noise[1];
         for (k, name) in ["rho", "u"].into_iter().enumerate() {
