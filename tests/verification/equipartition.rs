@@ -14,8 +14,7 @@ fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
 }
 
 fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> (f64, f64) {
-    equilibrium::collision_number(&device(), "closest-approach", equilibrium::TWO, asked, occupancy, step_over_tau)
-        .expect("a run")
+    equilibrium::collision_number(&device(), "closest-approach", 2.0, asked, occupancy, step_over_tau).expect("a run")
 }
 
 #[test]

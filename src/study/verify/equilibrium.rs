@@ -78,12 +78,7 @@ pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Finding
     Ok(checks.into())
 }
 
-/// Internal degrees of freedom of [`NITROGEN`], and of [`FIVE_MODES`].
-pub const TWO: f64 = 2.0;
-pub const FIVE: f64 = 5.0;
-const FIVE_MODES: &str = "[[gas]]\nname = \"five\"\nmolar_mass = 0.028\ngamma = 1.25\n";
-
-/// Z of a gas with `zeta` internal degrees of freedom ([`TWO`] or [`FIVE`]) from a run that starts without spin and stops when
+/// Z of a gas with `zeta` internal degrees of freedom from a run that starts without spin and stops when
 /// about 1 - exp(-.83) of the difference of the temperatures is gone, and its standard error.
 ///
 /// The start has D = T_tr - T_int without noise. At a = (1 + zeta/3) s / Z exchange at the temperature T gives D an error of
@@ -102,7 +97,8 @@ pub fn collision_number(
     step_over_tau: f64,
 ) -> Result<(f64, f64), StudyError> {
     let particles = 110_000u64;
-    let (gases, mixture) = if zeta == TWO { (NITROGEN, "\"nitrogen\"") } else { (FIVE_MODES, "\"five\"") };
+    let gamma = (5.0 + zeta) / (3.0 + zeta);
+    let gases = format!("[[gas]]\nname = \"gas\"\nmolar_mass = 0.028\ngamma = {gamma}\n");
     let rate = 1.0 + zeta / 3.0;
     let steps = (5.0 / 6.0 * asked / rate / step_over_tau).round() as u32;
     let gas = EquilibriumBox {
@@ -112,8 +108,8 @@ pub fn collision_number(
         step_over_tau,
         steps,
         collision_number: asked,
-        gases,
-        mixture,
+        gases: &gases,
+        mixture: "\"gas\"",
         ..EquilibriumBox::default()
     };
     let mut model = gas.model()?;
@@ -122,7 +118,7 @@ pub fn collision_number(
     let run = run(device, &model, Options { shuffle: Some(&without_spin), ..Options::default() })?;
     let [translation, energy] = temperatures(&run.outcome.particles, 0, 1.0);
     // The second is that of two degrees of freedom.
-    let spin = TWO / zeta * energy;
+    let spin = 2.0 / zeta * energy;
     // All energy was in translation: 3/2 T0 = 3/2 T_tr + zeta/2 T_int.
     let start = translation + zeta / 3.0 * spin;
     let per_particle = 2.0 * run.outcome.collisions as f64 / particles as f64;
@@ -134,11 +130,11 @@ pub fn collision_number(
 /// The law is that of molecular chaos: of closest approach in a thin gas, of cells in any.
 pub(super) fn relaxation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let ways = [
-        ("closest-approach", TWO, 2.0, 0.003, 0.05),
-        ("cell", TWO, 5.0, 0.1, 0.25),
-        ("closest-approach", TWO, 5.0, 0.003, 0.05),
-        ("closest-approach", FIVE, 5.0, 0.003, 0.05),
-        ("cell", FIVE, 5.0, 0.1, 0.25),
+        ("closest-approach", 2.0, 2.0, 0.003, 0.05),
+        ("cell", 2.0, 5.0, 0.1, 0.25),
+        ("closest-approach", 2.0, 5.0, 0.003, 0.05),
+        ("closest-approach", 5.0, 5.0, 0.003, 0.05),
+        ("cell", 5.0, 5.0, 0.1, 0.25),
     ];
     let count = if effort == Effort::Quick { 2 } else { ways.len() };
     let check = |&(method, zeta, asked, occupancy, step_over_tau): &(&str, f64, f64, f64, f64)| {

@@ -3,8 +3,8 @@
 //!
 //! A check's reference is the specification's figure, and its tolerance is what that is known to (viscosity 10 %, shock
 //! tubes 5 %, orifices 2 %, rates .01) and three standard errors of the run, as root of the squares. Where theory says
-//! otherwise, or the specification's own figures around it, the reference is what these say, and the quantity names the figure. Where nothing
-//! says more and runs find another, the figure stays, disputed. A note says why.
+//! otherwise, the reference is what it says, and the quantity names the figure. Where it says nothing and runs find another, the
+//! figure stays, disputed. A note says why.
 
 mod flights;
 mod lost;
