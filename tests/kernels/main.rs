@@ -74,3 +74,14 @@ fn every_kernel_has_its_test() {
     let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);
 }
+
+/// Whether there are other devices is asked by kernels of integers alone: with floating point one device would have other
+/// pipelines than several, and a driver may round otherwise in each.
+#[test]
+fn only_kernels_of_integers_know_whether_a_device_is_alone() {
+    // Beside the declaration.
+    let asks = |source: &str| source.matches("HALO").count() > 1;
+    let found: Vec<&str> =
+        corpuscle::gpu::KERNELS.iter().filter(|kernel| asks(kernel.source)).map(|kernel| kernel.name).collect();
+    assert_eq!(found, ["lengthen", "match_pairs", "neighbours"]);
+}
