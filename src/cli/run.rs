@@ -154,7 +154,7 @@ impl Job<'_> {
             batch: execution.batch,
             stop_after_steps: execution.stop_after_steps,
             strict: execution.strict,
-            checkpoint_at_stop: execution.checkpoints.every.is_some(),
+            checkpoint_at_stop: execution.checkpoints.every.is_some() || self.from.is_some(),
             halo: execution.sharing.halo,
             balance: execution.sharing.balance,
             ..Options::default()

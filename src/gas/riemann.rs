@@ -68,6 +68,20 @@ impl Riemann {
         Fluid { velocity: -solution.velocity, ..solution }
     }
 
+    /// Pressure and velocity between the waves; `None` where a vacuum is there.
+    pub fn between_waves(&self) -> Option<(f64, f64)> {
+        self.star
+    }
+
+    /// Speed of the front of the right wave, m/s: of its shock, or of the head of its rarefaction; `None` beside a vacuum.
+    pub fn right_front(&self) -> Option<f64> {
+        let (pressure, _) = self.star?;
+        let g = self.gamma;
+        let ratio = (pressure / self.right.pressure).max(1.0);
+        let mach = ((g + 1.0) / (2.0 * g) * ratio + (g - 1.0) / (2.0 * g)).sqrt();
+        Some(self.right.velocity + mach * sound_speed(&self.right, g))
+    }
+
     /// Where the gas of the left meets the vacuum.
     fn front(&self, left: &Fluid) -> f64 {
         left.velocity + 2.0 / (self.gamma - 1.0) * sound_speed(left, self.gamma)
@@ -183,6 +197,13 @@ mod tests {
         close(sod.at(0.95).density, 0.26557, 2e-5);
         assert_eq!(sod.at(-2.0), fluid(1.0, 0.0, 1.0));
         assert_eq!(sod.at(2.0), fluid(0.125, 0.0, 0.1));
+        let front = sod.right_front().unwrap();
+        close(front, 1.75216, 2e-5);
+        assert_eq!(sod.at(front + 1e-9).density, 0.125);
+        close(sod.at(front - 1e-9).density, 0.26557, 2e-5);
+        // Towards lower pressure the wave is sound.
+        let fan = Riemann::new(fluid(0.125, 0.0, 0.1), fluid(1.0, 0.0, 1.0), 1.4).unwrap();
+        close(fan.right_front().unwrap(), 1.4f64.sqrt(), 1e-12);
     }
 
     /// Mirrored states have the mirrored solution.

@@ -238,6 +238,10 @@ fn warnings_fire() {
         assert!(plan.warnings.iter().any(|warning| warning.contains(part)), "{part}: {:?}", plan.warnings);
     };
     warns("Knudsen", &|scene, _| scene.model.particles = Some(20_000));
+    let into_thin = |share: f64| {
+        planned(|scene, _| scene.chambers[1].pressure *= share).unwrap().warnings.iter().any(|w| w.contains("fronts"))
+    };
+    assert!(into_thin(1e-3) && !into_thin(0.6) && !into_thin(1.0));
     warns("are few", &|scene, _| scene.model.particles = Some(900));
     warns("smallest passage", &|_, measured| measured.smallest_gap = Some(2e-3));
     warns("smallest passage", &|_, measured| measured.openings[0].length = 2e-3);

@@ -33,6 +33,9 @@ pub fn lost_events(collisions_per_step: f64, rounds: u32) -> f64 {
     share * LOST[5][column]
 }
 
+/// Chambers with less than this share of the highest pressure have fronts run into them.
+const PRESSED: f64 = 0.5;
+
 /// What has been decided so far.
 pub struct Decided<'a> {
     pub method: Method,
@@ -64,6 +67,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         }));
         found.push(dense(decided));
         found.push(narrow(measured, decided));
+        found.extend(thin(scene, decided));
     }
     found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
         let count = number_density * volume;
@@ -101,6 +105,23 @@ fn dense(decided: &Decided<'_>) -> Option<Warning> {
         _ => "a smaller `occupancy` or `diameter`".to_string(),
     };
     Warning::by_table(Quantity::Occupancy, method, &subject, occupancy, &remedy)
+}
+
+/// The thinnest gas of those that have less pressure than another.
+fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
+    let Decided { method, resolution, chambers, .. } = *decided;
+    let highest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(0.0, f64::max);
+    let of_chamber = |(chamber, plan): (&Chamber, &ChamberPlan)| {
+        let density = plan.particles.iter().sum::<u64>() as f64 / plan.volume;
+        let path = kinetics::mean_free_path(density, resolution.diameter) / libm::cbrt(plan.volume);
+        (chamber.pressure < PRESSED * highest && density > 0.0).then(|| (path, plan.name.clone()))
+    };
+    let (path, name) = scene.chambers.iter().zip(chambers).filter_map(of_chamber).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let subject = format!("chamber `{name}` at the start");
+    // As lambda ~ N^(-1/3) at fixed occupancy.
+    let bound = super::limits::limit(Quantity::ThinGas, method).map_or(f64::NAN, |limit| limit.bound.value());
+    let remedy = format!("{} times the particles", significant((path / bound).powi(3)));
+    Some(Warning::by_table(Quantity::ThinGas, method, &subject, path, &remedy))
 }
 
 /// Passages that gas collides across as if they were not there.

@@ -317,10 +317,10 @@ impl<'a> Simulation<'a> {
     /// As [`Simulation::run`].
     pub fn finish(mut self, observer: &mut dyn Observer) -> Result<Outcome, SimulationError> {
         self.read_all(observer)?;
+        let stepping_seconds = self.began.elapsed().as_secs_f64();
         if self.options.checkpoint_at_stop && self.stopped() && !self.stopping && !self.clock.done() {
             self.checkpoint(observer)?;
         }
-        let stepping_seconds = self.began.elapsed().as_secs_f64();
         let last = if self.averages.ready() {
             Some(self.emit_row(observer)?)
         } else {

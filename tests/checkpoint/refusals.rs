@@ -96,6 +96,10 @@ fn another_adapter_driver_or_version_is_warned_of() {
     assert_eq!(code, Some(0), "{stderr}");
     assert!(stderr.contains("WARN the checkpoint was written by version 9."), "{stderr}");
     assert!(stderr.contains("WARN the checkpoint was computed on") && stderr.contains("(other "), "{stderr}");
+    // It left a checkpoint of its own where it stopped.
+    let own = latest(&case.out("out")).unwrap();
+    assert_ne!(own, checkpoint);
+    fs::remove_dir_all(own).unwrap();
     let (_, _, stderr) = case.resume(&Program::alone(), "out", &["--steps", "128", "-v"]).end();
     assert!(stderr.contains("WARN the checkpoint"), "the forged checkpoint is still the newest: {stderr}");
 }

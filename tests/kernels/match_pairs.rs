@@ -14,6 +14,16 @@ const ROUNDS: u32 = 3;
 /// just chosen; after the last round it is only counted.
 #[test]
 fn pairs_are_the_mutual_choices_of_those_that_chose() {
+    mutual_choices(true);
+}
+
+/// The same by the kernel of a device that has no others.
+#[test]
+fn pairs_of_a_device_alone_are_the_mutual_choices() {
+    mutual_choices(false);
+}
+
+fn mutual_choices(among_others: bool) {
     let world = World::plain();
     let mut stream = Stream::new(31);
     let particles: Vec<GpuParticle> = world.particles(&mut stream, COUNT, 1.0);
@@ -47,6 +57,7 @@ fn pairs_are_the_mutual_choices_of_those_that_chose() {
             }
         }
         let mut rig = Rig::new(&world);
+        rig.constant("HALO", f64::from(u8::from(among_others)));
         rig.constant("ROUNDS", f64::from(ROUNDS));
         rig.put("sorted", &particles);
         rig.put("choices", &choices);

@@ -78,7 +78,19 @@ impl Crowd {
 /// nearer than the edge of a cell.
 #[test]
 fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
+    all_are_found(true);
+}
+
+/// The same by the kernels of a device that has no others and no vents, which ask less.
+#[test]
+fn lists_of_a_device_alone_are_those_of_a_search_of_all_pairs() {
+    all_are_found(false);
+}
+
+fn all_are_found(among_others: bool) {
     let mut crowd = crowd(12);
+    crowd.rig.constant("HALO", f64::from(u8::from(among_others)));
+    crowd.rig.constant("VENTS", f64::from(u8::from(among_others)));
     let lists = crowd.run();
     let expected = crowd.all_pairs();
     let cells = crowd.world.cells();

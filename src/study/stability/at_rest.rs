@@ -18,11 +18,11 @@ use super::{Effort, ROUNDS};
 
 /// Allowed of p over n k T and of the collision rate, relative (specification, sections 2 and 8: .5 % and 1.5 %, and 3 %
 /// lost), and of temperatures that should be one.
-const PRESSURE: f64 = 0.01;
+pub(super) const PRESSURE: f64 = 0.01;
 const RATE: f64 = 0.03;
-const TEMPERATURES: f64 = 0.02;
+pub(super) const TEMPERATURES: f64 = 0.02;
 /// Stretches of a series for its standard error.
-const BLOCKS: usize = 6;
+pub(super) const BLOCKS: usize = 6;
 
 /// Particles and collisions of each.
 fn size(effort: Effort) -> (u64, f64) {

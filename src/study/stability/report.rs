@@ -115,26 +115,33 @@ pub fn text((axis, points): &Map<'_>) -> String {
 fn verdict(axis: &Axis, points: &[Point], method: Method) -> Option<String> {
     points.iter().find(|point| point.method == method)?;
     let found = first_broken(points, method);
-    let mut held = found.held.map_or_else(|| "nowhere known to hold".to_owned(), |value| format!("holds to {value}"));
+    let mut sentence = match found.held {
+        None => "nowhere known to hold".to_owned(),
+        Some([_, last]) if found.from_the_start => format!("holds to {last}"),
+        Some([first, last]) if first == last => format!("holds at {last}"),
+        Some([first, last]) => format!("holds from {first} to {last}"),
+    };
     if !found.unclear.is_empty() {
         let values: Vec<String> = found.unclear.iter().map(f64::to_string).collect();
-        let _ = write!(held, "; unclear at {}", values.join(", "));
+        let _ = write!(sentence, "; unclear at {}", values.join(", "));
     }
-    let broken = found.broken.map_or_else(String::new, |(value, check)| {
-        if check.measured.is_nan() {
-            return format!("; at {value} {}", check.quantity);
-        }
-        format!(
-            "; at {value} {} is {} +- {}, off by {} times the {} allowed",
-            check.quantity,
-            significant(check.measured),
-            significant(check.error),
-            times(check),
-            significant(check.tolerance)
-        )
-    });
+    for (value, check) in found.broken {
+        let _ = if check.measured.is_nan() {
+            write!(sentence, "; at {value} {}", check.quantity)
+        } else {
+            write!(
+                sentence,
+                "; at {value} {} is {} +- {}, off by {} times the {} allowed",
+                check.quantity,
+                significant(check.measured),
+                significant(check.error),
+                times(check),
+                significant(check.tolerance)
+            )
+        };
+    }
     let guard = axis.limit(method).map_or_else(String::new, |bound| format!(" (guard: {})", bound.words()));
-    Some(held + &broken + &guard)
+    Some(sentence + &guard)
 }
 
 /// A page with all maps, what broke first, and the table of limits. `made_by`: the command; `device`: what it ran on.
@@ -146,8 +153,9 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
          farthest off, and how many times its allowance. Allowances, fixed beforehand: energy 1e-5 of all (with inflow 1e-4 \
          of U0 and the enthalpy that came in); pressure 1 % of n k T; equipartition 2 %; collision rate 3 % of n pi sigma^2 \
          gbar; lost collisions 3 %; wall tightness: no particle outside, none beyond a wall by more than the audit lets \
-         pass, no flight cut short; flow 7 % of a continuum's; pressure on a piston 5 %, and a fifth of its rise; density profile of a shock tube the .024 of 160,000 particles \
-         as N^-.26.\n\n`corpuscle plan` and `corpuscle run` warn beyond the guards below, and refuse with `--strict` \
+         pass, no flight cut short; flow 7 % of a continuum's; pressure on a piston 5 %, and a fifth of its rise; density \
+         profile of a shock tube the .024 of 160,000 particles as N^-.26; push (what momentum the gas of the right of a tube \
+         has got from that of the left, over that of the exact solution) what a piston's pressure is allowed.\n\n`corpuscle plan` and `corpuscle run` warn beyond the guards below, and refuse with `--strict` \
          ([errors](errors.md#warnings)).\n\n## Guards\n\n| quantity | method | limit | beyond it |\n|---|---|---|---|\n"
     );
     for limit in LIMITS {
