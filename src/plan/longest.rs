@@ -13,9 +13,10 @@ use crate::scene::{Method, ModelRequest};
 
 /// In mean collision times, of pairs in rounds: the longest that was measured (`corpuscle stability time-step --full`).
 const MOST_COLLISIONS: f64 = 4.0;
-/// Hits of a mean particle on walls in a step; of a fast one in a corner there are many more.
+/// Hits of a mean particle on walls in a step: a choice, between the .075 beyond which runs become wrong (`limits.rs`) and the 1024
+/// that are followed, of which a fast particle in a corner has many times as many as the mean one.
 const MOST_HITS: f64 = 4.0;
-/// Neighbours in a step of a pair of the plan's fastest.
+/// Neighbours in a step of a pair of the plan's fastest: a choice, as many as take 24 kB of list for each particle.
 const MOST_NEIGHBOURS: f64 = 6000.0;
 /// Times the step that the plan would choose: it leaves the ladder an eighth of its range for gas that becomes denser or
 /// hotter.

@@ -20,14 +20,14 @@ fn a_plan_that_warns_is_2_with_strict() {
     assert_eq!(outcome(&["plan", "--strict", "scenes/box.toml"]).0, 0);
 }
 
-/// Gas that flows into a thin half, where a probe has few particles until then.
+/// Gas that flows into a thinner half, where a probe has few particles until then.
 const FILLING: &str = r#"
     end_time = 0.0044
     gas = [{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }]
     model = { particles = 3000 }
     output = { rows = 1000, snapshots = 0 }
     wall = [{ name = "box", shape = "box", min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.1], gas = "inside" }]
-    probe = [{ name = "far", region = { box = { min = [0.06, 0.01, 0.01], max = [0.09, 0.09, 0.09] } } }]
+    probe = [{ name = "far", region = { box = { min = [0.06, 0.03, 0.032], max = [0.09, 0.07, 0.066] } } }]
     [[chamber]]
     name = "left"
     region = { box = { min = [0.0, 0.0, 0.0], max = [0.05, 0.1, 0.1] } }
@@ -36,7 +36,7 @@ const FILLING: &str = r#"
     gas = "nitrogen"
     [[chamber]]
     name = "right"
-    pressure = 2e3
+    pressure = 5.5e4
     temperature = 300.0
     gas = "nitrogen"
 "#;

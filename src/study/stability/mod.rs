@@ -298,7 +298,7 @@ pub const AXES: &[Axis] = &[
     Axis {
         name: "mach",
         what: "Mach number of a jet",
-        runs: "a jet doubles the gas of a box of 1 L in 1 ms; judged when it has come to rest, 3 ms later",
+        runs: "a jet doubles the gas of a box of 1 L in 1 ms; judged when that has come to rest, 2 to 4 ms later",
         methods: ALL,
         quick: &[1.0, 4.0],
         usual: &[1.0, 2.0, 4.0, 8.0],
