@@ -79,7 +79,8 @@ pub(super) fn wall_speed(
 ) -> Result<Vec<Check>, StudyError> {
     let particles = match effort {
         Effort::Quick => 4000,
-        Effort::Usual => 16_000,
+        // At twice c0 20,000 know the pressure to half of what it is allowed.
+        Effort::Usual => 24_000,
         Effort::Full => 64_000,
     };
     let piston = Piston::shock(particles, speed).by(method);
