@@ -76,10 +76,14 @@ impl Riemann {
     /// Speed of the front of the right wave, m/s: of its shock, or of the head of its rarefaction; `None` beside a vacuum.
     pub fn right_front(&self) -> Option<f64> {
         let (pressure, _) = self.star?;
+        let mach = self.shock_mach((pressure / self.right.pressure).max(1.0));
+        Some(self.right.velocity + mach * sound_speed(&self.right, self.gamma))
+    }
+
+    /// Of a shock to so many times the pressure.
+    fn shock_mach(&self, ratio: f64) -> f64 {
         let g = self.gamma;
-        let ratio = (pressure / self.right.pressure).max(1.0);
-        let mach = ((g + 1.0) / (2.0 * g) * ratio + (g - 1.0) / (2.0 * g)).sqrt();
-        Some(self.right.velocity + mach * sound_speed(&self.right, g))
+        ((g + 1.0) / (2.0 * g) * ratio + (g - 1.0) / (2.0 * g)).sqrt()
     }
 
     /// Where the gas of the left meets the vacuum.
@@ -118,7 +122,7 @@ impl Riemann {
         };
         let ratio = pressure / left.pressure;
         if ratio > 1.0 {
-            let shock = left.velocity - sound * ((g + 1.0) / (2.0 * g) * ratio + (g - 1.0) / (2.0 * g)).sqrt();
+            let shock = left.velocity - sound * self.shock_mach(ratio);
             if speed < shock {
                 return *left;
             }

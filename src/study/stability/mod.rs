@@ -142,8 +142,6 @@ impl Point {
 pub struct Found<'a> {
     /// The first stretch of values at which all hold: its first and its last one.
     pub held: Option<[f64; 2]>,
-    /// Whether that is from the safe end of the axis on.
-    pub from_the_start: bool,
     /// The values before the first broken one after it that the runs do not tell of.
     pub unclear: Vec<f64>,
     /// The last broken value before that stretch and the first one after it, with what broke. Without a stretch: the first.
@@ -164,7 +162,6 @@ pub fn first_broken(points: &[Point], method: Method) -> Found<'_> {
     let known = before.iter().chain(&after[..first_after]);
     Found {
         held: stretch.first().zip(stretch.last()).map(|((_, first), (_, last))| [first.value, last.value]),
-        from_the_start: before.is_empty(),
         unclear: known.filter(|(state, _)| *state == State::Unclear).map(|(_, point)| point.value).collect(),
         broken: told.filter_map(|(_, point)| point.worst().map(|check| (point.value, check))).collect(),
     }
@@ -342,8 +339,8 @@ mod tests {
         };
         let found = first_broken(&points, Method::Cell);
         assert_eq!(
-            (found.held, found.from_the_start, found.unclear.clone(), what(&found)),
-            (Some([0.5, 0.5]), true, vec![1.0], vec![(2.0, "b".into())]),
+            (found.held, found.unclear.clone(), what(&found)),
+            (Some([0.5, 0.5]), vec![1.0], vec![(2.0, "b".into())]),
             "what is unclear does not hold"
         );
         let none = first_broken(&points, Method::None);
@@ -360,7 +357,7 @@ mod tests {
             })
             .collect();
         let found = first_broken(&middle, Method::Cell);
-        assert_eq!((found.held, found.from_the_start, found.unclear.clone()), (Some([3.0, 4.0]), false, vec![2.0]));
+        assert_eq!((found.held, found.unclear.clone()), (Some([3.0, 4.0]), vec![2.0]));
         assert_eq!(what(&found), [(1.0, "a".into()), (5.0, "a".into())]);
     }
 

@@ -113,11 +113,11 @@ pub fn text((axis, points): &Map<'_>) -> String {
 
 /// What broke first of a method, and what guards runs of it.
 fn verdict(axis: &Axis, points: &[Point], method: Method) -> Option<String> {
-    points.iter().find(|point| point.method == method)?;
+    let safest = points.iter().find(|point| point.method == method)?.value;
     let found = first_broken(points, method);
     let mut sentence = match found.held {
         None => "nowhere known to hold".to_owned(),
-        Some([_, last]) if found.from_the_start => format!("holds to {last}"),
+        Some([first, last]) if first == safest => format!("holds to {last}"),
         Some([first, last]) if first == last => format!("holds at {last}"),
         Some([first, last]) => format!("holds from {first} to {last}"),
     };

@@ -48,10 +48,10 @@ pub fn filled(device: &Device, method: Method, particles: u64) -> Result<(Model,
     Ok((model, run))
 }
 
-/// J/kg of the gas that enters the tank: cp T0 with cp = 7/2 R.
+/// J/kg of the gas that enters through the first orifice: cp T0, T0 that of its start, with cp = 7/2 R.
 pub fn enthalpy(model: &Model) -> f64 {
-    let gas = &model.scene.gases[model.scene.orifices[0].mixture.0[0].0];
-    3.5 * GAS_CONSTANT * 700.0 / gas.molar_mass
+    let orifice = &model.scene.orifices[0];
+    3.5 * GAS_CONSTANT * orifice.temperature.points[0][1] / model.scene.gases[orifice.mixture.0[0].0].molar_mass
 }
 
 pub(super) fn balances(device: &Device, effort: Effort) -> Result<Findings, StudyError> {

@@ -11,6 +11,7 @@ use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
+use super::statistics::error_of_hits;
 use super::{Check, Effort, Findings, Run, model_from, run, scene_of};
 
 pub const GAMMA: f64 = 1.4;
@@ -104,15 +105,14 @@ pub fn warming(run: &Run) -> f64 {
     run.outcome.audit.energy_end / run.outcome.audit.energy_start
 }
 
-/// Mean pressure on the piston over that at the start, and its standard error: 1.13/sqrt(H) of H hits (specification,
-/// section 6), which are at least those on a wall at rest.
+/// Mean pressure on the piston over that at the start, and its standard error, that of hits ([`error_of_hits`]), which are at least those on a wall at rest.
 pub fn on_piston(piston: &Piston, run: &Run) -> (f64, f64) {
     let swept = piston.pushed * LENGTH * 0.25 * LENGTH * LENGTH;
     let work = run.outcome.audit.work_by_walls.unwrap_or(f64::NAN);
     // H = n cbar A t / 4, cbar = sqrt(8/pi) c0.
     let hits = piston.particles as f64 * (8.0 / std::f64::consts::PI).sqrt() / 4.0 * piston.pushed / piston.speed;
     let pressure = work / (PRESSURE * swept);
-    (pressure, pressure * 1.13 / hits.sqrt())
+    (pressure, pressure * error_of_hits(hits))
 }
 
 /// T V^(gamma-1) at 2:1, from a few seeds.
