@@ -151,15 +151,16 @@ fn an_emulation_says_what_is_measured_and_what_is_modelled() {
     assert_eq!(table.text(5, "weight_imbalance_after"), "");
 }
 
-/// All gas in a corner, cut for two devices by particles and by cost: what was balanced is even within 3 % right after (a plane of
-/// these 20,000 particles, and of the work that they are, is some 3 % of them, so a cut is within 1.5 % of the half).
+/// All gas in a corner, cut for two devices by particles and by cost: what was balanced is even within 3 % right after. With 150,000
+/// particles the corner is 40 planes of cells, and the nearest is within 1/80 of the whole of what is wanted, which is 2.5 % of a half,
+/// whatever the costs are that were measured (of 20,000 it is 21, so 4.8 %: too few for this law).
 #[test]
 fn gas_in_a_corner_is_shared_evenly() {
     for by in ["particles", "cost"] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().to_str().unwrap();
         let counts =
-            ["--particles", "20000", "--emulate", "--devices", "2", "--balance", "dynamic", "--intervals", "1"];
+            ["--particles", "150000", "--emulate", "--devices", "2", "--balance", "dynamic", "--intervals", "1"];
         let (code, _, err) =
             outcome(&[&["sweep", "scenes/corner.toml", "--out", out, "--balance-by", by], &counts[..]].concat());
         assert_eq!(code, 0, "{err}");
