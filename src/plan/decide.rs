@@ -22,7 +22,7 @@ pub const LADDER_LEVELS: u32 = 12;
 pub const STEPS_PER_INTERVAL: u32 = 32;
 pub const TALLY_EVERY: u32 = 8;
 /// Particles in a mean block of the coarse grid, at least.
-const PER_BLOCK: f64 = 64.0;
+pub(super) const PER_BLOCK: f64 = 64.0;
 
 /// Decides what to model, or says why it cannot be modelled.
 pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {

@@ -1,5 +1,6 @@
 //! Diameter, rounds, time step and cell edge.
 
+use super::decide::{LADDER_LEVELS, PER_BLOCK};
 use super::error::MOST_ROUNDS;
 use super::limits::step_limit;
 use super::render::significant;
@@ -24,6 +25,14 @@ pub const FASTEST_PAIR: f64 = 6.0;
 const FAST_PARTICLE: f64 = 4.04;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
 const SURELY_FAST: f64 = 4.4;
+
+/// Standard errors of a block: two leave 2 % of the particles in denser and hotter ones, and a third is for how that varies
+/// from interval to interval.
+const SCATTER: f64 = 3.0;
+/// Those of the 2 %.
+const TAIL_SCATTER: f64 = 2.0;
+/// Of a run's steps.
+const MOST_HALVINGS: u32 = LADDER_LEVELS - 1;
 
 /// That of a scene that says nothing.
 pub fn default_occupancy(method: Method) -> f64 {
@@ -81,6 +90,18 @@ impl Resolution {
         }
     }
 
+    /// x = dt/tau of gas in such a state whose particles have such a diameter, m.
+    pub fn collisions_in_step(&self, state: MeanState, diameter: f64) -> f64 {
+        self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square)
+    }
+
+    /// How many steps a run makes of one in gas of this x, of this number density in the mean of the blocks.
+    pub fn halved(&self, x: f64, number_density: f64) -> f64 {
+        let uneven = x * unevenness(number_density * self.cell.powi(3), TAIL_SCATTER);
+        let enough = (0..MOST_HALVINGS).find(|&level| libm::ldexp(uneven, -(level as i32)) <= self.collision_limit);
+        libm::ldexp(1.0, enough.unwrap_or(MOST_HALVINGS) as i32)
+    }
+
     fn in_rounds(
         method: Method,
         request: &ModelRequest,
@@ -114,24 +135,34 @@ impl Resolution {
             .iter()
             .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
             .fold(f64::INFINITY, f64::min);
+        let edge = |step: f64| {
+            let reach = 0.5 * fastest * step;
+            // At its closest approach a pair is perpendicular to its relative velocity; rigid spheres meet earlier.
+            match method {
+                Method::HardSphere => diameter + reach,
+                _ => (diameter * diameter + reach * reach).sqrt(),
+            }
+        };
         let by_cell = diameter / fastest;
-        let by_rate = limit * tau;
+        let by_rate = limit * tau / unevenness(density * edge(limit * tau).powi(3), SCATTER);
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None if by_cell <= by_rate => {
                 (by_cell, "the fastest pairs close in by no more than a diameter: cells stay small".to_string())
             }
-            None => (by_rate, format!("{limit} of the mean collision time, for {rounds} rounds")),
+            None => {
+                let share = significant(by_rate / tau);
+                (
+                    by_rate,
+                    format!(
+                        "{share} of the mean collision time: {limit}, for {rounds} rounds, in the densest blocks of gas"
+                    ),
+                )
+            }
         };
         let (time_step, steps) = divide(end_time, wanted);
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
-        let reach = 0.5 * fastest * time_step;
-        // At its closest approach a pair is perpendicular to its relative velocity; rigid spheres meet earlier.
-        let edge = match method {
-            Method::HardSphere => diameter + reach,
-            _ => (diameter * diameter + reach * reach).sqrt(),
-        };
-        let cell = EDGE_MARGIN * edge;
+        let cell = EDGE_MARGIN * edge(time_step);
         because(
             "cell",
             format!("{} mm", significant(1e3 * cell)),
@@ -181,13 +212,17 @@ impl Resolution {
             .map(|state| kinetics::collision_time(state.number_density, diameter, state.thermal_square))
             .fold(f64::INFINITY, f64::min);
         let speed = FAST_PARTICLE * extreme.0.sqrt();
-        let (by_cell, by_rate) = (cell / (SURELY_FAST * extreme.0.sqrt()), limit * tau);
+        let by_cell = cell / (SURELY_FAST * extreme.0.sqrt());
+        let by_rate = limit * tau / unevenness(density * cell.powi(3), SCATTER);
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None if by_cell <= by_rate => {
                 (by_cell, "99.97 % of the hottest particles fly no further than a cell".to_string())
             }
-            None => (by_rate, format!("{limit} mean collision times")),
+            None => (
+                by_rate,
+                format!("{} mean collision times: {limit} in the densest blocks of gas", significant(by_rate / tau)),
+            ),
         };
         let (time_step, steps) = divide(end_time, wanted);
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
@@ -254,6 +289,18 @@ fn diameter(method: Method, request: &ModelRequest, density: f64) -> (f64, Strin
             "0.61 of the mean spacing at the end (occupancy 0.12): more buys almost no resolution".to_string(),
         ),
     }
+}
+
+/// x of the densest and hottest blocks of a uniform gas, but for a tail, over the mean: steps that leave no room for it would be
+/// halved all the time. A block has 2^k cells along an edge and at least [`PER_BLOCK`] of n particles; the density in which a
+/// particle is scatters by 1/sqrt(n) around 1 + 1/n, the thermal speed by 1/sqrt(6 n).
+fn unevenness(in_cell: f64, scatter: f64) -> f64 {
+    let mut in_block = 8.0 * in_cell;
+    while in_block > 0.0 && in_block < PER_BLOCK {
+        in_block *= 8.0;
+    }
+    let in_block = in_block.max(PER_BLOCK);
+    1.0 + 1.0 / in_block + scatter * (7.0 / 6.0 / in_block).sqrt()
 }
 
 /// The largest step of at most `wanted` of which the end time is an integer multiple, and that integer.

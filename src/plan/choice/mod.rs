@@ -7,10 +7,12 @@
 
 mod cost;
 mod families;
+mod halvings;
 mod holes;
 mod report;
 
 use super::amounts::{Amounts, highest_temperature};
+use super::cap::diameter_cap;
 use super::decide::mean_states;
 use super::error::{MOST_CELLS, MOST_PARTICLES};
 use super::forecast::{Candidate, Cause, ColumnForecast, Forecaster, Outlook, worst};
@@ -249,7 +251,11 @@ impl Chooser<'_> {
             rounds: resolution.rounds,
             collisions_per_step: resolution.collisions_per_step,
         };
-        let cost = Cost::of(family.method, &resolution, 0.5 * (initial + particles), density, self.rate);
+        let Chooser { scene, measured, amounts, .. } = *self;
+        let cap = diameter_cap(scene, family.method, resolution.diameter, density, &mut Vec::new()).ok().flatten();
+        let gas = halvings::Gas { scene, measured, amounts, particles, end: states[1], cap };
+        let mean = 0.5 * (initial + particles) * halvings::steps_over_planned(&gas, &resolution);
+        let cost = Cost::of(family.method, &resolution, mean, density, self.rate);
         Some(self.forecast(family, candidate, cost))
     }
 
