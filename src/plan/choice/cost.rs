@@ -42,7 +42,8 @@ fn bytes(method: Method, rounds: u32, collisions_per_step: f64, in_cell: f64) ->
 }
 
 impl Cost {
-    /// `particles`: the mean over the run, in steps of the plan; `density` at its end; `rate`: particle-steps per second at the plan's own choice.
+    /// `particles`: the mean over the run, one whose steps are halved counting twice; `density` at its end; `rate`:
+    /// particle-steps per second at the plan's own choice.
     pub fn of(method: Method, resolution: &Resolution, particles: f64, density: f64, rate: f64) -> Cost {
         let particle_steps = particles * resolution.steps as f64;
         let in_cell = density * resolution.cell * resolution.cell * resolution.cell;

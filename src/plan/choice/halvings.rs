@@ -1,12 +1,11 @@
 //! By how many a run's steps will be more than the plan's: a run halves its steps where gas is denser or hotter than the plan's
-//! mean states (`simulation/ladder.rs`). Known beforehand are the chambers at the start and the mean state at the end; the
-//! factor is the mean of theirs.
+//! mean states (`simulation/ladder.rs`). Known beforehand are the chambers at the start and the mean state at the end.
 
 use crate::gas::kinetics;
 use crate::plan::Measured;
 use crate::plan::amounts::Amounts;
 use crate::plan::resolution::{MeanState, Resolution};
-use crate::scene::Scene;
+use crate::scene::{Chamber, Scene};
 
 /// Share of the particles that may be in gas that asks for smaller steps.
 const TAIL: f64 = 0.02;
@@ -22,15 +21,15 @@ pub struct Gas<'a> {
     pub cap: Option<f64>,
 }
 
-/// The steps of the run over those of the plan.
-pub fn steps_over_planned(gas: &Gas<'_>, resolution: &Resolution) -> f64 {
+/// The steps of the run over those of the plan, at the start and at the end.
+pub fn steps_over_planned(gas: &Gas<'_>, resolution: &Resolution) -> [f64; 2] {
     if resolution.collision_limit <= 0.0 {
-        return 1.0;
+        return [1.0; 2];
     }
     let at_end = resolution.collisions_in_step(gas.end, resolution.diameter);
     let times = |x: f64| resolution.halved(x, gas.end.number_density);
     let at_start = in_densest_chamber(gas, resolution).unwrap_or(at_end);
-    0.5 * (times(at_start) + times(at_end))
+    [times(at_start), times(at_end)]
 }
 
 /// x of the initial gas but for the tail; `None` if there is none.
@@ -38,7 +37,7 @@ fn in_densest_chamber(gas: &Gas<'_>, resolution: &Resolution) -> Option<f64> {
     let Gas { scene, measured, amounts, particles, cap, .. } = *gas;
     let lightest = amounts.lightest(scene);
     let initial = amounts.initial_total();
-    let of_chamber = |((chamber, moles), volume): ((&crate::scene::Chamber, &Vec<f64>), &f64)| {
+    let of_chamber = |((chamber, moles), volume): ((&Chamber, &Vec<f64>), &f64)| {
         let moles: f64 = moles.iter().sum();
         let number_density = moles / amounts.total() * particles / volume;
         let thermal_square = kinetics::thermal_square(chamber.temperature, lightest);

@@ -254,7 +254,8 @@ impl Chooser<'_> {
         let Chooser { scene, measured, amounts, .. } = *self;
         let cap = diameter_cap(scene, family.method, resolution.diameter, density, &mut Vec::new()).ok().flatten();
         let gas = halvings::Gas { scene, measured, amounts, particles, end: states[1], cap };
-        let mean = 0.5 * (initial + particles) * halvings::steps_over_planned(&gas, &resolution);
+        let [at_start, at_end] = halvings::steps_over_planned(&gas, &resolution);
+        let mean = 0.5 * (initial * at_start + particles * at_end);
         let cost = Cost::of(family.method, &resolution, mean, density, self.rate);
         Some(self.forecast(family, candidate, cost))
     }

@@ -2,7 +2,7 @@ use super::*;
 use crate::plan::forecast::{SeenProbe, SeenSurface};
 use crate::plan::plan;
 use crate::plan::tests::tank;
-use crate::scene::{Face, Probe, Region, Surface, Switch};
+use crate::scene::{DiameterCap, Face, Probe, Region, Surface, Switch};
 
 /// The published tank with a wall that is measured and a probe before the hole.
 fn seen() -> (Scene, Measured, Outlook) {
@@ -50,6 +50,28 @@ fn the_next_plans_are_cheaper_and_better() {
     let (cheaper, better) = (choice.forecast.cheaper.unwrap(), choice.forecast.better.unwrap());
     assert!(cheaper.seconds < choice.forecast.seconds && cheaper.error <= 2.0 * choice.forecast.error);
     assert!(better.seconds > choice.forecast.seconds && better.error <= 0.5 * choice.forecast.error);
+}
+
+/// A run halves its steps while a chamber is dense, and the cost counts it.
+#[test]
+fn dense_chambers_cost_more_steps() {
+    let times = |pressure: f64, cap: Option<DiameterCap>| {
+        let (mut scene, measured, outlook) = seen();
+        scene.model.particles = Some(100_000);
+        scene.model.wish.accuracy = Some(0.3);
+        scene.chambers[0].pressure *= pressure;
+        scene.model.diameter_cap = cap;
+        let choice = choose(&scene, &measured, &outlook).unwrap();
+        scene.model = choice.request;
+        let plan = plan(&scene, &measured).unwrap();
+        let mean = 0.5 * (plan.initial_particles + plan.particles) as f64;
+        choice.forecast.particle_steps / (mean * plan.end_time / plan.time_step)
+    };
+    let off = Some(DiameterCap::Off);
+    assert!((times(1.0, off) - 1.0).abs() < 1e-3, "{}", times(1.0, off));
+    assert!((1.2..4.0).contains(&times(30.0, off)), "{}", times(30.0, off));
+    // A cap on the diameter keeps the steps.
+    assert!(times(30.0, None) < times(30.0, off));
 }
 
 /// The plan of the request is a plan as any other, and has the reasons of the choice.
