@@ -26,12 +26,15 @@ const FAST_PARTICLE: f64 = 4.04;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
 const SURELY_FAST: f64 = 4.4;
 
+/// Share of the particles that may be in blocks beyond the collision limit: local peaks of a few noisy blocks do not set the
+/// step of all.
+pub const LADDER_TAIL: f64 = 0.02;
 /// Standard errors of a block: two leave 2 % of the particles in denser and hotter ones, and a third is for how that varies
 /// from interval to interval.
 const SCATTER: f64 = 3.0;
-/// Those of the 2 %.
+/// Those of the tail alone: what a step may be without being halved.
 const TAIL_SCATTER: f64 = 2.0;
-/// Of a run's steps.
+/// Of a step, down to the ladder's smallest.
 const MOST_HALVINGS: u32 = LADDER_LEVELS - 1;
 
 /// That of a scene that says nothing.
@@ -95,7 +98,7 @@ impl Resolution {
         self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square)
     }
 
-    /// How many steps a run makes of one in gas of this x, of this number density in the mean of the blocks.
+    /// How many steps a run makes of one: in gas of this x, whose blocks scatter as those of this mean number density.
     pub fn halved(&self, x: f64, number_density: f64) -> f64 {
         let uneven = x * unevenness(number_density * self.cell.powi(3), TAIL_SCATTER);
         let enough = (0..MOST_HALVINGS).find(|&level| libm::ldexp(uneven, -(level as i32)) <= self.collision_limit);

@@ -6,12 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::block_gas::BlockGas;
 use super::run_state::StateError;
-use crate::plan::Plan;
+use crate::plan::{LADDER_TAIL, Plan};
 use crate::subdomain::BlockSum;
 
-/// Share of the particles that may be in blocks beyond the collision limit: local peaks of a few noisy
-/// blocks do not set the step of all.
-const TAIL: f64 = 0.02;
 /// Share that may cross more than a cell in a step.
 const FAST_TAIL: f64 = 1e-3;
 /// Share of the collisions that may be of pairs faster than the plan's fastest: twice what 6 sqrt(kT/m) leaves in gas at
@@ -130,7 +127,7 @@ impl Ladder {
         for part in parts {
             rate = part.rate;
             beyond += part.number;
-            if beyond as f64 > TAIL * total as f64 {
+            if beyond as f64 > LADDER_TAIL * total as f64 {
                 break;
             }
         }

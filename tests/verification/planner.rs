@@ -162,6 +162,7 @@ fn squares_at_cost(name: &str, predicted: &Forecast, model: &Model) -> Vec<f64> 
     squares_of(model, &run.rows)
 }
 
+/// The same of rows that are there.
 fn squares_of(model: &Model, rows: &[Row]) -> Vec<f64> {
     let limit = limit(model, rows);
     let count = rows.len() as f64;
@@ -239,7 +240,7 @@ fn uniform_gas_takes_the_steps_of_its_plan() {
         let steps = (model.plan.end_time / model.plan.time_step).round() as u64;
         assert!(steps > 100, "{steps}");
         assert_eq!(run(&model, Options::default()).outcome.steps, steps, "{rounds} rounds");
-        // The check can fail: at the limit itself the steps are halved.
+        // The check can fail: without the room (three quarters of the limit leave none) the steps are halved.
         let mut limit = model;
         limit.plan.collision_limit *= 0.75;
         assert!(run(&limit, Options::default()).outcome.steps > steps + steps / 2);

@@ -4,12 +4,10 @@
 use crate::gas::kinetics;
 use crate::plan::Measured;
 use crate::plan::amounts::Amounts;
-use crate::plan::resolution::{MeanState, Resolution};
+use crate::plan::resolution::{LADDER_TAIL, MeanState, Resolution};
 use crate::scene::{Chamber, Scene};
 
-/// Share of the particles that may be in gas that asks for smaller steps.
-const TAIL: f64 = 0.02;
-
+/// What is known of the gas before the run.
 pub struct Gas<'a> {
     pub scene: &'a Scene,
     pub measured: &'a Measured,
@@ -51,6 +49,6 @@ fn in_densest_chamber(gas: &Gas<'_>, resolution: &Resolution) -> Option<f64> {
     let mut denser = 0.0;
     chambers.into_iter().find_map(|(x, moles)| {
         denser += moles;
-        (denser > TAIL * initial).then_some(x)
+        (denser > LADDER_TAIL * initial).then_some(x)
     })
 }
