@@ -23,11 +23,11 @@ fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     }
     // A pass over those that were asked later finds it done.
     long_lists[place] = NOBODY;
-    let more = neighbour_count[s] - (DIRECT - 1u);
+    let more = atomicLoad(&neighbour_count[s]) - (DIRECT - 1u);
     let begin = atomicAdd(&counters[LIST_TAILS], more);
     if (begin + more > arrayLength(&neighbours) - DIRECT * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
-        neighbour_count[s] = DIRECT;
+        atomicStore(&neighbour_count[s], DIRECT);
         return;
     }
     let tail = DIRECT * stride + begin - (DIRECT - 1u);

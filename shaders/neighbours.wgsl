@@ -1,51 +1,123 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl
 // The neighbour lists, as far as they are short (search.wgsl).
 //
-// Reads what the search does and `layers`; writes `neighbours` and `neighbour_count`, appends longer lists to `long_lists`,
-// and to `screened` those with neighbours that may be behind a wall. One thread per particle, or per ghost that was asked
-// (asked.wgsl), which writes its own list.
+// Reads what the search does and `layers`; writes `neighbours` and `neighbour_count` (zero before), appends longer lists to
+// `long_lists`, and to `screened` those with neighbours that may be behind a wall. One thread per particle, which looks for
+// partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
+// candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
 
 override VENTS: bool = true;
 
+// Turns that each search takes at least. Until then threads without a candidate look at their own particle: a software device
+// guesses wrong, for each of eight threads, who reads and who does not.
+const FEWEST_TURNS: u32 = 4;
+// Pairs that a thread keeps until it writes them.
+const KEPT: u32 = 4;
+
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(25) var<storage, read_write> screened: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
+
+// Whether a particle has a list by now: the outermost ghosts have not all their neighbours here, and choose nobody; others may
+// have to be asked before (asked.wgsl).
+fn has_list(s: u32) -> bool {
+    if (!HALO || step.depth == 0u) {
+        return true;
+    }
+    let layer = atomicLoad(&layers[s]) & LAYER;
+    return layer < step.depth && !waits(layer);
+}
+
+fn enter(list: u32, k: u32, entry: u32, stride: u32) {
+    if (k < DIRECT) {
+        neighbours[k * stride + list] = entry;
+    } else if (k == DIRECT) {
+        long_lists[append(LIST_LONG)] = list;
+    }
+}
+
+fn to_screen(s: u32) {
+    if ((atomicOr(&layers[s], UNSCREENED) & UNSCREENED) == 0u) {
+        screened[append(LIST_SCREEN)] = s;
+    }
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    var s = linear(id, groups);
-    let late = HALO && step.ghosts == GHOSTS_ASKED;
-    if (late) {
-        s = asked_of(s);
-        if (s == NOBODY || (layers[s] & SEARCHED) != 0u) {
-            return;
-        }
-    } else if (s >= step.total) {
+    let s = linear(id, groups);
+    if (s >= step.total) {
         return;
     }
-    // The outermost ghosts have no neighbours beyond them here, and choose nobody; nor do slots without particle.
-    if (VENTS || HALO) {
-        let layer = layers[s] & LAYER;
-        if ((VENTS || step.depth > 0u) && (layer >= max(step.depth, 1u) || waits(layer))) {
-            neighbour_count[s] = 0u;
-            return;
-        }
+    // Slots without particle.
+    if (VENTS && (atomicLoad(&layers[s]) & LAYER) == LAYER) {
+        return;
     }
-    let found = search(s, DIRECT, NOBODY);
-    neighbour_count[s] = found.count;
-    if (found.count > DIRECT) {
-        if (late) {
-            // The rounds have their pairs in the first half.
-            long_lists[arrayLength(&neighbour_count) + append(LIST_LONG_LATE)] = s;
-        } else {
-            long_lists[append(LIST_LONG)] = s;
+    let middle = middles[s];
+    let stride = arrayLength(&neighbour_count);
+    let reach = reach_of(s, middle);
+    // What comes after it of its own row, and the four rows after that.
+    let y_step = step.size.x;
+    let z_step = step.size.x * step.size.y;
+    let here = cells[s] - 1u;
+    let n = reach.near2;
+    let r0 = s + 1u;
+    let e0 = cell_start[here + select(2u, 3u, reach.high2.x < n || reach.astray)] - r0;
+    let r1 = row_at(here + y_step, n - reach.high2.y, reach);
+    let r2 = row_at(here + z_step - y_step, n - reach.high2.z - reach.low2.y, reach);
+    let r3 = row_at(here + z_step, n - reach.high2.z, reach);
+    let r4 = row_at(here + z_step + y_step, n - reach.high2.z - reach.high2.y, reach);
+    // How many candidates there are before the end of each.
+    let e1 = e0 + r1.y;
+    let e2 = e1 + r2.y;
+    let e3 = e2 + r3.y;
+    let e4 = e3 + r4.y;
+    let turns = max(e4, FEWEST_TURNS);
+    let listed = has_list(s);
+    var k = 0u;
+    while (k < turns) {
+        var found = 0u;
+        var partners = vec4<u32>(0u);
+        // One loop over all rows: threads that run together wait for the one with the most candidates, not for the fullest row of each.
+        for (; k < turns && found < KEPT; k++) {
+            var base = r0;
+            base = select(base, r1.x - e0, k >= e0);
+            base = select(base, r2.x - e1, k >= e1);
+            base = select(base, r3.x - e2, k >= e2);
+            base = select(base, r4.x - e3, k >= e3);
+            let j = select(s, base + k, k < e4);
+            let other = middles[j];
+            if (j != s && may_meet(middle, other, j, n)) {
+                let near_wall = (middle | other) & NEAR_WALL;
+                partners = select(partners, vec4<u32>(j | near_wall), vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u));
+                found++;
+            }
         }
-    }
-    let walls = found.count > 0u && (found.flags & NEAR_WALL) != 0u;
-    if (late) {
-        layers[s] |= SEARCHED | select(0u, UNSCREENED, walls);
-    } else if (walls) {
-        screened[append(LIST_SCREEN)] = s;
+        // Few of the candidates are near enough: written at once, they are that many writes.
+        if (found == 0u) {
+            continue;
+        }
+        var own_place = 0u;
+        if (listed) {
+            own_place = atomicAdd(&neighbour_count[s], found);
+        }
+        for (var p = 0u; p < found; p++) {
+            let two = select(partners.xy, partners.zw, p >= 2u);
+            let partner = select(two.x, two.y, (p & 1u) != 0u);
+            let j = partner & ~NEAR_WALL;
+            let near_wall = partner != j;
+            if (listed) {
+                enter(s, own_place + p, j, stride);
+                if (near_wall) {
+                    to_screen(s);
+                }
+            }
+            if (has_list(j)) {
+                enter(j, atomicAdd(&neighbour_count[j], 1u), s, stride);
+                if (near_wall) {
+                    to_screen(j);
+                }
+            }
+        }
     }
 }

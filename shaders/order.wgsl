@@ -19,6 +19,7 @@
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(28) var<storage, read_write> touched: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(44) var<storage, read_write> origins: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
@@ -48,6 +49,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (VENTS && s >= cell_start[step.bins]) {
         // On a device alone, whose host learns late how many have left: slots that hold no particle.
         layers[s] = LAYER;
+        if (ROUNDS_OF_PAIRS) {
+            neighbour_count[s] = 0u;
+        }
         return;
     }
     let slot = slots[s];
@@ -87,6 +91,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
     middles[place] = packed(middle) | flags;
     touched[place] = 0u;
+    neighbour_count[place] = 0u;
     var share = 0u;
     if (CAPPED) {
         share = shares[block_of(place_in_grid)];

@@ -34,12 +34,12 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (s == NOBODY || (layers[s] & UNSCREENED) == 0u) {
             return;
         }
-        layers[s] &= ~UNSCREENED;
     } else if (entry < atomicLoad(&counters[LIST_SCREEN])) {
         s = screened[entry];
     } else {
         return;
     }
+    layers[s] &= ~UNSCREENED;
     let stride = arrayLength(&neighbour_count);
     let listed = neighbour_count[s];
     let tail = tail_of(s, listed, stride);

@@ -10,7 +10,7 @@
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<atomic<u32>>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 
 struct Found {
@@ -25,44 +25,64 @@ fn gap(at: i32, side: i32) -> i32 {
     return select(select(0, at + 1, side < 0), 128 - at, side > 0);
 }
 
-// A row of three cells, neighbours in memory, without those that are too far away: where it begins, and how many it has.
-fn row_at(first: u32, left: i32, before: i32, after: i32, astray: bool) -> vec2<u32> {
-    if (left <= 0 && !astray) {
-        return vec2<u32>(0u);
-    }
-    let begin = cell_start[first + select(1u, 0u, before < left || astray)];
-    return vec2<u32>(begin, cell_start[first + select(2u, 3u, after < left || astray)] - begin);
+// How far a particle looks around itself.
+struct Reach {
+    // The square of the distance below which it may meet another of its own diameter or more.
+    near2: i32,
+    // The squares of its distances from the cells before and after its own, along each axis.
+    low2: vec3<i32>,
+    high2: vec3<i32>,
+    // It is beyond its cell: these do not count.
+    astray: bool,
 }
 
-// Writes what it finds: the first `direct`, at most eight, interleaved, the others, where there is a tail, there.
-fn search(s: u32, direct: u32, tail: u32) -> Found {
-    let middle = middles[s];
-    let stride = arrayLength(&neighbour_count);
+fn reach_of(s: u32, middle: u32) -> Reach {
     var share = FULL_SHARE;
     if (CAPPED) {
         share = share_of(flights[s]);
     }
-    let own_near2 = near2(share);
     let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
     let low = vec3<i32>(gap(at.x, -1), gap(at.y, -1), gap(at.z, -1));
     let high = vec3<i32>(gap(at.x, 1), gap(at.y, 1), gap(at.z, 1));
-    let low2 = low * low;
-    let high2 = high * high;
-    let astray = (middle & ASTRAY) != 0u;
+    return Reach(near2(share), low * low, high * high, (middle & ASTRAY) != 0u);
+}
+
+// A row of three cells, neighbours in memory, without those that are too far away: where it begins, and how many it has.
+// `left` is what of `near2` the distance of the row leaves. (Threads that read or not, as it happens, cost a software device more
+// than those that read in vain.)
+fn row_at(first: u32, left: i32, reach: Reach) -> vec2<u32> {
+    let begin = cell_start[first + select(1u, 0u, reach.low2.x < left || reach.astray)];
+    let end = cell_start[first + select(2u, 3u, reach.high2.x < left || reach.astray)];
+    return vec2<u32>(begin, select(0u, end - begin, left > 0 || reach.astray));
+}
+
+// Whether a particle may meet particle j at `other`, by the smaller of the two diameters, so that either is in the other's list.
+fn may_meet(middle: u32, other: u32, j: u32, own_near2: i32) -> bool {
+    let distance2 = packed_distance2(middle, other);
+    return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_of(flights[j])));
+}
+
+// Looks all around. Writes what it finds: the first `direct`, at most eight, interleaved, the others, where there is a tail, there.
+fn search(s: u32, direct: u32, tail: u32) -> Found {
+    let middle = middles[s];
+    let stride = arrayLength(&neighbour_count);
+    let reach = reach_of(s, middle);
+    let low2 = reach.low2;
+    let high2 = reach.high2;
     // The nine rows around. The border layer makes every index valid.
     let y_step = step.size.x;
     let z_step = step.size.x * step.size.y;
     let here = cells[s] - 1u;
-    let n = own_near2;
-    let r0 = row_at(here - z_step - y_step, n - low2.z - low2.y, low2.x, high2.x, astray);
-    let r1 = row_at(here - z_step, n - low2.z, low2.x, high2.x, astray);
-    let r2 = row_at(here - z_step + y_step, n - low2.z - high2.y, low2.x, high2.x, astray);
-    let r3 = row_at(here - y_step, n - low2.y, low2.x, high2.x, astray);
-    let r4 = row_at(here, n, low2.x, high2.x, astray);
-    let r5 = row_at(here + y_step, n - high2.y, low2.x, high2.x, astray);
-    let r6 = row_at(here + z_step - y_step, n - high2.z - low2.y, low2.x, high2.x, astray);
-    let r7 = row_at(here + z_step, n - high2.z, low2.x, high2.x, astray);
-    let r8 = row_at(here + z_step + y_step, n - high2.z - high2.y, low2.x, high2.x, astray);
+    let n = reach.near2;
+    let r0 = row_at(here - z_step - y_step, n - low2.z - low2.y, reach);
+    let r1 = row_at(here - z_step, n - low2.z, reach);
+    let r2 = row_at(here - z_step + y_step, n - low2.z - high2.y, reach);
+    let r3 = row_at(here - y_step, n - low2.y, reach);
+    let r4 = row_at(here, n, reach);
+    let r5 = row_at(here + y_step, n - high2.y, reach);
+    let r6 = row_at(here + z_step - y_step, n - high2.z - low2.y, reach);
+    let r7 = row_at(here + z_step, n - high2.z, reach);
+    let r8 = row_at(here + z_step + y_step, n - high2.z - high2.y, reach);
     // How many candidates there are before the end of each.
     let e0 = r0.y;
     let e1 = e0 + r1.y;
@@ -90,9 +110,7 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
         base = select(base, r8.x - e7, k >= e7);
         let j = base + k;
         let other = middles[j];
-        let distance2 = packed_distance2(middle, other);
-        // Of the pair's diameter, so that either is in the other's list.
-        if (distance2 < own_near2 && j != s && (!CAPPED || distance2 < near2(share_of(flights[j])))) {
+        if (j != s && may_meet(middle, other, j, n)) {
             flags |= other;
             if (tail != NOBODY) {
                 neighbours[select(tail + found, found * stride + s, found < direct)] = j;

@@ -417,10 +417,10 @@ impl Subdomain {
         step: &StepSlot,
         round: u32,
     ) {
-        if self.place.asks() {
+        if let Some(neighbours_asked) = kernels.neighbours_asked.as_ref().filter(|_| self.place.asks()) {
             let offset = self.asked_offset(rec.device(), step, round);
             let pass = rec.phase(phase);
-            kernels.neighbours.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
+            neighbours_asked.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
             kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_LONG_LATE);
             for kernel in [&kernels.screen, &kernels.choose_asked] {
                 kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);

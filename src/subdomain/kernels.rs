@@ -33,6 +33,8 @@ pub struct SortKernels<K> {
 pub struct CollisionKernels<K> {
     pub wall_times: K,
     pub neighbours: K,
+    /// On a device among others.
+    pub neighbours_asked: Option<K>,
     pub lengthen: K,
     pub screen: K,
     pub choose: K,
@@ -97,6 +99,7 @@ impl<K> Kernels<K> {
             Some(CollisionKernels {
                 wall_times: make("wall_times")?,
                 neighbours: make("neighbours")?,
+                neighbours_asked: if features.halo { Some(make("neighbours_asked")?) } else { None },
                 lengthen: make("lengthen")?,
                 screen: make("screen")?,
                 choose: make("choose")?,

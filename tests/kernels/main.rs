@@ -55,6 +55,7 @@ fn every_kernel_has_its_test() {
         "match_pairs",
         "message_starts",
         "neighbours",
+        "neighbours_asked",
         "order",
         "pack",
         "pack_updates",

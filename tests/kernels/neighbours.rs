@@ -41,7 +41,6 @@ fn crowd(seed: u32) -> Crowd {
     rig.put("cell_start", &start);
     rig.put("middles", &packed);
     rig.put("cells", &of);
-    rig.put("neighbour_count", &vec![6u32; COUNT]);
     rig.put("screened", &vec![0u32; COUNT]);
     Crowd { world, middles, rig }
 }
@@ -55,6 +54,8 @@ impl Crowd {
     fn run_near(&mut self, tails: usize, near2: u32) -> Vec<Vec<u32>> {
         self.rig.step(GpuStep { count: COUNT as u32, near2, ..GpuStep::default() });
         put_room(&mut self.rig, COUNT, tails);
+        self.rig.put("neighbour_count", &vec![0u32; COUNT]);
+        self.rig.put("layers", &vec![0u32; COUNT]);
         self.rig.run("neighbours", COUNT);
         lengthen(&self.rig, false);
         lists(&self.rig, COUNT, tails)
@@ -169,9 +170,10 @@ fn the_outermost_ghosts_have_no_neighbours() {
     let mut crowd = crowd(14);
     let expected = crowd.all_pairs();
     let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
-    crowd.rig.put("layers", &layers);
     for depth in [2, 3, 0] {
         put_room(&mut crowd.rig, COUNT, TAILS);
+        crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
+        crowd.rig.put("layers", &layers);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,

@@ -143,7 +143,7 @@ fn order_is_canonical() {
         rig.put("slots", &slots);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         rig.put("flights", &vec![GpuFlight::default(); COUNT]);
-        for buffer in ["middles", "cells", "touched", "near_walls"] {
+        for buffer in ["middles", "cells", "touched", "neighbour_count", "near_walls"] {
             rig.put(buffer, &vec![9u32; COUNT]);
         }
         rig.step(GpuStep {
@@ -171,7 +171,9 @@ fn order_is_canonical() {
         };
         assert_eq!(flights, expected.iter().zip(&canonical).map(new).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
-        assert_eq!(rig.get::<u32>("touched", COUNT), vec![0; COUNT]);
+        for buffer in ["touched", "neighbour_count"] {
+            assert_eq!(rig.get::<u32>(buffer, COUNT), vec![0; COUNT], "{buffer}");
+        }
         let middles: Vec<u32> = rig.get("middles", COUNT);
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);

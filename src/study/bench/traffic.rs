@@ -49,12 +49,12 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         // scatter: bins in, slots out; order: slots and bins in, state in and out, cell and layer out.
         "sort" => {
             let order = n * (4.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + filled * WORD;
-            // Flight, middle and mark of the rounds.
-            let of_rounds = if rounds { n * (FLIGHT + 2.0 * WORD) } else { 0.0 };
+            // Flight, middle, mark of the rounds and length of the list.
+            let of_rounds = if rounds { n * (FLIGHT + 3.0 * WORD) } else { 0.0 };
             n * 4.0 * WORD + filled * WORD + order + of_rounds
         }
-        // Middle, cell and layer in; the lists and their lengths out. (The few that are longer than eight are sought twice.)
-        "neighbours" => n * 4.0 * WORD + filled * WORD + candidates * WORD,
+        // Middle, cell and layer in; lengths of the lists in and out; the lists out. (The few that are longer than eight are sought twice.)
+        "neighbours" => n * 5.0 * WORD + filled * WORD + candidates * WORD,
         // The first round: lists, states and flights in, choices out. Later ones look at few.
         "choose" => candidates * WORD + n * (WORD + PARTICLE + FLIGHT + 2.0 * WORD),
         // Choices in, pairs out; states and flights of those that collide in and out.
