@@ -3,8 +3,8 @@
 // or at once if they overlap and approach (specification, section 2).
 //
 // Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
-// One thread per particle in the first round, per entry of `rechoose` in later ones: only a particle that
-// collided, or whose neighbour did, can choose otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
+// One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
+// collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
 // choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
 // the order of the candidates. Seen from the other particle of a pair, r and g have the other sign and all that is made of
 // them here has the same bits, so that both agree on its time.
@@ -28,9 +28,6 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     if (step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&layers[s]) & LAYER)) {
-        if (step.round == 0u) {
-            choices[s] = vec2<u32>(NOBODY, 0u);
-        }
         return;
     }
     var best = vec2<u32>(NOBODY, 0u);

@@ -26,7 +26,7 @@ fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
         return;
     }
     // Where both have just chosen, the lower id speaks for the pair.
-    let both = touched[other] == step.round;
+    let both = touched[other] == step.round + 1u;
     let first = id_of(sorted[s].tag) < id_of(sorted[other].tag);
     if (both && !first) {
         return;

@@ -1,8 +1,9 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl
 // The neighbour lists, as far as they are short (search.wgsl).
 //
-// Reads what the search does and `layers`; writes `neighbours` and `neighbour_count` (zero before), appends longer lists to
-// `long_lists`, and to `screened` those with neighbours that may be behind a wall. One thread per particle, which looks for
+// Reads what the search does, `sorted` and `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
+// nobody has chosen; appends longer lists to the first half of `long_lists`, to its second those with neighbours that may be
+// behind a wall, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
 // candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
 
@@ -15,7 +16,11 @@ const FEWEST_TURNS: u32 = 4;
 const KEPT: u32 = 4;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(25) var<storage, read_write> screened: array<u32>;
+@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
+@group(0) @binding(28) var<storage, read_write> touched: array<atomic<u32>>;
+@group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
+@group(0) @binding(30) var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
@@ -39,7 +44,20 @@ fn enter(list: u32, k: u32, entry: u32, stride: u32) {
 
 fn to_screen(s: u32) {
     if ((atomicOr(&layers[s], UNSCREENED) & UNSCREENED) == 0u) {
-        screened[append(LIST_SCREEN)] = s;
+        long_lists[arrayLength(&neighbour_count) + append(LIST_SCREEN)] = s;
+    }
+}
+
+fn to_choose(s: u32) {
+    // As in touch.wgsl, of the first round.
+    if (atomicMax(&touched[s], 1u) == 0u) {
+        let k = atomicAdd(&counters[LIST_RECHOOSE], 1u);
+        rechoose[k] = s;
+        if (k % WORKGROUP == 0u) {
+            let group = k / WORKGROUP;
+            atomicMax(&rechoose_dispatches[3u * LIST_RECHOOSE], min(group + 1u, GROUP_LIMIT));
+            atomicMax(&rechoose_dispatches[3u * LIST_RECHOOSE + 1u], group / GROUP_LIMIT + 1u);
+        }
     }
 }
 
@@ -53,6 +71,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (VENTS && (atomicLoad(&layers[s]) & LAYER) == LAYER) {
         return;
     }
+    choices[s].x = NOBODY;
     let middle = middles[s];
     let stride = arrayLength(&neighbour_count);
     let reach = reach_of(s, middle);
@@ -78,6 +97,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     while (k < turns) {
         var found = 0u;
         var partners = vec4<u32>(0u);
+        var places = vec4<u32>(0u);
         // One loop over all rows: threads that run together wait for the one with the most candidates, not for the fullest row of each.
         for (; k < turns && found < KEPT; k++) {
             var base = r0;
@@ -88,8 +108,9 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             let j = select(s, base + k, k < e4);
             let other = middles[j];
             if (j != s && may_meet(middle, other, j, n)) {
-                let near_wall = (middle | other) & NEAR_WALL;
-                partners = select(partners, vec4<u32>(j | near_wall), vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u));
+                let next = vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u);
+                partners = select(partners, vec4<u32>(j), next);
+                places = select(places, vec4<u32>(other), next);
                 found++;
             }
         }
@@ -97,25 +118,34 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         if (found == 0u) {
             continue;
         }
+        let velocity = sorted[s].motion.xyz;
         var own_place = 0u;
         if (listed) {
             own_place = atomicAdd(&neighbour_count[s], found);
         }
         for (var p = 0u; p < found; p++) {
-            let two = select(partners.xy, partners.zw, p >= 2u);
-            let partner = select(two.x, two.y, (p & 1u) != 0u);
-            let j = partner & ~NEAR_WALL;
-            let near_wall = partner != j;
+            let j = partners.x;
+            let other = places.x;
+            partners = partners.yzww;
+            places = places.yzww;
+            let near_wall = ((middle | other) & NEAR_WALL) != 0u;
+            let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
             if (listed) {
                 enter(s, own_place + p, j, stride);
                 if (near_wall) {
                     to_screen(s);
+                }
+                if (collide) {
+                    to_choose(s);
                 }
             }
             if (has_list(j)) {
                 enter(j, atomicAdd(&neighbour_count[j], 1u), s, stride);
                 if (near_wall) {
                     to_screen(j);
+                }
+                if (collide) {
+                    to_choose(j);
                 }
             }
         }

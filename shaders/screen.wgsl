@@ -2,7 +2,7 @@
 // Takes from the neighbour lists near walls those that stand behind a wall where their flights start.
 //
 // Reads `sorted`, `flights` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
-// per entry of `screened`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
+// per entry of the second half of `long_lists`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
 // and so the start of the step is taken from `particles` and `newborns`. The test of a pair takes the lower id first, so both sides agree.
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -10,7 +10,7 @@
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(25) var<storage, read> screened: array<u32>;
+@group(0) @binding(58) var<storage, read> long_lists: array<u32>;
 
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
@@ -35,7 +35,7 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             return;
         }
     } else if (entry < atomicLoad(&counters[LIST_SCREEN])) {
-        s = screened[entry];
+        s = long_lists[arrayLength(&neighbour_count) + entry];
     } else {
         return;
     }

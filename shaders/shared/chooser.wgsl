@@ -1,5 +1,5 @@
-// Who chooses in a round: all particles in the first, in later ones those of `rechoose`, which a collision
-// may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
+// Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
+// those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
 @group(0) @binding(29) var<storage, read> rechoose: array<u32>;
 
@@ -7,9 +7,6 @@
 fn chooser(thread: u32) -> u32 {
     if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
-    }
-    if (step.round == 0u) {
-        return select(NOBODY, thread, thread < step.total);
     }
     if (thread >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
         return NOBODY;

@@ -55,12 +55,12 @@ fn packed(p: vec3<u32>) -> u32 {
     return q.x | (q.y << 10u) | (q.z << 20u);
 }
 
-// The square of the distance of two packed positions, in 1/128 cells.
-fn packed_distance2(a: u32, b: u32) -> i32 {
+// b - a of two packed positions, in 1/128 cells.
+fn packed_between(a: u32, b: u32) -> vec3<i32> {
     let x = extractBits(i32(b & 1023u) - i32(a & 1023u), 0u, 10u);
     let y = extractBits(i32((b >> 10u) & 1023u) - i32((a >> 10u) & 1023u), 0u, 10u);
     let z = extractBits(i32((b >> 20u) & 1023u) - i32((a >> 20u) & 1023u), 0u, 10u);
-    return x * x + y * y + z * z;
+    return vec3<i32>(x, y, z);
 }
 
 // The cell of a point that may lie outside the grid (the mid-step point of a fast particle beyond a

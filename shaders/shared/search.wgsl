@@ -58,7 +58,8 @@ fn row_at(first: u32, left: i32, reach: Reach) -> vec2<u32> {
 
 // Whether a particle may meet particle j at `other`, by the smaller of the two diameters, so that either is in the other's list.
 fn may_meet(middle: u32, other: u32, j: u32, own_near2: i32) -> bool {
-    let distance2 = packed_distance2(middle, other);
+    let away = packed_between(middle, other);
+    let distance2 = dot(away, away);
     return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_of(flights[j])));
 }
 

@@ -254,10 +254,10 @@ pub struct ParticleBuffers {
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds.
     pub bins: wgpu::Buffer,
-    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`; afterwards the `pairs` of the rounds, half as
-    /// many.
+    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, to screen the lists in its second half; afterwards
+    /// the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `near_walls`, `screened`, `rechoose` and `bouncing`: a list is done with before the next begins.
+    /// One after the other `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub flights: wgpu::Buffer,
@@ -406,7 +406,7 @@ impl<'a> Buffers<'a> {
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "choices") => &particle.bins,
             (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
-            (_, "near_walls" | "screened" | "rechoose" | "bouncing") => &particle.rare,
+            (_, "near_walls" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,

@@ -437,14 +437,9 @@ impl Subdomain {
         step: &StepSlot,
         round: u32,
     ) {
-        let device = rec.device();
-        let offset = self.offset(device, step, round);
+        let offset = self.offset(rec.device(), step, round);
         let pass = rec.phase(phase);
-        if round == 0 {
-            kernel.dispatch(pass, offset, all(device, step));
-        } else {
-            kernel.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
-        }
+        kernel.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
     }
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.

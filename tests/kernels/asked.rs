@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep};
 
 use crate::choose::{Cloud, DT};
-use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, tails_of};
+use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, put_to_screen, tails_of, to_screen_of};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -55,6 +55,8 @@ fn those_that_are_asked_choose_as_if_they_had_not_waited() {
     assert_eq!(rig.counter(LIST_ASKED), 0, "nobody waits, nobody is asked");
 
     let mut rig = rig_of(&cloud, &layers);
+    // As `neighbours` leaves it.
+    rig.put("choices", &vec![[NOBODY, 7]; COUNT]);
     rig.step(step_of(&cloud, WAIT));
     rig.run("choose", COUNT);
     let first: Vec<[u32; 2]> = rig.get("choices", COUNT);
@@ -110,7 +112,6 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
         // The first search adds to lists, the pass over those that were asked writes its own.
         rig.put("neighbour_count", &vec![if ghosts == PASS { 6u32 } else { 0 }; COUNT]);
         put_room(&mut rig, COUNT, TAILS);
-        rig.put("screened", &vec![0u32; COUNT]);
         rig.put("asked", asked);
         rig.set_counter(LIST_ASKED, asked.len() as u32);
         rig.step(step_of(&cloud, ghosts));
@@ -122,7 +123,7 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
         let mut lists = lists(&rig, COUNT, TAILS);
         // Their order is of no matter.
         lists.iter_mut().for_each(|list| list.sort_unstable());
-        (lists, marks, rig.list("screened", LIST_SCREEN))
+        (lists, marks, to_screen_of(&rig, COUNT))
     };
     let asked: Vec<u32> = (0..COUNT as u32).filter(|&s| layers[s as usize] & 0xff == 1 && s % 3 == 0).collect();
     let known = asked[0] as usize;
@@ -164,8 +165,7 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
     let screened: Vec<u32> = (0..COUNT as u32).collect();
     let lists = |rig: &Rig| lists(rig, COUNT, tails_of(cloud.lists.iter().map(Vec::len)));
     let mut rig = rig_of(&cloud, &layers);
-    rig.put("screened", &screened);
-    rig.set_counter(LIST_SCREEN, COUNT as u32);
+    put_to_screen(&mut rig, COUNT, &screened);
     rig.step(step_of(&cloud, ALL));
     rig.run("screen", COUNT);
     let early = lists(&rig);
@@ -187,7 +187,7 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
         let mut rig = rig_of(&cloud, &vec![1 | UNSCREENED; COUNT]);
         rig.put("sorted", &changed);
         rig.put("flights", &flights);
-        rig.put("screened", &[0u32; 4]);
+        put_to_screen(&mut rig, COUNT, &[]);
         rig.put("particles", from);
         rig.put("origins", &order);
         rig.put("asked", &screened[..COUNT - 1]);

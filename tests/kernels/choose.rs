@@ -47,7 +47,9 @@ impl Cloud {
         rig.put("sorted", &self.particles);
         rig.put("flights", &self.flights);
         crate::neighbour_lists::put_lists(&mut rig, &self.lists);
-        rig.put("rechoose", &vec![0u32; count]);
+        // All of them choose in the first round.
+        rig.put("rechoose", &(0..count as u32).collect::<Vec<_>>());
+        rig.set_counter(LIST_RECHOOSE, count as u32);
         rig.put("touched", &vec![0u32; count]);
         rig
     }
@@ -192,7 +194,7 @@ fn choices_are_those_of_the_rule() {
         let before = vec![[7u32, 7]; count];
         rig.put("choices", &before);
         rig.put("rechoose", &some);
-        rig.set_counter(LIST_RECHOOSE + 2, some.len() as u32);
+        rig.set_counter(LIST_RECHOOSE + round as usize, some.len() as u32);
         rig.step(cloud.step(round));
         rig.run("choose", some.len());
         let choices: Vec<[u32; 2]> = rig.get("choices", count);

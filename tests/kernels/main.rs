@@ -77,7 +77,8 @@ fn every_kernel_has_its_test() {
 }
 
 /// Whether there are other devices is asked by kernels of integers alone: with floating point one device would have other
-/// pipelines than several, and a driver may round otherwise in each.
+/// pipelines than several, and a driver may round otherwise in each. (`neighbours` has some, in the sieve, which has room for any
+/// rounding.)
 #[test]
 fn only_kernels_of_integers_know_whether_a_device_is_alone() {
     // Beside the declaration.

@@ -43,9 +43,8 @@ fn mutual_choices(among_others: bool) {
     }
     let id = |s: usize| particles[s].id();
     for round in [0, 1, ROUNDS] {
-        let chose: BTreeSet<u32> = (0..COUNT as u32).filter(|_| round == 0 || stream.below(3) == 0).collect();
-        let touched: Vec<u32> =
-            (0..COUNT as u32).map(|s| if chose.contains(&s) { round } else { round.saturating_sub(1) }).collect();
+        let chose: BTreeSet<u32> = (0..COUNT as u32).filter(|_| stream.below(3) == 0).collect();
+        let touched: Vec<u32> = (0..COUNT as u32).map(|s| if chose.contains(&s) { round + 1 } else { round }).collect();
         let mut entries: Vec<u32> = chose.iter().copied().collect();
         stream.shuffle(&mut entries);
         let mut expected: Vec<[u32; 2]> = Vec::new();
@@ -64,9 +63,9 @@ fn mutual_choices(among_others: bool) {
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
         rig.put("touched", &touched);
         rig.put("rechoose", &entries);
-        rig.set_counter(LIST_RECHOOSE + round as usize, if round == 0 { 0 } else { entries.len() as u32 });
+        rig.set_counter(LIST_RECHOOSE + round as usize, entries.len() as u32);
         rig.step(GpuStep { count: COUNT as u32, round, ..GpuStep::default() });
-        rig.run("match_pairs", if round == 0 { COUNT } else { entries.len() });
+        rig.run("match_pairs", entries.len());
         assert_eq!(rig.counter(round as usize), expected.len() as u32, "round {round}");
         let mut found: Vec<[u32; 2]> = rig.get("pairs", expected.len());
         found.sort_unstable();
@@ -113,10 +112,10 @@ fn pairs_beyond_reach_are_left_to_others_and_each_is_counted_by_one() {
         rig.put("sorted", &particles);
         rig.put("choices", &choices);
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
-        rig.put("touched", &vec![round; COUNT]);
+        rig.put("touched", &vec![round + 1; COUNT]);
         rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
         rig.put("layers", &layers);
-        rig.set_counter(LIST_RECHOOSE + round as usize, if round == 0 { 0 } else { COUNT as u32 });
+        rig.set_counter(LIST_RECHOOSE + round as usize, COUNT as u32);
         rig.step(GpuStep { count: COUNT as u32, round, reach, ..GpuStep::default() });
         rig.run("match_pairs", COUNT);
         if round < ROUNDS {

@@ -56,6 +56,22 @@ pub fn lengthen(rig: &Rig, late: bool) {
     rig.run("lengthen", long as usize);
 }
 
+/// The lists that `neighbours` wants screened, in ascending order.
+pub fn to_screen_of(rig: &Rig, count: usize) -> Vec<u32> {
+    let entries: Vec<u32> = rig.get("long_lists", 2 * count);
+    let mut listed = entries[count..count + rig.counter(LIST_SCREEN) as usize].to_vec();
+    listed.sort_unstable();
+    listed
+}
+
+/// Lists to be screened.
+pub fn put_to_screen(rig: &mut Rig, count: usize, these: &[u32]) {
+    let mut entries = vec![NOBODY; count];
+    entries.extend(these);
+    rig.put("long_lists", &entries);
+    rig.set_counter(LIST_SCREEN, these.len() as u32);
+}
+
 /// How many entries the tails of such lists have.
 pub fn tails_of(lengths: impl Iterator<Item = usize>) -> usize {
     lengths.filter(|&length| length > DIRECT).map(|length| length - (DIRECT - 1)).sum()

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuStep};
+use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 
-use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, tails_of};
+use crate::choose::{DIAMETER, DT};
+use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, tails_of, to_screen_of};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -15,6 +16,8 @@ struct Crowd {
     /// Mid-step points by (cell, order), some beyond the grid.
     middles: Vec<[u32; 3]>,
     rig: Rig,
+    /// Of the step, s.
+    dt: f32,
 }
 
 fn crowd(seed: u32) -> Crowd {
@@ -34,6 +37,12 @@ fn crowd(seed: u32) -> Crowd {
     }
     middles.sort_by_key(|&p| cells.index(cells.cell(p)));
     let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    crowd_at(World::plain(), middles, of)
+}
+
+/// Mid-step points in the order of their cells.
+fn crowd_at(world: World, middles: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
+    let cells = world.cells();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
     let packed: Vec<u32> =
         middles.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | u32::from(world.class(c) != CLEAR) << 31).collect();
@@ -41,8 +50,9 @@ fn crowd(seed: u32) -> Crowd {
     rig.put("cell_start", &start);
     rig.put("middles", &packed);
     rig.put("cells", &of);
-    rig.put("screened", &vec![0u32; COUNT]);
-    Crowd { world, middles, rig }
+    rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
+    rig.put("choices", &vec![[7u32; 2]; COUNT]);
+    Crowd { world, middles, rig, dt: 0.0 }
 }
 
 impl Crowd {
@@ -52,10 +62,12 @@ impl Crowd {
 
     /// With room for tails of so many entries.
     fn run_near(&mut self, tails: usize, near2: u32) -> Vec<Vec<u32>> {
-        self.rig.step(GpuStep { count: COUNT as u32, near2, ..GpuStep::default() });
+        self.rig.step(GpuStep { count: COUNT as u32, near2, dt: self.dt, ..GpuStep::default() });
         put_room(&mut self.rig, COUNT, tails);
         self.rig.put("neighbour_count", &vec![0u32; COUNT]);
         self.rig.put("layers", &vec![0u32; COUNT]);
+        self.rig.put("touched", &vec![0u32; COUNT]);
+        self.rig.put("rechoose", &vec![NOBODY; COUNT]);
         self.rig.run("neighbours", COUNT);
         lengthen(&self.rig, false);
         lists(&self.rig, COUNT, tails)
@@ -118,7 +130,7 @@ fn all_are_found(among_others: bool) {
         !list.is_empty() && (near_wall(*s) || list.iter().any(|&j| near_wall(j)))
     };
     let screened: Vec<u32> = (0..COUNT as u32).filter(to_screen).collect();
-    assert_eq!(crowd.rig.list("screened", LIST_SCREEN), screened);
+    assert_eq!(to_screen_of(&crowd.rig, COUNT), screened);
     assert!(screened.len() < COUNT, "some are clear of walls");
     // The check can fail: the packed rule is wider than the edge of a cell, but by few pairs.
     let total: usize = lists.iter().map(Vec::len).sum();
@@ -174,6 +186,8 @@ fn the_outermost_ghosts_have_no_neighbours() {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
         crowd.rig.put("layers", &layers);
+        crowd.rig.put("touched", &vec![0u32; COUNT]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT]);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
@@ -231,4 +245,45 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
     }
     let total: usize = lists.iter().map(BTreeSet::len).sum();
     assert!(shorter > COUNT / 3 && near > 9 * total / 10, "{shorter} shorter, {near} of {total} near");
+}
+
+/// The sieve before the choices keeps back nobody who has anybody to choose, of point particles and of rigid spheres, in steps
+/// from short to long, and most of those who have not.
+#[test]
+fn those_kept_from_choosing_have_nobody_to_choose() {
+    let mut stream = Stream::new(19);
+    let world = World::plain();
+    let cells = world.cells();
+    let edge = world.grid.cell;
+    for (dt, rigid) in [(1e-6, false), (DT, false), (1e-6, true), (DT, true)] {
+        let mut particles = world.particles(&mut stream, COUNT, 400.0);
+        // Two that fly together.
+        particles[1] = GpuParticle { tag: particles[1].tag, ..particles[0] };
+        let middle = |p: &GpuParticle| cells.middle(p.position, p.velocity, dt);
+        particles.sort_by_key(|p| cells.index(cells.cell(middle(p))));
+        let middles: Vec<[u32; 3]> = particles.iter().map(middle).collect();
+        let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+        let mut crowd = crowd_at(World::plain(), middles, of);
+        crowd.rig.constant("DIAMETER", DIAMETER);
+        crowd.rig.constant("DIAMETER2_PACKED", (128.0 * DIAMETER / edge).powi(2).floor());
+        crowd.rig.constant("RIGID", f64::from(u8::from(rigid)));
+        crowd.rig.put("sorted", &particles);
+        crowd.rig.put("flights", &free_flights(COUNT));
+        crowd.dt = dt;
+        crowd.run();
+        let choosers = crowd.rig.list("rechoose", LIST_RECHOOSE);
+        assert_eq!(crowd.rig.get::<[u32; 2]>("choices", COUNT), vec![[NOBODY, 7]; COUNT]);
+        // Now all.
+        crowd.rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
+        crowd.rig.set_counter(LIST_RECHOOSE, COUNT as u32);
+        crowd.rig.run("choose", COUNT);
+        let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
+        let choose = |s: &u32| choices[*s as usize][0] != NOBODY;
+        let missed: Vec<u32> =
+            (0..COUNT as u32).filter(choose).filter(|s| choosers.binary_search(s).is_err()).collect();
+        assert!(missed.is_empty(), "dt {dt}, rigid {rigid}: {missed:?}");
+        let chosen = (0..COUNT as u32).filter(choose).count();
+        println!("dt {dt}, rigid {rigid}: {chosen} of {} that may, of {COUNT}", choosers.len());
+        assert!(chosen > 20 && choosers.len() < 3 * chosen + COUNT / 20, "{chosen} of {}", choosers.len());
+    }
 }

@@ -3,7 +3,7 @@
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuFlight, GpuStep};
 
-use crate::neighbour_lists::{DIRECT, put_lists, tails_of};
+use crate::neighbour_lists::{DIRECT, put_lists, put_to_screen, tails_of};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::along;
 use crate::oracle::walls::parted;
@@ -52,8 +52,7 @@ fn lists_lose_exactly_those_behind_a_wall() {
     // All but the last are to be screened.
     let mut screened: Vec<u32> = (0..COUNT as u32 - 1).collect();
     stream.shuffle(&mut screened);
-    rig.put("screened", &screened);
-    rig.set_counter(LIST_SCREEN, screened.len() as u32);
+    put_to_screen(&mut rig, COUNT, &screened);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("screen", screened.len());
     let kept = crate::neighbour_lists::lists(&rig, COUNT, tails_of(lists.iter().map(Vec::len)));
