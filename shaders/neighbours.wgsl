@@ -1,13 +1,11 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl
 // The neighbour lists, as far as they are short (search.wgsl).
 //
-// Reads what the search does, `sorted` and `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
+// Reads what the search does and `sorted`; reads and writes `layers` and `touched`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
 // nobody has chosen; appends longer lists to the first half of `long_lists`, to its second those with neighbours that may be
 // behind a wall, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
 // candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
-
-override VENTS: bool = true;
 
 // Turns that each search takes at least. Until then threads without a candidate look at their own particle: a software device
 // guesses wrong, for each of eight threads, who reads and who does not.
@@ -64,11 +62,8 @@ fn to_choose(s: u32) {
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
-    if (s >= step.total) {
-        return;
-    }
-    // Slots without particle.
-    if (VENTS && (atomicLoad(&layers[s]) & LAYER) == LAYER) {
+    // The slots behind the last cell's hold no particle.
+    if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
     choices[s].x = NOBODY;

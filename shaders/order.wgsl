@@ -24,7 +24,6 @@
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 override ORIFICES: bool = true;
-override VENTS: bool = true;
 // Pairs are chosen from neighbour lists, in rounds.
 override ROUNDS_OF_PAIRS: bool = true;
 
@@ -46,8 +45,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (s >= step.total) {
         return;
     }
-    if (VENTS && s >= cell_start[step.bins]) {
-        // On a device alone, whose host learns late how many have left: slots that hold no particle.
+    if (s >= cell_start[step.bins]) {
+        // Slots that hold no particle: on a device alone, whose host learns late how many have left through vents, and where particles
+        // have been dropped that are nowhere near this device.
         layers[s] = LAYER;
         if (ROUNDS_OF_PAIRS) {
             neighbour_count[s] = 0u;

@@ -1,9 +1,9 @@
 // Which ghosts choose partners.
 //
 // The choice of a ghost in the outermost layer that chooses at all matters only if a particle farther in has
-// chosen it. So such ghosts may wait until they are asked: when the others have chosen, a second pass of the same
-// kernels (the same pipelines, so that no driver rounds otherwise) searches and screens the neighbours of those asked
-// for the first time, and has all that were ever asked in this step choose. A choice is a function of the state, so
+// chosen it. So such ghosts may wait until they are asked: when the others have chosen, a second pass
+// searches (neighbours_asked.wgsl, of integers) and screens the neighbours of those asked for the first time, and has all that were
+// ever asked in this step choose (both by the same pipelines, so that no driver rounds otherwise). A choice is a function of the state, so
 // it does not matter when, or whether, it is made.
 
 // `step.ghosts`: all of them choose; the outermost wait; the pass over those that were asked.

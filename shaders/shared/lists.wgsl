@@ -4,7 +4,7 @@
 
 // Lists 0 .. 8 are the pairs of the rounds (of the method `cell`, list 0 the cells that walls part, list 1 those
 // that moving walls touch); list ROUNDS counts the pairs that the rounds lost. Lists
-// LIST_RECHOOSE + r are the particles that choose again in round r >= 1. LIST_BORDER are the particles
+// LIST_RECHOOSE + r are the particles that choose in round r. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
 // were asked for their choice; LIST_OUTBOX and
 // LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo.

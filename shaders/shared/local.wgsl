@@ -30,7 +30,7 @@ fn layer_of(c: vec3<u32>) -> u32 {
 }
 
 // `layers` holds a particle's layer (0 of the own, halo.wgsl) and these marks: another device may have it as a ghost; it is in the list
-// `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched, and they
+// `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched; its neighbours
 // are yet to be screened. (Above them `collide_parted` keeps the part of the cell.)
 const LAYER: u32 = 0xff;
 const SHARED: u32 = 0x100;

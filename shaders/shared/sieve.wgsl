@@ -14,12 +14,12 @@ const PACKING: f32 = 2.0;
 
 // Two packed mid-step points and their relative velocity.
 fn may_collide(a: u32, b: u32, g: vec3<f32>) -> bool {
-    // What lies beyond its cell is packed nearer than it is.
-    if (((a | b) & ASTRAY) != 0u) {
+    let g2 = dot(g, g);
+    // What lies beyond its cell is packed nearer than it is; and drivers may differ in what is too small to be normal.
+    if (((a | b) & ASTRAY) != 0u || g2 < 1e-30) {
         return true;
     }
     let r = vec3<f32>(packed_between(a, b));
-    let g2 = dot(g, g);
     let along = dot(r, g);
     let reach = sqrt(f32(DIAMETER2_PACKED + 1u)) + PACKING;
     // They are nearest within half a step from its middle; rigid spheres touch before that.

@@ -95,7 +95,7 @@ pub struct FixedBuffers {
     pub zone_sums: wgpu::Buffer,
     pub surface_sums: wgpu::Buffer,
     pub block_sums: wgpu::Buffer,
-    /// Sizes of the indirect dispatches over lists, and those over the particles that choose again: a
+    /// Sizes of the indirect dispatches over lists, and those over the particles that choose: a
     /// dispatch may not write the buffer that it takes its size from.
     pub dispatches: wgpu::Buffer,
     pub rechoose_dispatches: wgpu::Buffer,

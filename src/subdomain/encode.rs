@@ -428,7 +428,7 @@ impl Subdomain {
         }
     }
 
-    /// Over all particles in the first round, over those that choose again in later ones.
+    /// Over those that choose in the round.
     fn choosing(
         &self,
         kernel: &BoundKernel,

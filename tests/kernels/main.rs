@@ -80,7 +80,7 @@ fn every_kernel_has_its_test() {
 /// pipelines than several, and a driver may round otherwise in each. (`neighbours` has some, in the sieve, which has room for any
 /// rounding.)
 #[test]
-fn only_kernels_of_integers_know_whether_a_device_is_alone() {
+fn only_kernels_that_no_rounding_matters_to_know_whether_a_device_is_alone() {
     // Beside the declaration.
     let asks = |source: &str| source.matches("HALO").count() > 1;
     let found: Vec<&str> =

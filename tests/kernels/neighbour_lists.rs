@@ -12,7 +12,9 @@ pub const TAILS: usize = 1 << 16;
 pub fn put_room(rig: &mut Rig, count: usize, tails: usize) {
     rig.put("neighbours", &vec![NOBODY; DIRECT * count + tails]);
     rig.put("long_lists", &vec![NOBODY; 2 * count]);
-    [LIST_LONG, LIST_LONG_LATE, LIST_TAILS].into_iter().for_each(|list| rig.set_counter(list, 0));
+    [LIST_LONG, LIST_LONG_LATE, LIST_TAILS, LIST_SCREEN, LIST_RECHOOSE]
+        .into_iter()
+        .for_each(|list| rig.set_counter(list, 0));
 }
 
 pub fn put_lists(rig: &mut Rig, lists: &[Vec<u32>]) {

@@ -94,7 +94,7 @@ fn lists_are_those_of_a_search_of_all_pairs_and_miss_nobody_near() {
     all_are_found(true);
 }
 
-/// The same by the kernels of a device that has no others and no vents, which ask less.
+/// The same by the kernels of a device that has no others, which ask less.
 #[test]
 fn lists_of_a_device_alone_are_those_of_a_search_of_all_pairs() {
     all_are_found(false);
@@ -103,7 +103,6 @@ fn lists_of_a_device_alone_are_those_of_a_search_of_all_pairs() {
 fn all_are_found(among_others: bool) {
     let mut crowd = crowd(12);
     crowd.rig.constant("HALO", f64::from(u8::from(among_others)));
-    crowd.rig.constant("VENTS", f64::from(u8::from(among_others)));
     let lists = crowd.run();
     let expected = crowd.all_pairs();
     let cells = crowd.world.cells();
@@ -174,6 +173,26 @@ fn tails_without_room_are_reported_with_the_room_they_need() {
     // With that room all have it.
     let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
     assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
+}
+
+/// Slots behind those of the last cell, which hold nobody, neither look for anybody nor are found.
+#[test]
+fn slots_behind_the_last_cell_hold_nobody() {
+    let mut crowd = crowd(18);
+    let held = COUNT - 70;
+    let cells = crowd.world.cells();
+    let mut of: Vec<u32> = crowd.middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let start: Vec<u32> =
+        (0..=cells.count() as u32).map(|c| of[..held].partition_point(|&own| own < c) as u32).collect();
+    crowd.rig.put("cell_start", &start);
+    // As memory is at first.
+    of[held..].fill(0);
+    crowd.rig.put("cells", &of);
+    let found = crowd.run();
+    for (s, expected) in crowd.all_pairs().iter().enumerate() {
+        let expected: BTreeSet<u32> = expected.iter().copied().filter(|&j| s < held && (j as usize) < held).collect();
+        assert_eq!(found[s].iter().copied().collect::<BTreeSet<u32>>(), expected, "particle {s}");
+    }
 }
 
 /// The outermost ghosts, whose neighbours are not all here, have none; the lists of all others are as ever.
@@ -255,8 +274,17 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
     let world = World::plain();
     let cells = world.cells();
     let edge = world.grid.cell;
-    for (dt, rigid) in [(1e-6, false), (DT, false), (1e-6, true), (DT, true)] {
+    for (dt, rigid, wind) in [
+        (1e-6, false, 0.0),
+        (DT, false, 0.0),
+        (1e-6, true, 0.0),
+        (DT, true, 0.0),
+        (1e-6, false, 9000.0),
+        (DT, false, 9000.0),
+    ] {
         let mut particles = world.particles(&mut stream, COUNT, 400.0);
+        // With a wind of cells in a step, beyond the border too.
+        particles.iter_mut().for_each(|p| p.velocity[0] += wind);
         // Two that fly together.
         particles[1] = GpuParticle { tag: particles[1].tag, ..particles[0] };
         let middle = |p: &GpuParticle| cells.middle(p.position, p.velocity, dt);
