@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl
 // The neighbour lists, as far as they are short (search.wgsl).
 //
 // Reads what the search does and `sorted`; reads and writes `layers` and `touched`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
@@ -16,9 +16,6 @@ const KEPT: u32 = 4;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
-@group(0) @binding(28) var<storage, read_write> touched: array<atomic<u32>>;
-@group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
-@group(0) @binding(30) var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
@@ -43,19 +40,6 @@ fn enter(list: u32, k: u32, entry: u32, stride: u32) {
 fn to_screen(s: u32) {
     if ((atomicOr(&layers[s], UNSCREENED) & UNSCREENED) == 0u) {
         long_lists[arrayLength(&neighbour_count) + append(LIST_SCREEN)] = s;
-    }
-}
-
-fn to_choose(s: u32) {
-    // As in touch.wgsl, of the first round.
-    if (atomicMax(&touched[s], 1u) == 0u) {
-        let k = atomicAdd(&counters[LIST_RECHOOSE], 1u);
-        rechoose[k] = s;
-        if (k % WORKGROUP == 0u) {
-            let group = k / WORKGROUP;
-            atomicMax(&rechoose_dispatches[3u * LIST_RECHOOSE], min(group + 1u, GROUP_LIMIT));
-            atomicMax(&rechoose_dispatches[3u * LIST_RECHOOSE + 1u], group / GROUP_LIMIT + 1u);
-        }
     }
 }
 
@@ -131,7 +115,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                     to_screen(s);
                 }
                 if (collide) {
-                    to_choose(s);
+                    to_choose(s, 0u);
                 }
             }
             if (has_list(j)) {
@@ -140,7 +124,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                     to_screen(j);
                 }
                 if (collide) {
-                    to_choose(j);
+                    to_choose(j, 0u);
                 }
             }
         }

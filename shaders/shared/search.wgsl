@@ -63,7 +63,7 @@ fn may_meet(middle: u32, other: u32, j: u32, own_near2: i32) -> bool {
     return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_of(flights[j])));
 }
 
-// Looks all around. Writes what it finds: the first `direct`, at most eight, interleaved, the others, where there is a tail, there.
+// Looks all around. Writes what it finds: the first `direct` interleaved, the others, where there is a tail, there.
 fn search(s: u32, direct: u32, tail: u32) -> Found {
     let middle = middles[s];
     let stride = arrayLength(&neighbour_count);
@@ -96,8 +96,6 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
     let e8 = e7 + r8.y;
     var found = 0u;
     var flags = middle;
-    var first_four = vec4<u32>(0u);
-    var next_four = vec4<u32>(0u);
     // One loop over all of them: threads that run together wait for the one with the most candidates, not for the fullest row of each.
     for (var k = 0u; k < e8; k++) {
         var base = r0.x;
@@ -113,20 +111,10 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
         let other = middles[j];
         if (j != s && may_meet(middle, other, j, n)) {
             flags |= other;
-            if (tail != NOBODY) {
+            if (found < direct || tail != NOBODY) {
                 neighbours[select(tail + found, found * stride + s, found < direct)] = j;
             }
-            first_four = select(first_four, vec4<u32>(j), vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u));
-            next_four = select(next_four, vec4<u32>(j), vec4<u32>(found) == vec4<u32>(4u, 5u, 6u, 7u));
             found++;
-        }
-    }
-    if (tail == NOBODY) {
-        // Few of the candidates are near enough: written at once, they are that many writes, and side by side.
-        for (var k = 0u; k < min(found, direct); k++) {
-            let four = select(first_four, next_four, k >= 4u);
-            let two = select(four.xy, four.zw, (k & 2u) != 0u);
-            neighbours[k * stride + s] = select(two.x, two.y, (k & 1u) != 0u);
         }
     }
     return Found(found, flags);

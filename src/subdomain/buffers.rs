@@ -383,7 +383,7 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle" | "pack", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
+            ("settle" | "pack" | "neighbours", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             ("receive", "dispatches") => &fixed.rechoose_dispatches,
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,

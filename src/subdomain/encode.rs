@@ -355,8 +355,8 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
-            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_LONG);
-            kernels.screen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_SCREEN);
+            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_LONG);
+            kernels.screen.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_SCREEN);
         }
     }
 
