@@ -7,6 +7,10 @@ use crate::oracle::random::Stream;
 use crate::rig::*;
 
 const COUNT: usize = 2000;
+/// Slots behind those of the last cell.
+const EMPTY: usize = 70;
+/// What `layers` has of a slot without particle.
+const LAYER: u32 = 0xff;
 /// A typical flight is a third of a cell; some leave the grid.
 const SPEED: f64 = 400.0;
 const DT: f32 = 1e-5;
@@ -144,9 +148,10 @@ fn order_is_canonical() {
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         rig.put("flights", &vec![GpuFlight::default(); COUNT]);
         for buffer in ["middles", "cells", "touched", "neighbour_count", "near_walls"] {
-            rig.put(buffer, &vec![9u32; COUNT]);
+            rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
         }
         rig.step(GpuStep {
+            total: (COUNT + EMPTY) as u32,
             count: COUNT as u32 - born,
             newborns: born,
             newborn_offset: 5,
@@ -160,7 +165,7 @@ fn order_is_canonical() {
         rig.constant("BLOCKS_X", f64::from(blocks[0]));
         rig.constant("BLOCKS_Y", f64::from(blocks[1]));
         rig.put("shares", &shares);
-        rig.run("order", COUNT);
+        rig.run("order", COUNT + EMPTY);
         assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "shuffle {shuffle}");
         let flights = rig.get::<GpuFlight>("flights", COUNT);
         let new = |(p, &k): (&GpuParticle, &usize)| GpuFlight {
@@ -171,9 +176,8 @@ fn order_is_canonical() {
         };
         assert_eq!(flights, expected.iter().zip(&canonical).map(new).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
-        for buffer in ["touched", "neighbour_count"] {
-            assert_eq!(rig.get::<u32>(buffer, COUNT), vec![0; COUNT], "{buffer}");
-        }
+        assert_eq!(rig.get::<u32>("touched", COUNT), vec![0; COUNT]);
+        assert_eq!(rig.get::<u32>("neighbour_count", COUNT + EMPTY), vec![0; COUNT + EMPTY]);
         let middles: Vec<u32> = rig.get("middles", COUNT);
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);
@@ -183,7 +187,9 @@ fn order_is_canonical() {
         assert_eq!(rig.list("near_walls", LIST_NEAR_WALLS), near_walls);
         // Alone all are in layer 0 and nobody else's ghosts.
         let marked = |s: u32| if near_walls.contains(&s) { NEAR } else { 0 };
-        assert_eq!(rig.get::<u32>("layers", COUNT), (0..COUNT as u32).map(marked).collect::<Vec<_>>());
+        let layers: Vec<u32> = rig.get("layers", COUNT + EMPTY);
+        assert_eq!(layers[..COUNT], (0..COUNT as u32).map(marked).collect::<Vec<_>>());
+        assert!(layers[COUNT..].iter().all(|&layer| layer == LAYER), "slots behind the last cell's hold nobody");
         assert!(near_walls.len() < COUNT - 50 && near_walls.len() > 50, "{}", near_walls.len());
         // The check can fail: the particles came in another order.
         assert_ne!(particles, expected);
