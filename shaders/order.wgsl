@@ -12,7 +12,8 @@
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(9) var<storage, read> slots: array<vec2<u32>>;
+// Two slots each.
+@group(0) @binding(9) var<storage, read> slots: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
@@ -54,13 +55,16 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         }
         return;
     }
-    let slot = slots[s];
+    let both = slots[s >> 1u];
+    let slot = select(both.xy, both.zw, (s & 1u) != 0u);
     let cell = bins[slot.x].x;
     let begin = cell_start[cell];
     let end = cell_start[cell + 1u];
     var place = begin;
-    for (var k = begin; k < end; k++) {
-        place += select(0u, 1u, slots[k].y < slot.y);
+    for (var k = begin >> 1u; 2u * k < end; k++) {
+        let ids = slots[k].yw;
+        place += select(0u, 1u, ids.x < slot.y && 2u * k >= begin);
+        place += select(0u, 1u, ids.y < slot.y && 2u * k + 1u < end);
     }
     let whole = particles[slot.x];
     sorted[place] = whole;

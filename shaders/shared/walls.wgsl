@@ -84,12 +84,11 @@ fn class_of(cell: u32) -> u32 {
     return (cell_class[cell >> 4u].x >> ((cell & 15u) * 2u)) & 3u;
 }
 
-// How many cells before this one have walls: `wall_start` has an entry for each of those alone.
-fn walled_before(cell: u32) -> u32 {
-    let classes = cell_class[cell >> 4u];
+// Of the classes of sixteen cells, how many of the first `count` have walls.
+fn walled_of(classes: u32, count: u32) -> u32 {
     // The upper bit of each that is CLASS_CUT, 2.
-    let walled = classes.x & ~(classes.x << 1u) & 0xaaaaaaaau;
-    return classes.y + countOneBits(walled & ((1u << ((cell & 15u) * 2u)) - 1u));
+    let walled = classes & ~(classes << 1u) & 0xaaaaaaaau;
+    return countOneBits(select(walled & ((1u << (2u * count)) - 1u), walled, count == 16u));
 }
 
 // Whether a point of the triangle's plane (relative to corner a) is at most `reach` outside its edges.
@@ -116,10 +115,19 @@ fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
-// Where in `wall_start` the cells with walls of an x-row of cells are: neighbours in memory, as are the cells.
+// Where in `wall_start` the cells with walls of an x-row of cells are: neighbours in memory, as are the cells, and `wall_start`
+// has an entry for each of those alone.
 fn walled_row(cells: Cells, y: u32, z: u32) -> vec2<u32> {
-    let row = cell_index(vec3<u32>(cells.low.x, y, z));
-    return vec2<u32>(walled_before(row), walled_before(row + cells.high.x - cells.low.x + 1u));
+    let first = cell_index(vec3<u32>(cells.low.x, y, z));
+    let past = first + cells.high.x - cells.low.x + 1u;
+    let sixteen = first & ~15u;
+    let classes = cell_class[first >> 4u];
+    let begin = classes.y + walled_of(classes.x, first - sixteen);
+    if (past - sixteen <= 16u) {
+        return vec2<u32>(begin, classes.y + walled_of(classes.x, past - sixteen));
+    }
+    let others = cell_class[past >> 4u];
+    return vec2<u32>(begin, others.y + walled_of(others.x, past & 15u));
 }
 
 // And where in `wall_list` their triangles are.
@@ -156,9 +164,7 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
     }
 }
 
-// Whether the flight x0 + v t passes cells with walls in start <= t < end.
-fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
-    let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
+fn any_walled(cells: Cells) -> bool {
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let row = walled_row(cells, y, z);
@@ -166,6 +172,20 @@ fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
                 return true;
             }
         }
+    }
+    return false;
+}
+
+// Whether the flight x0 + v t passes cells with walls in start <= t < end.
+fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
+    let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
+    // Most flights of gas that collides stay in their cell.
+    if (all(cells.low == cells.high)) {
+        if (class_of(cell_index(cells.low)) == CLASS_CUT) {
+            return true;
+        }
+    } else if (any_walled(cells)) {
+        return true;
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {

@@ -21,11 +21,13 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
     let device = Device::open(raw.gpu.as_deref())?;
     let ceilings = Ceilings::measure(&device).map_err(StudyError::from)?;
     say(&format!(
-        "{}: copies {:.2} GB/s (read and written), {:.1} G operations/s, {:.2} G reads/s of words in a cache\n",
+        "{}: copies {:.2} GB/s (read and written), {:.1} G operations/s, {:.2} G reads/s of words in a cache, \
+         {:.1} M particles/s read, moved and written\n",
         device.adapter().info.name,
         1e-9 * ceilings.copy,
         1e-9 * ceilings.arithmetic,
-        1e-9 * ceilings.loads
+        1e-9 * ceilings.loads,
+        1e-6 * ceilings.flights
     ))?;
     let (mut all, mut failed) = (Vec::new(), Vec::new());
     for scene in scenes {

@@ -1,5 +1,5 @@
-//! `ceiling_copy`, `ceiling_arithmetic` and `ceiling_loads` do the work that `corpuscle bench` counts: every word is copied,
-//! every multiplication and addition is made, every read is of another word.
+//! `ceiling_copy`, `ceiling_arithmetic`, `ceiling_loads` and `ceiling_flights` do the work that `corpuscle bench` counts: every
+//! word is copied, every multiplication and addition is made, every read is of another word, every particle is moved.
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -53,4 +53,28 @@ fn all_words_are_read() {
         })
     };
     assert_eq!(rig.get::<[u32; 4]>("copy_to", ITEMS), (0..ITEMS).map(expected).collect::<Vec<_>>());
+}
+
+/// By its velocity, in quanta, rounded; what it is besides stays.
+#[test]
+fn all_particles_are_moved() {
+    let mut stream = Stream::new(5);
+    let particles: Vec<[u32; 8]> = (0..ITEMS as u32)
+        .map(|k| {
+            let [x, y, z, tag] = std::array::from_fn(|_| stream.word());
+            [x, y, z, tag, (k as f32 - 0.3).to_bits(), (-2.0 * k as f32).to_bits(), 7.4f32.to_bits(), stream.word()]
+        })
+        .collect();
+    let mut rig = Rig::new(&World::plain());
+    rig.constant("QUANTA", 1.0);
+    rig.put("copy_to", &particles);
+    rig.run("ceiling_flights", ITEMS);
+    let moved = |k: usize| {
+        let mut particle = particles[k];
+        for (axis, by) in [k as u32, (2 * k as u32).wrapping_neg(), 7].into_iter().enumerate() {
+            particle[axis] = particle[axis].wrapping_add(by);
+        }
+        particle
+    };
+    assert_eq!(rig.get::<[u32; 8]>("copy_to", ITEMS), (0..ITEMS).map(moved).collect::<Vec<_>>());
 }

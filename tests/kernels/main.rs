@@ -42,6 +42,7 @@ fn every_kernel_has_its_test() {
         "bounce",
         "ceiling_arithmetic",
         "ceiling_copy",
+        "ceiling_flights",
         "ceiling_loads",
         "choose",
         "collide",

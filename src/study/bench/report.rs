@@ -106,6 +106,7 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,
         "cached_loads_per_second": ceilings.loads,
+        "flights_per_second": ceilings.flights,
         "runs": runs.collect::<Vec<_>>(),
         "not_measured": missing.iter().map(|(run, why)| json!({ "run": run, "why": why })).collect::<Vec<_>>(),
     })

@@ -1,0 +1,19 @@
+//! uses: step.wgsl particle.wgsl
+// The least that a step does with a particle, for `corpuscle bench`: reads it, moves it, writes where it is.
+//
+// Reads and writes `copy_to`. One thread per particle.
+
+// Per metre, as in grid.wgsl.
+override QUANTA: f32 = 1048576.0;
+
+@group(0) @binding(1) var<storage, read_write> copy_to: array<Packed>;
+
+@compute @workgroup_size(WORKGROUP)
+fn ceiling_flights(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear(id, groups);
+    if (k < arrayLength(&copy_to)) {
+        let place = copy_to[k].place;
+        let moved = vec3<i32>(round(copy_to[k].motion.xyz * QUANTA));
+        copy_to[k].place = vec4<u32>(place.xyz + bitcast<vec3<u32>>(moved), place.w);
+    }
+}
