@@ -10,6 +10,7 @@ use corpuscle::study::verify::piston::{Piston, compressions, on_piston, shock_pr
 use crate::whole_run::{device, model, run};
 
 #[test]
+#[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify piston` runs the case too"]
 fn slow_compression_is_adiabatic() {
     for method in [Method::ClosestApproach, Method::Cell] {
         let (ratio, error) = compressions(&device(), method, 800, 3).expect("runs");

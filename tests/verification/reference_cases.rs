@@ -47,12 +47,14 @@ fn monatomic_shock_tubes_are_those_of_the_exact_solution() {
 }
 
 #[test]
+#[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify expansion` runs the case too"]
 fn expansion_into_a_vacuum_is_that_of_the_exact_solution() {
     passes("expansion");
     fails(&sod::expanded(&device(), 40_000, Method::None).expect("a run"));
 }
 
 #[test]
+#[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify sound` runs the case too"]
 fn a_standing_wave_has_the_speed_of_sound() {
     passes("sound");
 }
