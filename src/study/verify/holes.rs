@@ -275,8 +275,8 @@ const THICKNESS: f64 = 0.002;
 const QUARTER_TEMPERATURE: f64 = 700.0;
 /// m: sides of a quarter of a chamber, cut at two planes through the middle of its hole.
 const QUARTER: f64 = 0.06;
-/// s: when the flow is that of a hole in a wall without end, and until when: sound goes to the far walls and back.
-const STEADY: [f64; 2] = [0.9e-4, 1.9e-4];
+/// s: when the flow is that of a hole in a wall without end, and until when: sound goes from its edge to the nearest wall and back.
+const STEADY: [f64; 2] = [0.9e-4, 1.5e-4];
 
 /// A quarter of a chamber with a square hole of the same size, cut at planes of symmetry, which are mirrors, and near vacuum behind it.
 ///
@@ -289,7 +289,7 @@ fn quarter(knudsen: f64) -> Result<Model, StudyError> {
         r#"
         end_time = {end:e}
         gas = [{{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }}]
-        output = {{ rows = 19, snapshots = 0 }}
+        output = {{ rows = 15, snapshots = 0 }}
         [model]
         method = "closest-approach"
         particles = {particles:.0}
