@@ -52,6 +52,11 @@ pub const FIGURES: &[Case] = &[
         law: "a vessel that empties through vents that each hit passes: effusion, d lnT / d lnN = (gamma-1)/2",
         run: openings::constant_probability,
     },
+    Case {
+        name: "small-difference",
+        law: "the specification's discharge of a hole into gas of .8 of the pressure, over the isentropic law",
+        run: openings::small_difference,
+    },
 ];
 
 /// A figure that the specification knows to `known`, found in a run that must know it as well.
