@@ -81,7 +81,7 @@ pub fn exchange(gases: &[Species], a: Side, b: Side, knudsen: f64, moles: &mut [
 
 /// Isentropic mass flux over p sqrt(M / (R T)) of the upstream gas, at the ratio Q of pressures; equal to
 /// molar flux over p / sqrt(M R T).
-pub(super) fn isentropic(gamma: f64, ratio: f64) -> f64 {
+pub fn isentropic(gamma: f64, ratio: f64) -> f64 {
     let critical = libm::pow(2.0 / (gamma + 1.0), gamma / (gamma - 1.0));
     let flux = |q: f64| {
         let difference = libm::pow(q, 2.0 / gamma) - libm::pow(q, (gamma + 1.0) / gamma);

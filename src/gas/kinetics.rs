@@ -26,6 +26,11 @@ pub fn mean_free_path(number_density: f64, diameter: f64) -> f64 {
     1.0 / (SQRT_2 * PI * number_density * diameter * diameter)
 }
 
+/// The diameter (m) of a given mean free path (m).
+pub fn diameter_of_path(number_density: f64, mean_free_path: f64) -> f64 {
+    (1.0 / (SQRT_2 * PI * number_density * mean_free_path)).sqrt()
+}
+
 /// Mean free path of the real molecules of a gas of a concentration (mol/m3), m: that of rigid spheres of the size of
 /// nitrogen and air, 3.7e-10 m (helium 2.2e-10, SF6 5.5e-10: handbooks, from viscosities).
 pub fn molecular_mean_free_path(concentration: f64) -> f64 {
@@ -59,6 +64,11 @@ pub fn diameter(number_density: f64, occupancy: f64) -> f64 {
 /// d = n^(-1/3), m.
 pub fn mean_spacing(number_density: f64) -> f64 {
     1.0 / libm::cbrt(number_density)
+}
+
+/// lambda/d of rigid spheres that fill this part of space, were they without order: 1 / (sqrt2 pi (6 f/pi)^(2/3)).
+pub fn mean_free_path_over_spacing(occupancy: f64) -> f64 {
+    mean_free_path(1.0, diameter(1.0, occupancy))
 }
 
 /// A collision diameter, m, in gas of this density: at most `cap` of its mean spacings.

@@ -1,8 +1,6 @@
 //! Flows: a hole, tubes with jumps, a jet.
 
-use std::f64::consts::PI;
-
-use crate::gas::CONTINUUM_COEFFICIENT;
+use crate::gas::{CONTINUUM_COEFFICIENT, kinetics};
 use crate::gpu::Device;
 use crate::scene::{DiameterCap, Jet, JetSpeed, Method};
 use crate::simulation::{Model, Options};
@@ -32,15 +30,14 @@ const THIN: f64 = 0.03;
 const CONE: f64 = 0.2;
 
 pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    // Enough for noise, and so many that the gas is no denser than plans make it: lambda over the spacing n^(-1/3) is
-    // 1/(sqrt2 pi (6 f/pi)^(2/3)).
+    // Enough for noise, and so many that the gas is no denser than plans make it.
     let [least, most] = match effort {
         Effort::Quick => [4000, 4000],
         Effort::Usual => [8000, 64_000],
         Effort::Full => [64_000, 512_000],
     };
     let occupancy = if method == Method::HardSphere { THIN } else { USUAL };
-    let path_over_spacing = 1.0 / (2f64.sqrt() * PI * (6.0 * occupancy / PI).powf(2.0 / 3.0));
+    let path_over_spacing = kinetics::mean_free_path_over_spacing(occupancy);
     let resolving = VOLUME * (path_over_spacing / (knudsen * RADIUS)).powi(3);
     let particles = if method == Method::None { least } else { (resolving as u64).clamp(least, most) };
     let mut scene = emptying_scene()?;
@@ -48,7 +45,7 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
     scene.model.particles = Some(particles);
     let density = particles as f64 / VOLUME;
     if method != Method::None {
-        scene.model.diameter = Some((1.0 / (2f64.sqrt() * PI * density * knudsen * RADIUS)).sqrt());
+        scene.model.diameter = Some(kinetics::diameter_of_path(density, knudsen * RADIUS));
         // The Knudsen number is that of the gas that stays, which is denser than the mean.
         scene.model.diameter_cap = Some(DiameterCap::Off);
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::gas::kinetics;
+use crate::gas::{self, CONTINUUM_COEFFICIENT, kinetics};
 use crate::geometry::region_contains;
 use crate::gpu::Device;
 use crate::plan::FASTEST_PAIR;
@@ -131,6 +131,8 @@ pub(super) fn effusion(device: &Device, effort: Effort) -> Result<Findings, Stud
 pub const VOLUME: f64 = 0.16 * 0.12 * 0.12;
 /// m, half the side of the hole, which is the radius 2 area / perimeter of a square one.
 pub const RADIUS: f64 = 0.02;
+/// m2, of that hole.
+pub(super) const AREA: f64 = 4.0 * RADIUS * RADIUS;
 
 /// A chamber with gas and one near vacuum around it, a square hole between them, for 1.2 ms.
 ///
@@ -141,18 +143,25 @@ pub fn emptying(particles: u64, knudsen: f64) -> Result<Model, StudyError> {
 }
 
 fn emptying_until(end_time: f64, particles: u64, knudsen: f64) -> Result<Model, StudyError> {
-    let mean_free_path = knudsen * RADIUS;
-    let density = particles as f64 / VOLUME;
-    let diameter = (1.0 / (2f64.sqrt() * PI * density * mean_free_path)).sqrt();
     let mut scene = emptying_scene()?;
     scene.end_time = end_time;
     scene.model.particles = Some(particles);
-    // The Knudsen number is that of the gas that stays, which is denser than the mean.
+    collide(&mut scene, particles as f64 / VOLUME, knudsen);
+    model_from("orifice", scene)
+}
+
+/// Gives gas that is this dense at the start, 1/m3, a mean free path of so many radii of the hole: that which stays, and which is
+/// denser than the mean.
+pub(super) fn collide(scene: &mut Scene, density: f64, knudsen: f64) {
+    let diameter = kinetics::diameter_of_path(density, knudsen * RADIUS);
     scene.model.diameter = Some(diameter);
     scene.model.diameter_cap = Some(DiameterCap::Off);
-    let gas = &scene.chambers[0];
-    scene.model.time_step = thin_gas_step(diameter, density, gas.temperature);
-    model_from("orifice", scene)
+    scene.model.time_step = thin_gas_step(diameter, density, scene.chambers[0].temperature);
+}
+
+/// Isentropic flux at a ratio of pressures and a temperature (K) upstream, over the density upstream: m/s.
+pub(super) fn isentropic_speed(ratio: f64, temperature: f64) -> f64 {
+    gas::isentropic(1.4, ratio) * kinetics::thermal_square(temperature, 0.028).sqrt()
 }
 
 /// Where spheres are far smaller than their spacing, a step in which the fastest pairs close in by a diameter takes a
@@ -160,7 +169,7 @@ fn emptying_until(end_time: f64, particles: u64, knudsen: f64) -> Result<Model, 
 /// a diameter at an occupancy of 0.065, while the gas collides the less often the thinner it is.
 pub(super) fn thin_gas_step(diameter: f64, density: f64, temperature: f64) -> Option<f64> {
     let spacing = kinetics::mean_spacing(density);
-    let fastest = FASTEST_PAIR * (GAS_CONSTANT / 0.028 * temperature).sqrt();
+    let fastest = FASTEST_PAIR * kinetics::thermal_square(temperature, 0.028).sqrt();
     (diameter < 0.25 * spacing).then(|| 0.5 * spacing / fastest)
 }
 
@@ -219,12 +228,11 @@ pub fn discharge_of(rows: &[Row]) -> (f64, f64) {
     // The first two rows see the flow start.
     let window = &rows[2..];
     let number = |k: usize| window[k].chambers[0].particles[0];
-    let choked = (1.4f64).sqrt() * (2.0 / 2.4f64).powi(3) * (4.0 * RADIUS * RADIUS) / VOLUME;
     let passed: f64 = window
         .windows(2)
         .map(|pair| {
             let temperature = 0.5 * (pair[0].chambers[0].temperature + pair[1].chambers[0].temperature);
-            (pair[1].time - pair[0].time) * choked * (GAS_CONSTANT / 0.028 * temperature).sqrt()
+            (pair[1].time - pair[0].time) * isentropic_speed(0.0, temperature) * AREA / VOLUME
         })
         .sum();
     let (first, last) = (number(0), number(window.len() - 1));
@@ -284,6 +292,7 @@ const STEADY: [f64; 2] = [0.9e-4, 1.5e-4];
 /// decides how many particles there are.
 fn quarter(knudsen: f64) -> Result<Model, StudyError> {
     let spacing = knudsen * RADIUS / 0.69;
+    let density = spacing.powi(-3);
     let (side, half, behind) = (QUARTER, 0.5 * THICKNESS, 2.0 * QUARTER + THICKNESS);
     let text = format!(
         r#"
@@ -323,8 +332,8 @@ fn quarter(knudsen: f64) -> Result<Model, StudyError> {
         gas = "nitrogen"
         "#,
         end = STEADY[1],
-        particles = (side / spacing).powi(3),
-        diameter = spacing * (6.0 * 0.2 / PI).cbrt(),
+        particles = density * side.powi(3),
+        diameter = kinetics::diameter(density, 0.2),
         middle = side + half,
         plate = 2.5 * side,
         hole = 2.0 * RADIUS,
@@ -341,8 +350,8 @@ fn discharge_of_quarter(device: &Device, knudsen: f64) -> Result<(f64, f64), Stu
     let middle = |row: &Row| 0.5 * (row.window[0] + row.window[1]);
     let left = first.chambers[0].particles[0] - last.chambers[0].particles[0];
     let density = model.plan.chambers[0].particles[0] as f64 / QUARTER.powi(3);
-    let choked = 1.4f64.sqrt() * (2.0 / 2.4f64).powi(3) * (GAS_CONSTANT / 0.028 * QUARTER_TEMPERATURE).sqrt();
-    let expected = density * RADIUS * RADIUS * choked * (middle(last) - middle(first));
+    let passing = isentropic_speed(0.0, QUARTER_TEMPERATURE) * (middle(last) - middle(first));
+    let expected = density * 0.25 * AREA * passing;
     Ok((left / expected, left.sqrt() / expected))
 }
 
@@ -391,7 +400,7 @@ pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, St
 
 /// Cd of free flight through a hole, and of a thin orifice in the continuum, over choked isentropic flow (specification,
 /// section 4).
-const CD_LIMITS: [f64; 2] = [0.583, 0.84];
+const CD_LIMITS: [f64; 2] = [0.583, CONTINUUM_COEFFICIENT];
 
 /// T = T0 (N/N0)^s of the gas that stays: s = gamma - 1 = .4 if it expands isentropically, .2 if what leaves flies freely
 /// (it takes 3 kT each, not the enthalpy 3.5 kT). A hole of Kn = .1 is between, taken to be as far as its Cd of .78. N

@@ -17,6 +17,7 @@ use std::f64::consts::PI;
 use super::gas_box::EquilibriumBox;
 use super::shear::viscosity;
 use super::{Case, Check, Effort, Findings};
+use crate::gas::kinetics;
 use crate::gpu::Device;
 use crate::study::StudyError;
 
@@ -72,7 +73,7 @@ const FLOORS: [(f64, f64); 2] = [(0.2, 0.54), (0.4, 0.52)];
 /// Of cells: .783 lambda (Chapman and Enskog) and what collisions across a cell of edge L carry, 16/(45 pi) (L/lambda)^2 of it
 /// (Alexander, Garcia and Alder, Physics of Fluids 10, 1540 (1998)); both lengths in mean spacings.
 fn of_cells(occupancy: f64) -> f64 {
-    let path = 1.0 / (2f64.sqrt() * PI * (6.0 * occupancy / PI).powf(2.0 / 3.0));
+    let path = kinetics::mean_free_path_over_spacing(occupancy);
     let edge = PARTICLES_IN_CELL.cbrt();
     0.783 * path * (1.0 + 16.0 / (45.0 * PI) * (edge / path).powi(2))
 }
@@ -132,7 +133,7 @@ mod tests {
     /// Cells far smaller than a mean free path have the viscosity of Chapman and Enskog; at f = .1 they are 2.7 times as large.
     #[test]
     fn cells_add_to_the_viscosity() {
-        let path = |f: f64| 1.0 / (2f64.sqrt() * PI * (6.0 * f / PI).powf(2.0 / 3.0));
+        let path = kinetics::mean_free_path_over_spacing;
         assert!((of_cells(1e-4) / (0.783 * path(1e-4)) - 1.0).abs() < 1e-3);
         assert!((of_cells(0.1) - 0.962).abs() < 2e-3, "{}", of_cells(0.1));
     }

@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use super::figure;
+use crate::gas::kinetics;
 use crate::gpu::Device;
-use crate::scene::DiameterCap;
 use crate::simulation::{Options, Row};
 use crate::study::StudyError;
 use crate::study::verify::gas_box::GAS_CONSTANT;
-use crate::study::verify::holes::{RADIUS, VOLUME, emptying_scene, thin_gas_step};
+use crate::study::verify::holes::{AREA, VOLUME, collide, emptying_scene, isentropic_speed, thin_gas_step};
 use crate::study::verify::losses::{EDGE, MOLAR_MASS, TEMPERATURE};
 use crate::study::verify::witness::model_of;
 use crate::study::verify::{Effort, Findings, model_from, run};
@@ -91,12 +91,8 @@ pub fn small_difference(device: &Device, effort: Effort) -> Result<Findings, Stu
     for &(knudsen, expected, particles, seeds) in &SMALL[..if full { SMALL.len() } else { 1 }] {
         let seeds = if full { seeds } else { QUICK_SEEDS };
         let mut scene = emptying_scene()?;
-        let density = particles as f64 / VOLUME;
-        let diameter = (1.0 / (2f64.sqrt() * PI * density * knudsen * RADIUS)).sqrt();
         scene.chambers[1].pressure = BEHIND * scene.chambers[0].pressure;
-        scene.model.diameter = Some(diameter);
-        scene.model.diameter_cap = Some(DiameterCap::Off);
-        scene.model.time_step = thin_gas_step(diameter, density, scene.chambers[0].temperature);
+        collide(&mut scene, particles as f64 / VOLUME, knudsen);
         // As many in the chamber as said.
         let volumes = model_from("orifice", scene.clone())?
             .plan
@@ -132,18 +128,18 @@ struct NetFlow {
 impl NetFlow {
     /// Of rows of two chambers, the first of this volume, m3, that empties into the second.
     fn of(rows: &[Row], volume: f64) -> NetFlow {
-        let area = 4.0 * RADIUS * RADIUS;
         let mut flow = NetFlow { left: 0.0, isentropic: 0.0, crossed: 0.0 };
         for pair in rows.windows(2) {
             let middle = |row: &Row| 0.5 * (row.window[0] + row.window[1]);
             let mean = |of: &dyn Fn(&Row) -> f64| 0.5 * (of(&pair[0]) + of(&pair[1]));
             let ratio = mean(&|row| row.chambers[1].pressure / row.chambers[0].pressure);
-            let thermal = (GAS_CONSTANT / 0.028 * mean(&|row| row.chambers[0].temperature)).sqrt();
-            let rate = mean(&|row| row.chambers[0].particles[0]) / volume * area * thermal;
-            let passing = (middle(&pair[1]) - middle(&pair[0])) * rate;
+            let temperature = mean(&|row| row.chambers[0].temperature);
+            let swept =
+                (middle(&pair[1]) - middle(&pair[0])) * AREA / volume * mean(&|row| row.chambers[0].particles[0]);
+            let effusing = 0.25 * kinetics::mean_speed(kinetics::thermal_square(temperature, 0.028));
             flow.left += pair[0].chambers[0].particles[0] - pair[1].chambers[0].particles[0];
-            flow.isentropic += passing * (7.0 * (ratio.powf(2.0 / 1.4) - ratio.powf(2.4 / 1.4))).sqrt();
-            flow.crossed += passing * (1.0 + ratio) / (2.0 * PI).sqrt();
+            flow.isentropic += swept * isentropic_speed(ratio, temperature);
+            flow.crossed += swept * effusing * (1.0 + ratio);
         }
         flow
     }
