@@ -145,9 +145,8 @@ fn sees(p: vec3<u32>, q: vec3<u32>) -> bool {
         }
     }
     if (still_parts) {
-        let row = walled_row(Cells(here, here), here.y, here.z);
-        let list_end = wall_start[row.y];
-        for (var k = wall_start[row.x]; k < list_end; k++) {
+        let list = row_list(Cells(here, here), here.y, here.z);
+        for (var k = list.x; k < list.y; k++) {
             if (parts(wall_list[k], p, q, along)) {
                 return false;
             }

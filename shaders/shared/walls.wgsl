@@ -59,10 +59,11 @@ struct Hit {
 
 override TOLERANCE: f32;
 
-@group(0) @binding(20) var<storage, read> wall_start: array<u32>;
+// Of each cell near walls: where its triangles start in `wall_list`, and its clearance.
+@group(0) @binding(20) var<storage, read> wall_start: array<vec2<u32>>;
 @group(0) @binding(21) var<storage, read> wall_list: array<u32>;
 @group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
-// The classes of sixteen cells, two bits each, and how many cells before these have walls.
+// The classes of sixteen cells, two bits each, and how many cells before these are near walls: cut, or beside one that is.
 @group(0) @binding(23) var<storage, read> cell_class: array<vec2<u32>>;
 
 // A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
@@ -84,11 +85,28 @@ fn class_of(cell: u32) -> u32 {
     return (cell_class[cell >> 4u].x >> ((cell & 15u) * 2u)) & 3u;
 }
 
-// Of the classes of sixteen cells, how many of the first `count` have walls.
-fn walled_of(classes: u32, count: u32) -> u32 {
-    // The upper bit of each that is CLASS_CUT, 2.
-    let walled = classes & ~(classes << 1u) & 0xaaaaaaaau;
-    return countOneBits(select(walled & ((1u << (2u * count)) - 1u), walled, count == 16u));
+// How many cells before this one are near walls: `wall_start` has an entry for each of those alone.
+fn near_before(cell: u32) -> u32 {
+    let classes = cell_class[cell >> 4u];
+    // CLASS_GAS, 1, and CLASS_CUT, 2: of their two bits one is set.
+    let near = (classes.x ^ (classes.x >> 1u)) & 0x55555555u;
+    return classes.y + countOneBits(near & ((1u << ((cell & 15u) * 2u)) - 1u));
+}
+
+// What a step of a clearance is, in 127 cells (`UNIT` of src/geometry/clearance.rs).
+const PLANE_UNIT: f32 = 5.0;
+
+// Whether the way between two points, the first in cell `c`, which is near walls, and the second no farther than its neighbours, lies
+// before the plane that all walls in these 27 cells are behind.
+fn before_walls(c: vec3<u32>, p: vec3<u32>, q: vec3<u32>) -> bool {
+    let plane = wall_start[near_before(cell_index(c))].y;
+    let normal = vec3<f32>(bitcast<vec3<i32>>(vec3<u32>(plane << 24u, plane << 16u, plane << 8u)) >> vec3<u32>(24u));
+    let least = f32(bitcast<i32>(plane) >> 24u) * (PLANE_UNIT * f32(1u << CELL_BITS));
+    let middle = (c << vec3<u32>(CELL_BITS)) + (1u << (CELL_BITS - 1u));
+    let from_middle = vec3<f32>(bitcast<vec3<i32>>(p - middle));
+    let to_middle = vec3<f32>(bitcast<vec3<i32>>(q - middle));
+    return all(abs(from_middle) <= vec3<f32>(f32(1u << (CELL_BITS - 1u))))
+        && min(dot(normal, from_middle), dot(normal, to_middle)) > least;
 }
 
 // Whether a point of the triangle's plane (relative to corner a) is at most `reach` outside its edges.
@@ -115,25 +133,11 @@ fn cells_of(p: vec3<u32>, q: vec3<u32>) -> Cells {
     return Cells(vec3<u32>(low), vec3<u32>(high));
 }
 
-// Where in `wall_start` the cells with walls of an x-row of cells are: neighbours in memory, as are the cells, and `wall_start`
-// has an entry for each of those alone.
-fn walled_row(cells: Cells, y: u32, z: u32) -> vec2<u32> {
-    let first = cell_index(vec3<u32>(cells.low.x, y, z));
-    let past = first + cells.high.x - cells.low.x + 1u;
-    let sixteen = first & ~15u;
-    let classes = cell_class[first >> 4u];
-    let begin = classes.y + walled_of(classes.x, first - sixteen);
-    if (past - sixteen <= 16u) {
-        return vec2<u32>(begin, classes.y + walled_of(classes.x, past - sixteen));
-    }
-    let others = cell_class[past >> 4u];
-    return vec2<u32>(begin, others.y + walled_of(others.x, past & 15u));
-}
-
-// And where in `wall_list` their triangles are.
+// Where in `wall_list` the triangles of an x-row of cells are: the cells are neighbours in memory, as are their lists.
 fn row_list(cells: Cells, y: u32, z: u32) -> vec2<u32> {
-    let row = walled_row(cells, y, z);
-    return vec2<u32>(wall_start[row.x], wall_start[row.y]);
+    let row = cell_index(vec3<u32>(cells.low.x, y, z));
+    let past = row + cells.high.x - cells.low.x + 1u;
+    return vec2<u32>(wall_start[near_before(row)].x, wall_start[near_before(past)].x);
 }
 
 // Takes the triangle into account as the first wall that a flight meets that is at `from_point` at the time `start`.
@@ -164,28 +168,16 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
     }
 }
 
-fn any_walled(cells: Cells) -> bool {
-    for (var z = cells.low.z; z <= cells.high.z; z++) {
-        for (var y = cells.low.y; y <= cells.high.y; y++) {
-            let row = walled_row(cells, y, z);
-            if (row.x < row.y) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 // Whether the flight x0 + v t passes cells with walls in start <= t < end.
 fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
     let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
-    // Most flights of gas that collides stay in their cell.
-    if (all(cells.low == cells.high)) {
-        if (class_of(cell_index(cells.low)) == CLASS_CUT) {
-            return true;
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            let list = row_list(cells, y, z);
+            if (list.x < list.y) {
+                return true;
+            }
         }
-    } else if (any_walled(cells)) {
-        return true;
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {
@@ -225,12 +217,17 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     return hit;
 }
 
-// Whether a flight may meet a wall. One from a clear cell that does not leave that cell's neighbours
-// meets none.
+// Whether a flight may meet a wall. One that does not leave its cell's neighbours meets none if the cell is clear, or if it stays
+// before all walls of these.
 fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
-    let c = nearest_cell(shifted(x0, v * start));
+    let from_point = shifted(x0, v * start);
+    let c = nearest_cell(from_point);
     let reach = max(max(abs(v.x), abs(v.y)), abs(v.z)) * (dt - start) * QUANTA;
-    if (class_of(cell_index(c)) != CLASS_CLEAR || reach >= f32(1u << CELL_BITS)) {
+    if (reach >= f32(1u << CELL_BITS)) {
+        return true;
+    }
+    let around = class_of(cell_index(c));
+    if (around == CLASS_SOLID || (around != CLASS_CLEAR && !before_walls(c, from_point, shifted(x0, v * dt)))) {
         return true;
     }
     if (MOVING) {

@@ -1,6 +1,6 @@
 //! The walls as the device sees them: triangles in quanta, and the lists of the cells they touch.
 
-use crate::geometry::{CellClass, Grid, TriangleGrid};
+use crate::geometry::{CellClass, Grid, TriangleGrid, clearances};
 
 use super::layout::GpuTriangle;
 
@@ -13,11 +13,12 @@ const TOLERANCE: f64 = 1e-6;
 
 pub struct Walls {
     pub triangles: Vec<GpuTriangle>,
-    /// First entry in `list` of each cell that has any, and the end.
-    pub start: Vec<u32>,
+    /// First entry in `list` of each cell that has walls or is beside one that has, and its
+    /// [`clearance`](crate::geometry::clearances); and the end.
+    pub start: Vec<[u32; 2]>,
     pub list: Vec<u32>,
-    /// The classes of sixteen cells each, two bits per cell, and how many cells before them have walls. One more than there are
-    /// such sixteens, for the cell behind the last.
+    /// The classes of sixteen cells each, two bits per cell, and how many cells before them are near walls. One more than there
+    /// are such sixteens, for the cell behind the last.
     pub class: Vec<[u32; 2]>,
     /// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
     pub parting: Vec<u32>,
@@ -76,21 +77,25 @@ impl Walls {
                 class[cell / 16][1] = start.len() as u32;
             }
             class[cell / 16][0] |= bits << (2 * (cell % 16));
-            if *kind == CellClass::Cut {
-                start.push(triangle_grid.start[cell]);
+            if matches!(kind, CellClass::Gas | CellClass::Cut) {
+                start.push([triangle_grid.start[cell], 0]);
             }
         }
         if triangle_grid.class.len().is_multiple_of(16) {
             class[triangle_grid.class.len() / 16][1] = start.len() as u32;
         }
-        start.extend(triangle_grid.start.last());
+        let tolerance = Walls::tolerance(grid);
+        for (entry, clearance) in start.iter_mut().zip(clearances(triangle_grid, grid, tolerance)) {
+            entry[1] = clearance;
+        }
+        start.extend(triangle_grid.start.last().map(|end| [*end, 0]));
         Walls {
             triangles,
             start,
             list: triangle_grid.list.clone(),
             class,
             parting: parting(triangle_grid, grid, parts),
-            tolerance: Walls::tolerance(grid),
+            tolerance,
         }
     }
 }
@@ -140,11 +145,11 @@ mod tests {
 
     use super::*;
 
-    /// The cells before a cell that have walls, as `walled_before` of `shaders/shared/walls.wgsl` counts them.
-    fn walled_before(class: &[[u32; 2]], cell: usize) -> usize {
+    /// The cells before a cell that are near walls, as in `shaders/shared/walls.wgsl`.
+    fn near_before(class: &[[u32; 2]], cell: usize) -> usize {
         let [bits, before] = class[cell / 16];
-        let walled = bits & !(bits << 1) & 0xaaaa_aaaa;
-        (before + (walled & ((1 << (cell % 16 * 2)) - 1)).count_ones()) as usize
+        let near = (bits ^ (bits >> 1)) & 0x5555_5555;
+        (before + (near & ((1 << (cell % 16 * 2)) - 1)).count_ones()) as usize
     }
 
     /// Each cell's triangles are found by how many cells before it have any; behind the last cell is the end.
@@ -159,14 +164,15 @@ mod tests {
             let grid = Grid::around(low, high, edge).unwrap();
             let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
             let walls = Walls::new(&built, &grid, &[], &[], |_| true);
-            let mut listed = 0;
+            let (mut listed, mut near) = (0, 0);
             for cell in 0..grid.cell_count() {
-                let ends = [cell, cell + 1].map(|cell| walls.start[walled_before(&walls.class, cell)] as usize);
+                let ends = [cell, cell + 1].map(|cell| walls.start[near_before(&walls.class, cell)][0] as usize);
                 assert_eq!(&walls.list[ends[0]..ends[1]], built.in_cell(cell), "cell {cell}");
                 listed += usize::from(ends[0] < ends[1]);
+                near += usize::from(matches!(built.class[cell], CellClass::Gas | CellClass::Cut));
             }
-            assert_eq!(walls.start.len(), listed + 1, "an entry for each cell with walls, and the end");
-            assert!(listed > 0 && listed < grid.cell_count());
+            assert_eq!(walls.start.len(), near + 1, "an entry for each cell near walls, and the end");
+            assert!(listed > 0 && listed < near && near < grid.cell_count());
             filled[usize::from(grid.cell_count().is_multiple_of(16))] = true;
         }
         assert_eq!(filled, [true; 2]);

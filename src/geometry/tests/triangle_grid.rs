@@ -1,7 +1,7 @@
 //! Which cells each triangle touches, and what the other cells are.
 
 use super::*;
-use crate::geometry::{CellClass, Grid, TriangleGrid};
+use crate::geometry::{CellClass, Grid, TriangleGrid, clearances};
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::details::intersection_test_aabb_triangle;
@@ -136,4 +136,78 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
     let error = TriangleGrid::build(&vessel, &grid, 0.0).unwrap_err();
     assert!(matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"), "{error}");
+}
+
+/// Whether a place is before the plane of a cell's clearance, as `shaders/shared/walls.wgsl` has it.
+fn is_before(word: u32, from_middle: DVec3) -> bool {
+    let [x, y, z, least] = word.to_le_bytes().map(|byte| f64::from(byte as i8));
+    DVec3::new(x, y, z).dot(from_middle) > 5.0 * least
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// No wall reaches before the plane that clears a cell of it, and beside a flat wall the plane is that wall, to 5/127 of a cell.
+    #[test]
+    fn walls_lie_behind_the_planes_of_the_cells_near_them(turn in prop::array::uniform3(-1.0..1.0f64), margin in 0.0..2e-3f64) {
+        let vessel = scene(turn);
+        let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.07).unwrap();
+        let built = TriangleGrid::build(&vessel, &grid, margin).unwrap();
+        let planes = clearances(&built, &grid, margin);
+        let near = (0..grid.cell_count()).filter(|&c| matches!(built.class[c], CellClass::Gas | CellClass::Cut));
+        let (mut helped, mut cleared_beside, mut beside) = (0, 0, 0);
+        prop_assert_eq!(near.clone().count(), planes.len());
+        for (cell, &plane) in near.zip(&planes) {
+            let (low, high) = cell_box(&grid, cell);
+            let middle = 0.5 * (low + high);
+            let reach = DVec3::splat(1.5 * grid.cell + margin);
+            for triangle in &vessel.triangles {
+                let [a, b, c] = triangle.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
+                for k in 0..=40 {
+                    for l in 0..=40 - k {
+                        let (u, v) = (f64::from(k) / 40.0, f64::from(l) / 40.0);
+                        let offset = a + u * (b - a) + v * (c - a) - middle;
+                        if offset.abs().cmple(reach).all() {
+                            prop_assert!(!is_before(plane, offset / grid.cell), "cell {} {:x} {}", cell, plane, offset);
+                        }
+                    }
+                }
+            }
+            let cleared = is_before(plane, DVec3::ZERO);
+            helped += usize::from(cleared);
+            if built.class[cell] == CellClass::Gas {
+                cleared_beside += usize::from(cleared);
+                beside += 1;
+            }
+        }
+        // Of most cells beside walls the middle is told to be clear of them; not of all that are cut.
+        prop_assert!(cleared_beside * 10 > beside * 6, "{} of {}", cleared_beside, beside);
+        prop_assert!(helped < planes.len());
+    }
+}
+
+/// In the middle of a face of a cube the plane is the face, and on an edge it is no face.
+#[test]
+fn beside_a_flat_wall_the_plane_is_the_wall() {
+    let vessel = Vessel::build(&[tank([1.0; 3])]).unwrap();
+    let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
+    let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
+    let planes = clearances(&built, &grid, 1e-6);
+    let near: Vec<usize> =
+        (0..grid.cell_count()).filter(|&c| matches!(built.class[c], CellClass::Gas | CellClass::Cut)).collect();
+    let mut faces = 0;
+    for (cell, plane) in near.iter().zip(planes) {
+        let (low, high) = cell_box(&grid, *cell);
+        let middle = 0.5 * (low + high);
+        let away = |axis: usize| (middle[axis]).min(1.0 - middle[axis]) / grid.cell;
+        let close: Vec<usize> = (0..3).filter(|&axis| away(axis) < 1.6).collect();
+        let &[axis] = close.as_slice() else { continue };
+        let inward = if middle[axis] < 0.5 { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
+        let wall = -inward * away(axis);
+        assert!(!is_before(plane, wall + 1e-3 * inward) && is_before(plane, wall + 0.08 * inward), "{cell} {plane:x}");
+        let beside = DVec3::AXES[(axis + 1) % 3];
+        assert!(is_before(plane, wall + 0.08 * inward + 1.4 * beside), "{cell} {plane:x}");
+        faces += 1;
+    }
+    assert!(faces > 100, "{faces}");
 }
