@@ -10,20 +10,25 @@
 //! Cd .77 at Kn .1 (`tests/verification/orifice.rs`) against the table's .78; with the diameter the table would
 //! ask for .78 at lambda = .2 radii, where kinetic theory has 1.2 times the effusion, Cd .70.
 //!
-//! The share w of the continuum is fitted to the measured discharge coefficients
-//! Cd = (1 - w) fm + .84 w isentropic/choked, at Q = 0 and at Q = .8, linear in ln Kn between the figures and
-//! on along the end slopes to 0 and 1, linear in Q up to .8 and constant beyond. Assumptions: the figures for
-//! Q = .8 are relative to choked flow too; all were measured at gamma 1.4 and give the same w at any gamma;
-//! the continuum limit stays .84 at every Q.
+//! The share w of the continuum is fitted to measured discharge coefficients, at Q = 0 of
+//! Cd = (1 - w) fm + .84 w isentropic/choked, linear in ln Kn between the figures and on along the end slopes to 0 and 1.
+//! At Q = .8 it is linear in ln Kn through two figures. In between linear in Q; constant beyond.
+//!
+//! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight,
+//! where free flight and Sampson's creeping flow together are 1.33 times it. `corpuscle verify small-difference --full` finds .178 there, the
+//! specification's .18, but .399 at Kn .1, where the specification has .29, which is found with fewer particles, whose gas is more
+//! viscous than its Kn says. So .40 stands here, and the specification's .34 at .03, which is below, is left out.
+//!
+//! Assumptions: all were measured at gamma 1.4 and give the same w at any gamma; the continuum limit stays .84 at every Q.
 
 use super::{Species, kinetics, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture};
 
 /// Discharge coefficient of a thin orifice in the continuum (specification, section 4, from memory of the literature).
 pub const CONTINUUM_COEFFICIENT: f64 = 0.84;
-/// (Kn, Cd) into vacuum, and at the pressure ratio [`MODERATE_RATIO`].
+/// (Kn, Cd) into vacuum, over choked flow; and at the pressure ratio [`MODERATE_RATIO`], over the isentropic flow there.
 const VACUUM: [[f64; 2]; 4] = [[10.0, 0.60], [0.3, 0.71], [0.1, 0.78], [0.05, 0.83]];
-const MODERATE: [[f64; 2]; 3] = [[1.0, 0.18], [0.1, 0.29], [0.03, 0.34]];
+const MODERATE: [[f64; 2]; 2] = [[1.0, 0.18], [0.1, 0.40]];
 const MODERATE_RATIO: f64 = 0.8;
 const MEASURED_GAMMA: f64 = 1.4;
 /// 1 - Q below which the isentropic flow, ~ sqrt(1 - Q), is replaced by its chord, so that two chambers
@@ -103,8 +108,10 @@ fn continuum_share(knudsen: f64, ratio: f64) -> f64 {
 }
 
 fn share_in_table(table: &[[f64; 2]], ratio: f64, knudsen: f64) -> f64 {
-    let kinetic = kinetic_coefficient(MEASURED_GAMMA, ratio);
-    let continuum = CONTINUUM_COEFFICIENT * isentropic(MEASURED_GAMMA, ratio) / isentropic(MEASURED_GAMMA, 0.0);
+    // Over the isentropic flow at this ratio.
+    let kinetic = kinetic_coefficient(MEASURED_GAMMA, ratio) * isentropic(MEASURED_GAMMA, 0.0)
+        / isentropic(MEASURED_GAMMA, ratio);
+    let continuum = CONTINUUM_COEFFICIENT;
     let point = |[kn, cd]: [f64; 2]| [libm::log(kn), (cd - kinetic) / (continuum - kinetic)];
     // Knudsen numbers fall along the table; the end pieces serve beyond it.
     let after = table.iter().position(|row| row[0] <= knudsen).unwrap_or(table.len());
@@ -123,10 +130,15 @@ mod tests {
 
     /// Net molar flow over choked flow, one gas at 300 K.
     fn coefficient(knudsen: f64, ratio: f64) -> f64 {
+        over_isentropic(knudsen, ratio) * isentropic(1.4, ratio) / isentropic(1.4, 0.0)
+    }
+
+    /// Over the isentropic flow at this ratio.
+    fn over_isentropic(knudsen: f64, ratio: f64) -> f64 {
         let side = |moles| Side { moles, volume: 1.0, temperature: 300.0 };
         let mut moles = [0.0];
         exchange(&nitrogen(), side(&[1.0]), side(&[ratio]), knudsen, &mut moles);
-        moles[0] / (GAS_CONSTANT * 300.0 / (0.028 * GAS_CONSTANT * 300.0).sqrt() * isentropic(1.4, 0.0))
+        moles[0] / (GAS_CONSTANT * 300.0 / (0.028 * GAS_CONSTANT * 300.0).sqrt() * isentropic(1.4, ratio))
     }
 
     #[test]
@@ -146,9 +158,19 @@ mod tests {
             assert!((coefficient(kn, 0.0) - cd).abs() < 1e-12);
         }
         for [kn, cd] in MODERATE {
-            assert!((coefficient(kn, 0.8) - cd).abs() < 1e-12);
-            assert!((coefficient(kn, 0.7) - cd).abs() > 1e-3);
+            assert!((over_isentropic(kn, 0.8) - cd).abs() < 1e-12);
+            assert!((over_isentropic(kn, 0.7) - cd).abs() > 1e-3);
         }
+    }
+
+    #[test]
+    fn free_flight_and_creeping_flow_together_tell_what_the_figures_are_over() {
+        // Sampson (1891), R^3 dp / (3 mu), with mu = .499 rho cbar lambda is .334 R / lambda of pi R^2 cbar dp / (4 p).
+        let together = 1.0 + 0.334;
+        let over_free_flight = coefficient(1.0, 0.8) / kinetic_coefficient(1.4, 0.8);
+        assert!(over_free_flight > 1.0 && over_free_flight < together, "{over_free_flight}");
+        // Were they over choked flow.
+        assert!(MODERATE[0][1] / kinetic_coefficient(1.4, 0.8) > together + 0.2);
     }
 
     #[test]
