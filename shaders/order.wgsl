@@ -5,14 +5,14 @@
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares` and the classes of the cells; writes
 // `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, `origins` (the place in
 // `particles`), clears what the
-// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle. The place of a particle is its cell's start plus
+// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per slot of `particles`. The place of a particle is its cell's start plus
 // the number of lower ids in the cell: a function of the set, not of any order.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-// Two slots each.
+// Four slots each.
 @group(0) @binding(9) var<storage, read> slots: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
@@ -42,38 +42,39 @@ fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
 
 @compute @workgroup_size(WORKGROUP)
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
-    if (s >= step.total) {
-        return;
-    }
-    if (s >= cell_start[step.bins]) {
+    let i = linear(id, groups);
+    if (i >= cell_start[step.bins] && i < step.total) {
         // Slots that hold no particle: on a device alone, whose host learns late how many have left through vents, and where particles
         // have been dropped that are nowhere near this device.
-        layers[s] = LAYER;
+        layers[i] = LAYER;
         if (ROUNDS_OF_PAIRS) {
-            neighbour_count[s] = 0u;
+            neighbour_count[i] = 0u;
         }
+    }
+    if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
-    let both = slots[s >> 1u];
-    let slot = select(both.xy, both.zw, (s & 1u) != 0u);
-    let cell = bins[slot.x].x;
+    let cell = bins[i].x;
+    if (cell == NOBODY) {
+        return;
+    }
+    let whole = particles[i];
+    let own_id = id_of(whole.place.w);
     let begin = cell_start[cell];
     let end = cell_start[cell + 1u];
     var place = begin;
-    for (var k = begin >> 1u; 2u * k < end; k++) {
-        let ids = slots[k].yw;
-        place += select(0u, 1u, ids.x < slot.y && 2u * k >= begin);
-        place += select(0u, 1u, ids.y < slot.y && 2u * k + 1u < end);
+    for (var k = begin >> 2u; 4u * k < end; k++) {
+        let slot = vec4<u32>(4u * k) + vec4<u32>(0u, 1u, 2u, 3u);
+        let lower = (slots[k] < vec4<u32>(own_id)) & (slot >= vec4<u32>(begin)) & (slot < vec4<u32>(end));
+        place += dot(select(vec4<u32>(0u), vec4<u32>(1u), lower), vec4<u32>(1u));
     }
-    let whole = particles[slot.x];
     sorted[place] = whole;
     let particle = particle_of(whole);
     let place_in_grid = cell_of(cell);
     let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
     var mark = 0u;
     if (step.depth > 0u) {
-        origins[place] = slot.x;
+        origins[place] = i;
         mark = layer_of(place_in_grid);
         if (mark > 0u && ROUNDS_OF_PAIRS) {
             mark = links_away(packed(middle), place_in_grid, mark);
@@ -89,7 +90,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     }
     var start = 0.0;
     if (ORIFICES) {
-        start = birth_time(slot.y);
+        start = birth_time(own_id);
     }
     var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
     flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));

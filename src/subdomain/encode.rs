@@ -340,7 +340,7 @@ impl Subdomain {
             let slots = u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals);
             let pass = rec.phase("sort");
             kernels.scatter.dispatch(pass, offset, threads(device, slots));
-            kernels.order.dispatch(pass, offset, all(device, step));
+            kernels.order.dispatch(pass, offset, threads(device, slots));
         }
         if let Some(kernels) = &self.kernels.collisions {
             let offset = self.offset(rec.device(), step, 0);

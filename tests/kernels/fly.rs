@@ -120,9 +120,7 @@ fn advect_flies_the_free_and_lists_the_others() {
             let p = particles[k];
             let start = born.get(p.id().wrapping_sub(first_id) as usize).map_or(0.0, |newborn| newborn.start);
             let [first, last] = [start, DT].map(|t| cells.shifted(p.position, p.velocity.map(|v| v * t)));
-            let fastest = p.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
-            let slow = fastest * (DT - start) * cells.quanta_per_metre < (1u32 << cells.bits) as f32;
-            if world.class(cells.index(cells.cell(first))) == CLEAR && slow {
+            if !world.may_hit(&p, start, DT) {
                 return false;
             }
             // A wall is met in a cell that has one.

@@ -204,7 +204,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     let mut rig = crowd.rig();
     rig.put("bins", &bins.iter().map(|&bin| [bin, 0]).collect::<Vec<_>>());
     rig.put("cell_start", &start);
-    rig.put("slots", &(0..).zip(&crowd.particles).map(|(s, p): (u32, _)| [s, p.id()]).collect::<Vec<_>>());
+    rig.put("slots", &crowd.particles.iter().map(GpuParticle::id).collect::<Vec<_>>());
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     rig.put("flights", &vec![GpuFlight::default(); COUNT]);
     rig.put("origins", &vec![0u32; COUNT]);

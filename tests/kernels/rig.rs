@@ -140,6 +140,35 @@ impl World {
         self.walls.class[cell as usize / 16][0] >> (2 * (cell % 16)) & 3
     }
 
+    /// Whether a flight may meet a wall: it leaves the cells around its own, or these have walls and it does not stay before their plane.
+    pub fn may_hit(&self, particle: &GpuParticle, start: f32, dt: f32) -> bool {
+        let cells = self.cells();
+        let ends = [start, dt].map(|t| cells.shifted(particle.position, particle.velocity.map(|v| v * t)));
+        let fastest = particle.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
+        if fastest * (dt - start) * cells.quanta_per_metre >= (1u32 << cells.bits) as f32 {
+            return true;
+        }
+        let place = cells.cell(ends[0]);
+        let cell = cells.index(place);
+        match self.class(cell) {
+            CLEAR => false,
+            SOLID => true,
+            _ => {
+                let first = cell / 16 * 16;
+                let near = (first..cell).filter(|&before| ![CLEAR, SOLID].contains(&self.class(before))).count();
+                let entry = self.walls.start[self.walls.class[first as usize / 16][1] as usize + near];
+                let [x, y, z, least] = entry[1].to_le_bytes().map(|byte| f64::from(byte as i8));
+                let size = f64::from(1u32 << cells.bits);
+                let from_middle = |p: [u32; 3]| -> Vector {
+                    std::array::from_fn(|k| Cells::signed(p[k]) as f64 / size - f64::from(place[k]) - 0.5)
+                };
+                let [from, to] = ends.map(from_middle);
+                let along = |p: Vector| x * p[0] + y * p[1] + z * p[2];
+                from.iter().any(|d| d.abs() > 0.5) || along(from).min(along(to)) <= 5.0 * least
+            }
+        }
+    }
+
     pub fn metres(&self, p: [u32; 3]) -> Vector {
         p.map(|q| Cells::signed(q) as f64 * self.grid.quantum())
     }

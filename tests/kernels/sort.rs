@@ -78,23 +78,23 @@ fn scatter_puts_each_particle_into_its_slot() {
     stream.shuffle(&mut arrival);
     let mut next = start.clone();
     let mut bins = vec![[0u32; 2]; COUNT];
-    let mut expected = vec![[0u32; 2]; COUNT];
+    let mut expected = vec![0u32; COUNT];
     for &k in &arrival {
         let place = next[cell[k] as usize];
         next[cell[k] as usize] += 1;
         bins[k] = [cell[k], place - start[cell[k] as usize]];
-        expected[place as usize] = [k as u32, particles[k].id()];
+        expected[place as usize] = particles[k].id();
     }
     let mut rig = Rig::new(&world);
     rig.put("particles", &particles);
     rig.put("bins", &bins);
     rig.put("cell_start", &start);
-    rig.put("slots", &vec![[NOBODY; 2]; COUNT]);
+    rig.put("slots", &vec![NOBODY; COUNT]);
     rig.step(step());
     rig.run("scatter", COUNT);
-    let found: Vec<[u32; 2]> = rig.get("slots", COUNT);
+    let found: Vec<u32> = rig.get("slots", COUNT);
     assert_eq!(found, expected);
-    assert_ne!(found[0], [0, particles[0].id()], "the check can fail: nothing was in order before");
+    assert_ne!(found[0], particles[0].id(), "the check can fail: nothing was in order before");
 }
 
 /// `order` gives the particles by (cell, id) whatever the order within the slots was, with flights that start
@@ -117,15 +117,8 @@ fn order_is_canonical() {
     let mut canonical: Vec<usize> = (0..COUNT).collect();
     canonical.sort_by_key(|&k| (cell[k], particles[k].id()));
     let expected: Vec<GpuParticle> = canonical.iter().map(|&k| particles[k]).collect();
-    let near_walls: Vec<u32> = (0..COUNT as u32)
-        .filter(|&s| {
-            let p = expected[s as usize];
-            let at = cells.index(cells.cell(cells.shifted(p.position, p.velocity.map(|v| v * begin(&p)))));
-            let fastest = p.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
-            let reach = fastest * (DT - begin(&p)) * cells.quanta_per_metre;
-            world.class(at) != CLEAR || reach >= (1u32 << cells.bits) as f32
-        })
-        .collect();
+    let near_walls: Vec<u32> =
+        (0..COUNT as u32).filter(|&s| world.may_hit(&expected[s as usize], begin(&expected[s as usize]), DT)).collect();
     // Blocks of two cells a side, each with its own share of the cross-section.
     let blocks = world.grid.blocks(1);
     let shares: Vec<u32> = (0..blocks.iter().product()).map(|b: u32| 100 + b).collect();
@@ -135,7 +128,7 @@ fn order_is_canonical() {
         shares[((b[2] * blocks[1] + b[1]) * blocks[0] + b[0]) as usize]
     };
     for shuffle in 0..2 {
-        let mut slots: Vec<[u32; 2]> = canonical.iter().map(|&k| [k as u32, particles[k].id()]).collect();
+        let mut slots: Vec<u32> = expected.iter().map(GpuParticle::id).collect();
         for pair in start.windows(2) {
             stream.shuffle(&mut slots[pair[0] as usize..pair[1] as usize]);
         }

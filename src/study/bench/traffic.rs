@@ -46,9 +46,9 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         // Counters in, and the starts out in their place; where there are particles the counters again. (They are cleared outside of
         // the phases.)
         "scan" => cells * 2.0 * WORD,
-        // scatter: bins in, slots out; order: slots and bins in, state in and out, cell and layer out.
+        // scatter: bins and id in, slots out; order: cell and slots in, state in and out, cell and layer out.
         "sort" => {
-            let order = n * (4.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + filled * WORD;
+            let order = n * (2.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + filled * WORD;
             // Flight, middle, mark of the rounds and length of the list.
             let of_rounds = if rounds { n * (FLIGHT + 3.0 * WORD) } else { 0.0 };
             n * 4.0 * WORD + filled * WORD + order + of_rounds
