@@ -3,7 +3,7 @@
 //
 // Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes of the
 // cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
-// those that meet a wall, or without rounds pass a cell that has one (noted in `layers`), to `bouncing`. One thread per
+// those that meet a wall, or without rounds may meet one (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
 
 override COLLISIONS: bool = true;
@@ -43,8 +43,6 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     let position = place.xyz;
     let velocity = motion.xyz;
-    // Most gas is far from walls.
-    var far = false;
     var meets_wall: bool;
     if (ROUNDS_OF_PAIRS) {
         meets_wall = flights[s].wall < step.dt;
@@ -53,8 +51,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (ORIFICES) {
             start = birth_time(id_of(place.w));
         }
-        far = !may_hit(position, velocity, start, step.dt);
-        meets_wall = !far && passes_walls(position, velocity, start, step.dt);
+        meets_wall = may_hit(position, velocity, start, step.dt);
     }
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {
@@ -65,7 +62,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     let end = shifted(position, velocity * step.dt);
-    if (!far) {
+    if (ROUNDS_OF_PAIRS) {
         let cell = end >> vec3<u32>(CELL_BITS);
         if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
             atomicAdd(&counters[OUTSIDE], 1u);

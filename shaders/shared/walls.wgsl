@@ -168,27 +168,6 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
     }
 }
 
-// Whether the flight x0 + v t passes cells with walls in start <= t < end.
-fn passes_walls(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> bool {
-    let cells = cells_of(shifted(x0, v * start), shifted(x0, v * end));
-    for (var z = cells.low.z; z <= cells.high.z; z++) {
-        for (var y = cells.low.y; y <= cells.high.y; y++) {
-            let list = row_list(cells, y, z);
-            if (list.x < list.y) {
-                return true;
-            }
-        }
-    }
-    if (MOVING) {
-        for (var m = 0u; m < MOTIONS; m++) {
-            if (touches(cells, motion_of(m))) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 // The first wall that the flight x0 + v t meets in start <= t < end.
 fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     var hit = Hit(NEVER, NOBODY, 0.0);
