@@ -1,8 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes of the
-// cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
+// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes and clearances of
+// the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
 

@@ -2,11 +2,11 @@
 // Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
 // the step.
 //
-// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares` and the classes of the cells; writes
+// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
 // `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, `origins` (the place in
 // `particles`), clears what the
-// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per slot of `particles`. The place of a particle is its cell's start plus
-// the number of lower ids in the cell: a function of the set, not of any order.
+// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle as they lie in
+// `particles`. The place of one is its cell's start plus the number of lower ids in the cell: a function of the set, not of any order.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
@@ -44,8 +44,8 @@ fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
 fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear(id, groups);
     if (i >= cell_start[step.bins] && i < step.total) {
-        // Slots that hold no particle: on a device alone, whose host learns late how many have left through vents, and where particles
-        // have been dropped that are nowhere near this device.
+        // Places behind the last particle: on a device alone, whose host learns late how many have left through vents, and where
+        // particles have been dropped that are nowhere near this device.
         layers[i] = LAYER;
         if (ROUNDS_OF_PAIRS) {
             neighbour_count[i] = 0u;

@@ -93,15 +93,15 @@ fn near_before(cell: u32) -> u32 {
     return classes.y + countOneBits(near & ((1u << ((cell & 15u) * 2u)) - 1u));
 }
 
-// What a step of a clearance is, in 127 cells (`UNIT` of src/geometry/clearance.rs).
-const PLANE_UNIT: f32 = 5.0;
+// What a step of a clearance is, in cells along a normal of 127.
+override CLEARANCE_UNIT: f32;
 
-// Whether the way between two points, the first in cell `c`, which is near walls, and the second no farther than its neighbours, lies
-// before the plane that all walls in these 27 cells are behind.
+// Whether the way between two points, the second less than a cell from the first, lies before the plane that all walls in the 27 cells
+// around are behind. `c` is near walls and the nearest cell to the first point; of one that is not in it nothing is known.
 fn before_walls(c: vec3<u32>, p: vec3<u32>, q: vec3<u32>) -> bool {
     let plane = wall_start[near_before(cell_index(c))].y;
     let normal = vec3<f32>(bitcast<vec3<i32>>(vec3<u32>(plane << 24u, plane << 16u, plane << 8u)) >> vec3<u32>(24u));
-    let least = f32(bitcast<i32>(plane) >> 24u) * (PLANE_UNIT * f32(1u << CELL_BITS));
+    let least = f32(bitcast<i32>(plane) >> 24u) * (CLEARANCE_UNIT * f32(1u << CELL_BITS));
     let middle = (c << vec3<u32>(CELL_BITS)) + (1u << (CELL_BITS - 1u));
     let from_middle = vec3<f32>(bitcast<vec3<i32>>(p - middle));
     let to_middle = vec3<f32>(bitcast<vec3<i32>>(q - middle));

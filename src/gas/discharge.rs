@@ -14,10 +14,11 @@
 //! Cd = (1 - w) fm + .84 w isentropic/choked, linear in ln Kn between the figures and on along the end slopes to 0 and 1.
 //! At Q = .8 it is linear in ln Kn through two figures. In between linear in Q; constant beyond.
 //!
-//! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight,
-//! where free flight and Sampson's creeping flow together are 1.33 times it. `corpuscle verify small-difference --full` finds .178 there, the
-//! specification's .18, but .399 at Kn .1, where the specification has .29, which is found with fewer particles, whose gas is more
-//! viscous than its Kn says. So .40 stands here, and the specification's .34 at .03, which is below, is left out.
+//! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight, where
+//! free flight and Sampson's creeping flow (.334/Kn of it) together are 1.33 times it. `corpuscle verify small-difference --full` finds .178
+//! there, the specification's .18, but .399 at Kn .1 with 120,000 particles, where the specification has .29. With 8000 it finds
+//! .33: spheres that fill a third of the space are more viscous than their Kn says. So .40 stands here, and the
+//! specification's .34 at .03, less than that at a third of the Kn, is left out.
 //!
 //! Assumptions: all were measured at gamma 1.4 and give the same w at any gamma; the continuum limit stays .84 at every Q.
 
@@ -130,15 +131,15 @@ mod tests {
 
     /// Net molar flow over choked flow, one gas at 300 K.
     fn coefficient(knudsen: f64, ratio: f64) -> f64 {
-        over_isentropic(knudsen, ratio) * isentropic(1.4, ratio) / isentropic(1.4, 0.0)
-    }
-
-    /// Over the isentropic flow at this ratio.
-    fn over_isentropic(knudsen: f64, ratio: f64) -> f64 {
         let side = |moles| Side { moles, volume: 1.0, temperature: 300.0 };
         let mut moles = [0.0];
         exchange(&nitrogen(), side(&[1.0]), side(&[ratio]), knudsen, &mut moles);
-        moles[0] / (GAS_CONSTANT * 300.0 / (0.028 * GAS_CONSTANT * 300.0).sqrt() * isentropic(1.4, ratio))
+        moles[0] / (GAS_CONSTANT * 300.0 / (0.028 * GAS_CONSTANT * 300.0).sqrt() * isentropic(1.4, 0.0))
+    }
+
+    /// And over the isentropic flow at this ratio.
+    fn over_isentropic(knudsen: f64, ratio: f64) -> f64 {
+        coefficient(knudsen, ratio) * isentropic(1.4, 0.0) / isentropic(1.4, ratio)
     }
 
     #[test]
@@ -164,16 +165,6 @@ mod tests {
     }
 
     #[test]
-    fn free_flight_and_creeping_flow_together_tell_what_the_figures_are_over() {
-        // Sampson (1891), R^3 dp / (3 mu), with mu = .499 rho cbar lambda is .334 R / lambda of pi R^2 cbar dp / (4 p).
-        let together = 1.0 + 0.334;
-        let over_free_flight = coefficient(1.0, 0.8) / kinetic_coefficient(1.4, 0.8);
-        assert!(over_free_flight > 1.0 && over_free_flight < together, "{over_free_flight}");
-        // Were they over choked flow.
-        assert!(MODERATE[0][1] / kinetic_coefficient(1.4, 0.8) > together + 0.2);
-    }
-
-    #[test]
     fn flow_grows_with_the_pressure_difference_and_falls_with_knudsen_number() {
         let knudsen = |i: i32| 10f64.powf(-3.0 + 0.1 * f64::from(i));
         for ratio in [0.0, 0.2, 0.5, 0.8, 0.95] {
@@ -183,7 +174,8 @@ mod tests {
             assert!(coefficient(knudsen(0), ratio) > 1.2 * coefficient(knudsen(50), ratio));
         }
         for kn in [0.001, 0.05, 0.3, 20.0] {
-            for i in 50..100 {
+            // A continuum, which .001 is, is choked up to .528.
+            for i in 53..100 {
                 let ratio = f64::from(i) / 100.0;
                 assert!(coefficient(kn, ratio) > coefficient(kn, ratio + 0.01));
             }

@@ -2,24 +2,27 @@
 //! both before it meets none: a line that starts and ends on one side of a plane does not cross it.
 //!
 //! One word a cell: three signed bytes of a normal, its largest component 127 or -127, and the least of normal . (place -
-//! middle of the cell), in [`UNIT`] cells. Everything is rounded away from the walls. Of the normals of these walls and
-//! the mean of them it is the one that leaves the middle of the cell farthest before the plane: exact beside one flat wall, a
-//! chamfer along an edge, and no help between two walls that face each other.
+//! middle of the cell), in [`CLEARANCE_UNIT`] cells. All is rounded away from the walls. Of the normals of these walls and the mean of
+//! them it is the one that leaves the middle of the cell farthest before the plane: beside one flat wall that wall, to less than a
+//! tenth of a cell; along an edge a chamfer; and no help between two walls that face each other.
 
 use glam::DVec3;
 
 use super::sampling::map;
 use super::{CellClass, FixedTriangle, Grid, TriangleGrid};
 
-/// What one step of the least is, in 127 cells along the normal; `PLANE_UNIT` of `shaders/shared/walls.wgsl`. No place of the 27
-/// cells has more than 1.5 x 3 x 127 = 571.5.
-pub const UNIT: f64 = 5.0;
+/// What one step of the least is, in cells along a normal of 127. No place of the 27 cells has more than 1.5 x 3 x 127 = 571.5.
+pub const CLEARANCE_UNIT: f64 = 5.0;
 /// No place is before a plane with this least: 635.
 const NOWHERE: i8 = 127;
 /// Of a least, more than rounding of f32 makes of it.
 const SLACK: f64 = 0.01;
+/// So many triangles around a cell and directions of them are looked at, and where there are more triangles, no place is before a
+/// plane: what it costs to find planes stays a small part of a set-up, whatever the mesh.
+const MOST_TRIANGLES: usize = 64;
+const MOST_NORMALS: usize = 8;
 
-/// One of each cell that is [`CellClass::Gas`] or [`CellClass::Cut`], in order. `margin` (m) is that of the lists.
+/// One of each cell that is [`CellClass::Gas`] or [`CellClass::Cut`], in order. `margin` (m) must be that with which the lists were built.
 pub fn clearances(triangles: &TriangleGrid, grid: &Grid, margin: f64) -> Vec<u32> {
     let near: Vec<usize> = (0..triangles.class.len())
         .filter(|&cell| matches!(triangles.class[cell], CellClass::Gas | CellClass::Cut))
@@ -40,6 +43,10 @@ fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) ->
     }
     near.sort_unstable();
     near.dedup();
+    let nowhere = encoded(DVec3::ZERO, f64::from(NOWHERE));
+    if near.len() > MOST_TRIANGLES {
+        return nowhere;
+    }
     let middle = DVec3::from(place.map(|i| i as f64 + 0.5));
     let near: Vec<&FixedTriangle> = near.iter().map(|&k| &triangles.triangles[k as usize]).collect();
     let mut corners = Vec::new();
@@ -49,20 +56,20 @@ fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) ->
         corners.extend(clipped(drawn.to_vec(), 1.5 + margin));
     }
     // Beside a wall that none of these cells lists (the end of the grid) nothing is known.
-    let mut best = (f64::INFINITY, encoded(DVec3::ZERO, f64::from(NOWHERE)));
+    let mut best = (f64::INFINITY, nowhere);
     let mut normals: Vec<DVec3> = Vec::new();
     for normal in near.iter().map(|triangle| DVec3::from(triangle.normal.map(f64::from))) {
         if !normals.contains(&normal) {
             normals.push(normal);
         }
     }
-    if normals.len() > 1 {
-        normals.push(normals.iter().sum());
-    }
+    let mean: DVec3 = normals.iter().sum();
+    normals.truncate(MOST_NORMALS);
+    normals.push(mean);
     for normal in normals {
         let normal = (normal * (127.0 / normal.abs().max_element())).round();
         let farthest = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
-        let least = ((farthest + margin * normal.length()) / UNIT + SLACK).ceil();
+        let least = ((farthest + margin * normal.length()) / CLEARANCE_UNIT + SLACK).ceil();
         let depth = least / normal.length();
         if least < f64::from(NOWHERE) && depth < best.0 {
             best = (depth, encoded(normal, least.max(-127.0)));

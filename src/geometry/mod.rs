@@ -3,8 +3,8 @@
 //!
 //! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `plate`, `polygon`,
 //! `mesh_file`, `closed`) and answers where the gas is (`lines`) and how much of it (`vessel`, `region`,
-//! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` tells which gas of
-//! the cells near them flies past.
+//! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
+//! that part the gas near them from them.
 
 mod blocks;
 mod cell_gas;
@@ -25,7 +25,7 @@ mod vessel;
 
 pub use blocks::block_volumes;
 pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
-pub use clearance::clearances;
+pub use clearance::{CLEARANCE_UNIT, clearances};
 pub use closed::check_closed;
 pub use error::GeometryError;
 pub use grid::{Grid, GridError};

@@ -1,7 +1,7 @@
 //! Values of the shaders' override constants: what specialises the kernels to a scene. Each is written
 //! once, here, from the plan.
 
-use crate::geometry::{CELL_GENERATOR, CELL_POINTS};
+use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
@@ -115,6 +115,7 @@ pub fn constants(
         ("QUANTUM", grid.quantum()),
         ("QUANTA", 1.0 / grid.quantum()),
         ("TOLERANCE", walls.tolerance),
+        ("CLEARANCE_UNIT", CLEARANCE_UNIT),
         ("CHUNK", CHUNK as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),

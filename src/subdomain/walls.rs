@@ -33,7 +33,7 @@ impl Walls {
         TOLERANCE * cells * grid.cell
     }
 
-    /// `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `coat` is its coat;
+    /// `triangle_grid` was built with the margin [`Walls::tolerance`]. `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `coat` is its coat;
     /// empty if all walls are mirrors. `parts` tells
     /// of a triangle of the vessel whether it can part two points of the gas: those of the surface of a
     /// convex cavity cannot.
@@ -152,9 +152,9 @@ mod tests {
         (before + (near & ((1 << (cell % 16 * 2)) - 1)).count_ones()) as usize
     }
 
-    /// Each cell's triangles are found by how many cells before it have any; behind the last cell is the end.
+    /// Each cell's triangles are found by how many cells before it are near walls; behind the last cell is the end.
     #[test]
-    fn the_lists_of_cells_with_walls_are_found_by_their_number() {
+    fn the_lists_of_cells_near_walls_are_found_by_their_number() {
         let text = include_str!("../../scenes/tank.toml");
         let vessel = Vessel::build(&scene::parse(text, "tank.toml", Path::new("")).unwrap().walls).unwrap();
         let (low, high) = vessel.bounds;
@@ -162,7 +162,7 @@ mod tests {
         let mut filled = [false; 2];
         for edge in (10..30).map(|k| f64::from(k) * 1e-3) {
             let grid = Grid::around(low, high, edge).unwrap();
-            let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
+            let built = TriangleGrid::build(&vessel, &grid, Walls::tolerance(&grid)).unwrap();
             let walls = Walls::new(&built, &grid, &[], &[], |_| true);
             let (mut listed, mut near) = (0, 0);
             for cell in 0..grid.cell_count() {

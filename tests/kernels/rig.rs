@@ -164,7 +164,8 @@ impl World {
                 };
                 let [from, to] = ends.map(from_middle);
                 let along = |p: Vector| x * p[0] + y * p[1] + z * p[2];
-                from.iter().any(|d| d.abs() > 0.5) || along(from).min(along(to)) <= 5.0 * least
+                from.iter().any(|d| d.abs() > 0.5)
+                    || along(from).min(along(to)) <= corpuscle::geometry::CLEARANCE_UNIT * least
             }
         }
     }
@@ -224,6 +225,7 @@ impl Rig {
             ("QUANTUM", grid.quantum()),
             ("QUANTA", 1.0 / grid.quantum()),
             ("TOLERANCE", world.walls.tolerance),
+            ("CLEARANCE_UNIT", corpuscle::geometry::CLEARANCE_UNIT),
             // Mirrors, unless a test gives the walls coats.
             ("COATS", 0.0),
             ("VENTS", 0.0),

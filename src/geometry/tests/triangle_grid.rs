@@ -1,7 +1,7 @@
 //! Which cells each triangle touches, and what the other cells are.
 
 use super::*;
-use crate::geometry::{CellClass, Grid, TriangleGrid, clearances};
+use crate::geometry::{CLEARANCE_UNIT, CellClass, Grid, TriangleGrid, clearances};
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::details::intersection_test_aabb_triangle;
@@ -141,13 +141,13 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
 /// Whether a place is before the plane of a cell's clearance, as `shaders/shared/walls.wgsl` has it.
 fn is_before(word: u32, from_middle: DVec3) -> bool {
     let [x, y, z, least] = word.to_le_bytes().map(|byte| f64::from(byte as i8));
-    DVec3::new(x, y, z).dot(from_middle) > 5.0 * least
+    DVec3::new(x, y, z).dot(from_middle) > CLEARANCE_UNIT * least
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// No wall reaches before the plane that clears a cell of it, and beside a flat wall the plane is that wall, to 5/127 of a cell.
+    /// No wall, nor what is nearer to one than the margin, lies before the plane of a cell, and most cells beside walls have one.
     #[test]
     fn walls_lie_behind_the_planes_of_the_cells_near_them(turn in prop::array::uniform3(-1.0..1.0f64), margin in 0.0..2e-3f64) {
         let vessel = scene(turn);
@@ -160,14 +160,19 @@ proptest! {
         for (cell, &plane) in near.zip(&planes) {
             let (low, high) = cell_box(&grid, cell);
             let middle = 0.5 * (low + high);
-            let reach = DVec3::splat(1.5 * grid.cell + margin);
+            let reach = DVec3::splat(1.5 * grid.cell);
             for triangle in &vessel.triangles {
                 let [a, b, c] = triangle.vertices.map(|v| DVec3::from(vessel.vertices[v as usize]));
                 for k in 0..=40 {
                     for l in 0..=40 - k {
                         let (u, v) = (f64::from(k) / 40.0, f64::from(l) / 40.0);
                         let offset = a + u * (b - a) + v * (c - a) - middle;
-                        if offset.abs().cmple(reach).all() {
+                        // The margin before the wall, to either side.
+                        let normal = (b - a).cross(c - a).normalize();
+                        for offset in [offset + 0.99 * margin * normal, offset - 0.99 * margin * normal] {
+                            if !offset.abs().cmple(reach).all() {
+                                continue;
+                            }
                             prop_assert!(!is_before(plane, offset / grid.cell), "cell {} {:x} {}", cell, plane, offset);
                         }
                     }
@@ -186,27 +191,32 @@ proptest! {
     }
 }
 
-/// In the middle of a face of a cube the plane is the face, and on an edge it is no face.
+/// In the middle of a face of a box the plane is the face, to two units at most.
 #[test]
 fn beside_a_flat_wall_the_plane_is_the_wall() {
-    let vessel = Vessel::build(&[tank([1.0; 3])]).unwrap();
+    let size = DVec3::new(1.0, 1.03, 0.97);
+    let vessel = Vessel::build(&[tank(size.to_array())]).unwrap();
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
     let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
     let planes = clearances(&built, &grid, 1e-6);
+    let sliver = 2.0 * CLEARANCE_UNIT / 127.0;
     let near: Vec<usize> =
         (0..grid.cell_count()).filter(|&c| matches!(built.class[c], CellClass::Gas | CellClass::Cut)).collect();
     let mut faces = 0;
     for (cell, plane) in near.iter().zip(planes) {
         let (low, high) = cell_box(&grid, *cell);
         let middle = 0.5 * (low + high);
-        let away = |axis: usize| (middle[axis]).min(1.0 - middle[axis]) / grid.cell;
+        let away = |axis: usize| middle[axis].min(size[axis] - middle[axis]) / grid.cell;
         let close: Vec<usize> = (0..3).filter(|&axis| away(axis) < 1.6).collect();
         let &[axis] = close.as_slice() else { continue };
-        let inward = if middle[axis] < 0.5 { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
+        let inward = if middle[axis] < 0.5 * size[axis] { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
         let wall = -inward * away(axis);
-        assert!(!is_before(plane, wall + 1e-3 * inward) && is_before(plane, wall + 0.08 * inward), "{cell} {plane:x}");
+        assert!(
+            !is_before(plane, wall + 1e-3 * inward) && is_before(plane, wall + sliver * inward),
+            "{cell} {plane:x}"
+        );
         let beside = DVec3::AXES[(axis + 1) % 3];
-        assert!(is_before(plane, wall + 0.08 * inward + 1.4 * beside), "{cell} {plane:x}");
+        assert!(is_before(plane, wall + sliver * inward + 1.4 * beside), "{cell} {plane:x}");
         faces += 1;
     }
     assert!(faces > 100, "{faces}");

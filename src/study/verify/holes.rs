@@ -146,13 +146,13 @@ fn emptying_until(end_time: f64, particles: u64, knudsen: f64) -> Result<Model, 
     let mut scene = emptying_scene()?;
     scene.end_time = end_time;
     scene.model.particles = Some(particles);
-    collide(&mut scene, particles as f64 / VOLUME, knudsen);
+    set_knudsen(&mut scene, particles as f64 / VOLUME, knudsen);
     model_from("orifice", scene)
 }
 
-/// Gives gas that is this dense at the start, 1/m3, a mean free path of so many radii of the hole: that which stays, and which is
-/// denser than the mean.
-pub(super) fn collide(scene: &mut Scene, density: f64, knudsen: f64) {
+/// Gives gas that is this dense at the start, 1/m3, a mean free path of so many radii of the hole, and a step for it. No diameter is
+/// capped: the Knudsen number is that of the gas before the hole, which is denser than the mean.
+pub(super) fn set_knudsen(scene: &mut Scene, density: f64, knudsen: f64) {
     let diameter = kinetics::diameter_of_path(density, knudsen * RADIUS);
     scene.model.diameter = Some(diameter);
     scene.model.diameter_cap = Some(DiameterCap::Off);

@@ -9,7 +9,7 @@ use crate::gpu::Device;
 use crate::simulation::{Options, Row};
 use crate::study::StudyError;
 use crate::study::verify::gas_box::GAS_CONSTANT;
-use crate::study::verify::holes::{AREA, VOLUME, collide, emptying_scene, isentropic_speed, thin_gas_step};
+use crate::study::verify::holes::{AREA, VOLUME, emptying_scene, isentropic_speed, set_knudsen, thin_gas_step};
 use crate::study::verify::losses::{EDGE, MOLAR_MASS, TEMPERATURE};
 use crate::study::verify::witness::model_of;
 use crate::study::verify::{Effort, Findings, model_from, run};
@@ -104,7 +104,7 @@ pub fn small_difference(device: &Device, effort: Effort) -> Result<Findings, Stu
         let (found, error) = net_discharge(device, knudsen, particles, seeds)?;
         findings.notes.push(format!(
             "With {particles} particles in the chamber Cd at Kn = {knudsen} is {found:.3} +- {error:.3}: spheres that fill a third of the \
-             space are more viscous than their Knudsen number says, so fewer of them flow. The specification's figure does not say of how \
+             space are more viscous than their Knudsen number says, and less gas flows. The specification's figure does not say of how \
              many particles it is, nor over what; over the isentropic flow at p2/p1 = {BEHIND} that at Kn = 1 is as found, over choked \
              flow it would be more than free flight and creeping flow (Sampson 1891) are together"
         ));
@@ -116,7 +116,7 @@ pub fn small_difference(device: &Device, effort: Effort) -> Result<Findings, Stu
 fn net_discharge(device: &Device, knudsen: f64, particles: u64, seeds: u64) -> Result<(f64, f64), StudyError> {
     let mut scene = emptying_scene()?;
     scene.chambers[1].pressure = BEHIND * scene.chambers[0].pressure;
-    collide(&mut scene, particles as f64 / VOLUME, knudsen);
+    set_knudsen(&mut scene, particles as f64 / VOLUME, knudsen);
     // As many in the chamber as said.
     let plan = model_from("orifice", scene.clone())?.plan;
     let [chamber, behind] = [0, 1].map(|k| plan.chambers[k].volume);
