@@ -52,16 +52,19 @@ pub fn line(measured: &Measured, device: &Device) -> String {
         (true, false) => format!(" (f = {OCCUPANCY}, x = {})", measured.step),
         _ => String::new(),
     };
+    // Without collisions nothing is sorted.
+    let of_cells = match measured.cells {
+        0 => String::new(),
+        cells => format!(" and {:.1} per cell", measured.buffers[1] as f64 / cells as f64),
+    };
     format!(
-        "{}, {}{parameters}, {} particles, {} steps: {:.3} M particle-steps/s{aim}; {:.0} bytes of buffers per particle and \
-         {:.1} per cell",
+        "{}, {}{parameters}, {} particles, {} steps: {:.3} M particle-steps/s{aim}; {:.0} bytes of buffers per particle{of_cells}",
         measured.scene,
         measured.method.name(),
         measured.present,
         measured.steps,
         1e-6 * measured.rate(),
         measured.buffers[0] as f64 / measured.present.max(1) as f64,
-        measured.buffers[1] as f64 / measured.cells.max(1) as f64,
     )
 }
 
