@@ -17,7 +17,7 @@
 //! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight, where
 //! free flight and Sampson's creeping flow (.334/Kn of it) together are 1.33 times it. `corpuscle verify small-difference --full` finds .178
 //! there, the specification's .18, but .399 at Kn .1 with 120,000 particles, where the specification has .29. With 8000 it finds .293
-//! as well: spheres that fill a third of the space are more viscous than their Kn says. So .40 stands here, and the
+//! +- .016: spheres that fill a third of the space are more viscous than their Kn says. So .40 stands here, and the
 //! specification's .34 at .03, less than that at a third of the Kn, is left out.
 //!
 //! Assumptions: all were measured at gamma 1.4 and give the same w at any gamma; the continuum limit stays .84 at every Q.
@@ -174,10 +174,12 @@ mod tests {
             assert!(coefficient(knudsen(0), ratio) > 1.2 * coefficient(knudsen(50), ratio));
         }
         for kn in [0.001, 0.05, 0.3, 20.0] {
-            // A continuum, which .001 is, is choked up to .528.
-            for i in 53..100 {
+            for i in 50..100 {
                 let ratio = f64::from(i) / 100.0;
-                assert!(coefficient(kn, ratio) > coefficient(kn, ratio + 0.01));
+                let fall = coefficient(kn, ratio) - coefficient(kn, ratio + 0.01);
+                // A continuum, which .001 is, is choked up to .528.
+                let choked = kn == 0.001 && ratio + 0.01 < 0.528;
+                assert!(if choked { fall.abs() < 1e-12 } else { fall > 0.0 }, "Kn = {kn}, {ratio}: {fall}");
             }
         }
     }

@@ -33,10 +33,9 @@ impl Walls {
         TOLERANCE * cells * grid.cell
     }
 
-    /// `triangle_grid` was built with the margin [`Walls::tolerance`]. `patch` is the surface tally of each triangle of the vessel; empty if nothing is tallied. `coat` is its coat;
-    /// empty if all walls are mirrors. `parts` tells
-    /// of a triangle of the vessel whether it can part two points of the gas: those of the surface of a
-    /// convex cavity cannot.
+    /// `triangle_grid` was built with the margin [`Walls::tolerance`]. `patch` is the surface tally of each triangle of
+    /// the vessel; empty if nothing is tallied. `coat` is its coat; empty if all walls are mirrors. `parts` tells of a
+    /// triangle of the vessel whether it can part two points of the gas: those of the surface of a convex cavity cannot.
     pub fn new(
         triangle_grid: &TriangleGrid,
         grid: &Grid,

@@ -172,3 +172,17 @@ fn surfaces_tally_the_impulse_of_their_hits() {
         assert!(word(4) * (0.5 + 8.0 * U * 6e6) < 1e-5 * expected[3]);
     }
 }
+
+/// Without rounds `advect` leaves the lost to `bounce`, which flies and counts them.
+#[test]
+fn those_outside_are_counted() {
+    let world = World::plain();
+    let mut particles = world.particles(&mut Stream::new(29), 100, 0.0);
+    let corner = [(1 << world.grid.cell_bits) / 2; 3];
+    for particle in &mut particles[..7] {
+        particle.position = corner;
+    }
+    let rig = bounce(&world, &particles, &free_flights(100), false);
+    assert_eq!(rig.counter(OUTSIDE), 7);
+    assert_eq!(rig.get::<GpuParticle>("particles", 7), particles[..7]);
+}

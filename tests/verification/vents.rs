@@ -44,7 +44,7 @@ fn a_vessel_empties_isentropically() {
 
 /// The reference case of the specification, section 8, to its tolerance.
 #[test]
-#[ignore = "minutes on a software device: cargo test --release --test verification isentropically -- --ignored"]
+#[ignore = "minutes on a software device: scripts/test.sh --long"]
 fn a_vessel_empties_isentropically_within_a_hundredth() {
     let run = emptied(&device(), 100_000, 0.7 / rate(pores()), pores()).expect("a run");
     let (found, error) = slope(&run);
