@@ -3,7 +3,7 @@
 // probes).
 //
 // Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles,
-// one zone (y) and one gas (z); each thread adds its own, then the workgroup, then the zone's sums. Where chambers have all of the
+// one zone (y) and two gases (z); each thread adds its own, then the workgroup, then the zone's sums. Where chambers have all of the
 // gas, they are what is added up for the whole. Fixed-point integers with a carry: the sums do not depend on order. A value
 // out of range is counted, and the host stops the run.
 
@@ -46,7 +46,17 @@ const ENERGY_RANGE: f32 = 4.29e9;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(18) var<storage, read> zones: array<Zone>;
 
-var<workgroup> shared_sums: array<atomic<u32>, WORDS>;
+// Of one gas, then of the other.
+var<workgroup> shared_sums: array<atomic<u32>, 2u * WORDS>;
+
+struct Sums {
+    number: u32,
+    x: vec2<u32>,
+    y: vec2<u32>,
+    z: vec2<u32>,
+    kinetic: vec2<u32>,
+    spin: vec2<u32>,
+}
 
 // How far three sides have moved by the end of the step, each along its axis, quanta.
 fn sides_moved(carried: u32) -> vec3<u32> {
@@ -109,6 +119,29 @@ fn plus_signed(sum: vec2<u32>, value: i32) -> vec2<u32> {
     return plus(sum, bitcast<u32>(value), select(0u, 0xffffffffu, value < 0));
 }
 
+fn added(sums: Sums, velocity: vec3<i32>, kinetic: u32, spin: u32) -> Sums {
+    return Sums(
+        sums.number + 1u,
+        plus_signed(sums.x, velocity.x),
+        plus_signed(sums.y, velocity.y),
+        plus_signed(sums.z, velocity.z),
+        plus(sums.kinetic, kinetic, 0u),
+        plus(sums.spin, spin, 0u),
+    );
+}
+
+fn share(gas: u32, sums: Sums) {
+    if (sums.number > 0u) {
+        let slot = gas * WORDS;
+        share64(slot, vec2<u32>(sums.number, 0u));
+        share64(slot + 2u, sums.x);
+        share64(slot + 4u, sums.y);
+        share64(slot + 6u, sums.z);
+        share64(slot + 8u, sums.kinetic);
+        share64(slot + 10u, sums.spin);
+    }
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn tally(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -120,27 +153,27 @@ fn tally(
     if (zone == 0u && chambers_have_all) {
         return;
     }
-    if (thread < WORDS) {
+    if (thread < 2u * WORDS) {
         atomicStore(&shared_sums[thread], 0u);
     }
     workgroupBarrier();
-    let gas = group.z;
+    let first_gas = 2u * group.z;
     // Once, not for each particle.
     let here = zones[zone];
     let count = step.total;
-    var number = 0u;
-    var x = vec2<u32>(0u);
-    var y = vec2<u32>(0u);
-    var z = vec2<u32>(0u);
-    var kinetic_sum = vec2<u32>(0u);
-    var spin_sum = vec2<u32>(0u);
+    var sums_of_first = Sums();
+    var sums_of_second = Sums();
     for (var k = 0u; k < CHUNK_LOOPS; k++) {
         let i = (group.x * CHUNK_LOOPS + k) * WORKGROUP + thread;
         if (i >= count) {
             break;
         }
         let place = particles[i].place;
-        if (place.w == NOBODY || gas_of(place.w) != gas) {
+        if (place.w == NOBODY) {
+            continue;
+        }
+        let gas = gas_of(place.w) - first_gas;
+        if (gas >= 2u) {
             continue;
         }
         let position = place.xyz;
@@ -156,29 +189,28 @@ fn tally(
             atomicAdd(&counters[TALLY_OVERFLOW], 1u);
             continue;
         }
-        number++;
         let whole = vec3<i32>(round(velocity));
-        x = plus_signed(x, whole.x);
-        y = plus_signed(y, whole.y);
-        z = plus_signed(z, whole.z);
-        kinetic_sum = plus(kinetic_sum, u32(round(kinetic)), 0u);
-        spin_sum = plus(spin_sum, u32(round(spin)), 0u);
+        let kinetic_units = u32(round(kinetic));
+        let spin_units = u32(round(spin));
+        if (GASES == 1u || gas == 0u) {
+            sums_of_first = added(sums_of_first, whole, kinetic_units, spin_units);
+        } else {
+            sums_of_second = added(sums_of_second, whole, kinetic_units, spin_units);
+        }
     }
-    if (number > 0u) {
-        share64(0u, vec2<u32>(number, 0u));
-        share64(2u, x);
-        share64(4u, y);
-        share64(6u, z);
-        share64(8u, kinetic_sum);
-        share64(10u, spin_sum);
+    share(0u, sums_of_first);
+    if (GASES > 1u) {
+        share(1u, sums_of_second);
     }
     workgroupBarrier();
-    if (thread < WORDS / 2u) {
+    let gas = first_gas + thread / (WORDS / 2u);
+    if (thread < WORDS && gas < GASES) {
         let low = atomicLoad(&shared_sums[2u * thread]);
         let high = atomicLoad(&shared_sums[2u * thread + 1u]);
-        add64((zone * GASES + gas) * WORDS + 2u * thread, low, high);
+        let word = 2u * (thread % (WORDS / 2u));
+        add64((zone * GASES + gas) * WORDS + word, low, high);
         if (chambers_have_all && zone <= CHAMBERS) {
-            add64(gas * WORDS + 2u * thread, low, high);
+            add64(gas * WORDS + word, low, high);
         }
     }
 }

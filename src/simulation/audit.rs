@@ -254,10 +254,14 @@ impl Account {
         for (total, own) in self.counted.injected_momentum.iter_mut().zip(interval.momentum) {
             *total += own;
         }
-        // One step was timed; a tally, if it had one, is in fewer steps than the others.
-        let tallied = interval.tallied.last().is_some_and(|&tallied| tallied);
+        // One step was timed, the last; a tally is in fewer steps than the rest, and what is known of blocks is summed after the
+        // last alone.
         for &(name, seconds) in timed {
-            let share = if name == "tally" && tallied { u64::from(samples) } else { steps };
+            let share = match name {
+                "tally" => u64::from(samples),
+                "blocks" => 1,
+                _ => steps,
+            };
             match self.counted.phases.iter_mut().find(|(known, ..)| known == name) {
                 Some((_, total, count)) => {
                     *total += seconds * share as f64;

@@ -456,7 +456,9 @@ impl Subdomain {
 
     pub fn tally(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let chunks = u64::from(step.total).div_ceil(TALLY_CHUNK) as u32;
-        let groups = [chunks, self.domain.zones as u32, self.domain.plan.gases.len() as u32];
+        // Two gases at a time.
+        let pairs = (self.domain.plan.gases.len() as u32).div_ceil(2);
+        let groups = [chunks, self.domain.zones as u32, pairs];
         let offset = self.offset(rec.device(), step, 0);
         self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
     }
@@ -472,7 +474,7 @@ impl Subdomain {
     /// The blocks that the choice of the step size needs.
     pub fn tally_blocks(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let device = rec.device();
-        self.kernels.blocks.dispatch(rec.phase("tally"), self.offset(device, step, 0), all(device, step));
+        self.kernels.blocks.dispatch(rec.phase("blocks"), self.offset(device, step, 0), all(device, step));
     }
 }
 

@@ -264,7 +264,7 @@ impl Subdomain {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             device.write(&self.fixed.weights, 0, &[GpuWeights::default()]);
-            kernels.weigh.dispatch(rec.phase("tally"), self.offset(device, step, 0), super::encode::all(device, step));
+            kernels.weigh.dispatch(rec.phase("blocks"), self.offset(device, step, 0), super::encode::all(device, step));
         }
     }
 

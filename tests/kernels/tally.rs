@@ -7,6 +7,8 @@ use crate::oracle::vector::{dot, minus, norm};
 use crate::rig::*;
 
 const COUNT: usize = 5000;
+/// Three, so that a workgroup has two of them and another one.
+const GASES: usize = 3;
 /// Tally units per m/s and per (m/s)^2.
 const VELOCITY_SCALE: f64 = 65536.0;
 const ENERGY_SCALE: f64 = 4096.0;
@@ -45,20 +47,20 @@ fn contains(world: &World, zone: &GpuZone, p: [u32; 3]) -> Option<bool> {
 
 fn rig(world: &World, zones: &[GpuZone], particles: &[GpuParticle], chambers: u32) -> Rig {
     let mut rig = Rig::new(world);
-    rig.constant("GASES", 2.0);
+    rig.constant("GASES", GASES as f64);
     rig.constant("CHAMBERS", f64::from(chambers));
     rig.constant("VELOCITY_SCALE", VELOCITY_SCALE);
     rig.constant("ENERGY_SCALE", ENERGY_SCALE);
     rig.put("particles", particles);
     rig.put("zones", zones);
-    rig.put("sums", &vec![0u32; zones.len() * 2 * ZONE_WORDS]);
+    rig.put("sums", &vec![0u32; zones.len() * GASES * ZONE_WORDS]);
     rig.step(GpuStep { count: particles.len() as u32, ..GpuStep::default() });
-    rig.run_groups("tally", [particles.len().div_ceil(2048) as u32, zones.len() as u32, 2]);
+    rig.run_groups("tally", [particles.len().div_ceil(2048) as u32, zones.len() as u32, GASES.div_ceil(2) as u32]);
     rig
 }
 
 fn sums(rig: &Rig, zones: usize) -> Vec<[i64; 6]> {
-    let words: Vec<u32> = rig.get("sums", zones * 2 * ZONE_WORDS);
+    let words: Vec<u32> = rig.get("sums", zones * GASES * ZONE_WORDS);
     let long = |w: &[u32]| (u64::from(w[0]) | u64::from(w[1]) << 32).cast_signed();
     words.chunks_exact(ZONE_WORDS).map(|w| std::array::from_fn(|k| long(&w[2 * k..]))).collect()
 }
@@ -76,16 +78,17 @@ fn zones_sum_number_velocity_and_energies_of_each_gas() {
         // Whole numbers below 512: their squares add up without rounding, in any order or contraction.
         particle.velocity = [0; 3].map(|_| (stream.below(1023) as i32 - 511) as f32);
         particle.spin = stream.below(1 << 18) as f32;
+        particle.tag = GpuParticle::tag(stream.below(GASES as u32) as u8, particle.id());
     }
     let expected = |chambers: usize| -> Vec<[i64; 6]> {
-        let mut sums = vec![[0i64; 6]; 2 * zones.len()];
+        let mut sums = vec![[0i64; 6]; GASES * zones.len()];
         for p in &particles {
             let inside = |z: usize| contains(&world, &zones[z], p.position).unwrap();
             for z in (0..zones.len()).filter(|&z| inside(z)) {
                 if z <= chambers && (1..z).any(inside) {
                     continue;
                 }
-                let sum = &mut sums[2 * z + usize::from(p.gas())];
+                let sum = &mut sums[GASES * z + usize::from(p.gas())];
                 let speed2: f32 = p.velocity.iter().map(|v| v * v).sum();
                 sum[0] += 1;
                 for (total, v) in sum[1..4].iter_mut().zip(p.velocity) {

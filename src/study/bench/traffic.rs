@@ -69,7 +69,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
             n * (2.0 * PARTICLE + flight + layer) + work.bounces * 2.0 * PARTICLE
         }
         // Every zone of a tallied step, and the blocks of each interval, read all states.
-        "tally" => n / work.steps.max(1.0) * PARTICLE * (work.tallies * work.zones + work.intervals),
+        "tally" => n / work.steps.max(1.0) * PARTICLE * work.tallies * work.zones,
+        "blocks" => n / work.steps.max(1.0) * PARTICLE * work.intervals,
         _ => return None,
     })
 }
@@ -91,7 +92,7 @@ mod tests {
     fn candidates_count_where_they_are_listed() {
         let few = Work { steps: 1.0, particle_steps: 100.0, candidates: 500.0, ..Work::default() };
         let more = Work { candidates: 600.0, ..few };
-        for phase in ["bin", "scan", "sort", "neighbours", "choose", "settle", "advect", "tally"] {
+        for phase in ["bin", "scan", "sort", "neighbours", "choose", "settle", "advect", "tally", "blocks"] {
             let [a, b] = [&few, &more].map(|work| bytes(phase, Method::ClosestApproach, work).unwrap());
             let listed = phase == "neighbours";
             assert_eq!(b - a, if listed { 400.0 } else { 0.0 }, "{phase}");
