@@ -1,8 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the classes and clearances of
-// the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
+// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the number of particles behind
+// `cell_start`, the classes and clearances of the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
 
@@ -13,6 +13,7 @@ override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
@@ -27,8 +28,12 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var place: vec4<u32>;
     var motion: vec4<f32>;
     if (COLLISIONS) {
-        // A ghost, or a slot whose particle has left.
-        if ((layers[s] & LAYER) != 0u) {
+        // A slot behind the last particle, or a ghost.
+        var nobody = s >= cell_start[step.bins];
+        if (step.peers > 0u) {
+            nobody = (layers[s] & LAYER) != 0u;
+        }
+        if (nobody) {
             particles[s].place.w = NOBODY;
             return;
         }
@@ -55,7 +60,9 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {
-            layers[s] |= NEAR;
+            if (step.peers > 0u) {
+                layers[s] |= NEAR;
+            }
             atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         }
         bouncing[append(LIST_BOUNCE)] = s;

@@ -31,13 +31,25 @@ fn moves(c: vec3<u32>) -> bool {
     return false;
 }
 
+// The place among the cells of a workgroup: each eight in a row go on in another of 16 parts. Gas may be in one part of the space alone,
+// and a software device gives each of its threads a stretch of workgroups.
+const NEAR_GROUPS: u32 = 8;
+const PARTS: u32 = 16;
+
+fn place_of(group: u32, groups: u32) -> u32 {
+    let length = groups / (PARTS * NEAR_GROUPS);
+    let eight = group / NEAR_GROUPS;
+    let place = ((eight % PARTS) * length + eight / PARTS) * NEAR_GROUPS + group % NEAR_GROUPS;
+    return select(group, place, group < PARTS * NEAR_GROUPS * length);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn collide(
-    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    let bin = linear(id, groups);
+    let bin = place_of(group.x + group.y * groups.x, groups.x * groups.y) * WORKGROUP + thread;
     if (bin < step.bins) {
         let begin = cell_start[bin];
         let bin_end = cell_start[bin + 1u];

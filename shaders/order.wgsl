@@ -46,7 +46,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (i >= cell_start[step.bins] && i < step.total) {
         // Places behind the last particle: on a device alone, whose host learns late how many have left through vents, and where
         // particles have been dropped that are nowhere near this device.
-        layers[i] = LAYER;
+        if (ROUNDS_OF_PAIRS || step.peers > 0u) {
+            layers[i] = LAYER;
+        }
         if (ROUNDS_OF_PAIRS) {
             neighbour_count[i] = 0u;
         }
@@ -83,11 +85,14 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
             mark = SHARED;
         }
     }
-    cells[place] = cell;
     if (!ROUNDS_OF_PAIRS) {
-        layers[place] = mark;
+        if (step.peers > 0u) {
+            cells[place] = cell;
+            layers[place] = mark;
+        }
         return;
     }
+    cells[place] = cell;
     var start = 0.0;
     if (ORIFICES) {
         start = birth_time(own_id);

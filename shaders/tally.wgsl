@@ -2,8 +2,10 @@
 // Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
 // probes).
 //
-// Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles,
-// one zone (y) and two gases (z); each thread adds its own, then the workgroup, then the zone's sums. Where chambers have all of the
+// Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles (y),
+// one zone (x) and two gases (z); each thread adds its own, then the workgroup, then the zone's sums. (The zones of one chunk are
+// next to each other, not the chunks of one zone: some zones have much to do and others nothing, and a software device gives each of its
+// threads a stretch of workgroups.) Where chambers have all of the
 // gas, they are what is added up for the whole. Fixed-point integers with a carry: the sums do not depend on order. A value
 // out of range is counted, and the host stops the run.
 
@@ -147,7 +149,7 @@ fn tally(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    let zone = group.y;
+    let zone = group.x;
     // The last chamber has what the others leave.
     let chambers_have_all = CHAMBERS > 0u && zones[CHAMBERS].kind == EVERYWHERE;
     if (zone == 0u && chambers_have_all) {
@@ -164,7 +166,7 @@ fn tally(
     var sums_of_first = Sums();
     var sums_of_second = Sums();
     for (var k = 0u; k < CHUNK_LOOPS; k++) {
-        let i = (group.x * CHUNK_LOOPS + k) * WORKGROUP + thread;
+        let i = (group.y * CHUNK_LOOPS + k) * WORKGROUP + thread;
         if (i >= count) {
             break;
         }

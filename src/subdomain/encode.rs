@@ -458,7 +458,7 @@ impl Subdomain {
         let chunks = u64::from(step.total).div_ceil(TALLY_CHUNK) as u32;
         // Two gases at a time.
         let pairs = (self.domain.plan.gases.len() as u32).div_ceil(2);
-        let groups = [chunks, self.domain.zones as u32, pairs];
+        let groups = [self.domain.zones as u32, chunks, pairs];
         let offset = self.offset(rec.device(), step, 0);
         self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
     }

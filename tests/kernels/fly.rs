@@ -131,7 +131,9 @@ fn advect_flies_the_free_and_lists_the_others() {
         rig.put("newborns", &born);
         rig.put("bouncing", &vec![0u32; COUNT]);
         rig.put("layers", &vec![0u32; COUNT]);
+        rig.put("cell_start", &[0u32]);
         rig.step(GpuStep {
+            peers: 1,
             count: COUNT as u32 - 50,
             newborns: 50,
             newborn_first_id: first_id,
@@ -197,6 +199,7 @@ fn flights_that_walls_are_no_matter_to_meet_none() {
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         rig.put("flights", &free_flights(COUNT));
         rig.put("bouncing", &vec![0u32; COUNT]);
+        rig.put("cell_start", &[0u32]);
         rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
         rig.run("advect", COUNT);
         let bouncing = rig.list("bouncing", LIST_BOUNCE);
@@ -232,7 +235,8 @@ fn ghosts_leave_dead_slots() {
     rig.put("flights", &flights);
     rig.put("layers", &layers);
     rig.put("bouncing", &vec![0u32; COUNT]);
-    rig.step(GpuStep { count: COUNT as u32, dt: DT, depth: 2, ..GpuStep::default() });
+    rig.put("cell_start", &[0u32]);
+    rig.step(GpuStep { count: COUNT as u32, dt: DT, depth: 2, peers: 1, ..GpuStep::default() });
     rig.run("advect", COUNT);
     let found: Vec<GpuParticle> = rig.get("particles", COUNT);
     let own = |s: &usize| layers[*s] & 0xff == 0;
@@ -247,4 +251,26 @@ fn ghosts_leave_dead_slots() {
     assert_eq!(rig.list("bouncing", LIST_BOUNCE), bouncing);
     // The check can fail: there are ghosts, and own particles with marks.
     assert!((0..COUNT).filter(own).any(|s| layers[s] != 0) && bouncing.len() < COUNT / 6);
+}
+
+/// On a device alone the places behind the last particle, whose number the host learns late, are dead; no mark of theirs is asked for.
+#[test]
+fn places_behind_the_last_particle_are_dead() {
+    let world = World::plain();
+    let particles = world.particles(&mut Stream::new(58), COUNT, 200.0);
+    let last = COUNT - 70;
+    let mut rig = Rig::new(&world);
+    rig.put("sorted", &particles);
+    rig.put("particles", &particles);
+    rig.put("flights", &free_flights(COUNT));
+    rig.put("layers", &vec![1u32; COUNT]);
+    rig.put("bouncing", &vec![0u32; COUNT]);
+    let cells: u32 = world.cells().counts.iter().product();
+    rig.put("cell_start", &vec![last as u32; cells as usize + 1]);
+    rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
+    rig.run("advect", COUNT);
+    let found: Vec<GpuParticle> = rig.get("particles", COUNT);
+    for s in 0..COUNT {
+        assert_eq!(found[s].tag, if s < last { particles[s].tag } else { NOBODY }, "{s}");
+    }
 }

@@ -55,7 +55,7 @@ fn rig(world: &World, zones: &[GpuZone], particles: &[GpuParticle], chambers: u3
     rig.put("zones", zones);
     rig.put("sums", &vec![0u32; zones.len() * GASES * ZONE_WORDS]);
     rig.step(GpuStep { count: particles.len() as u32, ..GpuStep::default() });
-    rig.run_groups("tally", [particles.len().div_ceil(2048) as u32, zones.len() as u32, GASES.div_ceil(2) as u32]);
+    rig.run_groups("tally", [zones.len() as u32, particles.len().div_ceil(2048) as u32, GASES.div_ceil(2) as u32]);
     rig
 }
 

@@ -36,7 +36,6 @@ pub struct Work {
 pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let Work { particle_steps: n, cell_steps: cells, candidates, collisions, .. } = *work;
     let rounds = method.has_rounds();
-    let collides = method != Method::None;
     // With a particle: at most so many.
     let filled = cells.min(n);
     Some(match phase {
@@ -46,11 +45,11 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         // Counters in, and the starts out in their place; where there are particles the counters again. (They are cleared outside of
         // the phases.)
         "scan" => cells * 2.0 * WORD,
-        // scatter: bins and id in, slots out; order: cell and slots in, state in and out, cell and layer out.
+        // scatter: bins and id in, slots out; order: cell and slots in, state in and out.
         "sort" => {
-            let order = n * (2.0 * WORD + 2.0 * PARTICLE + 2.0 * WORD) + filled * WORD;
-            // Flight, middle, mark of the rounds and length of the list.
-            let of_rounds = if rounds { n * (FLIGHT + 3.0 * WORD) } else { 0.0 };
+            let order = n * (2.0 * WORD + 2.0 * PARTICLE) + filled * WORD;
+            // Cell, layer, flight, middle, mark of the rounds and length of the list.
+            let of_rounds = if rounds { n * (FLIGHT + 5.0 * WORD) } else { 0.0 };
             n * 4.0 * WORD + filled * WORD + order + of_rounds
         }
         // Middle, cell, layer and state in; lengths of the lists in and out; the lists, and that nobody has chosen, out. (The few lists
@@ -62,12 +61,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "settle" => collisions * (6.0 * WORD + 4.0 * (PARTICLE + FLIGHT)),
         // States of the cell in, those that collide out.
         "collide" => n * PARTICLE + cells * WORD + collisions * 2.0 * PARTICLE,
-        // State in and out; flight and layer where there are any.
-        "advect" => {
-            let flight = if rounds { FLIGHT + WORD } else { 0.0 };
-            let layer = if collides && !rounds { WORD } else { 0.0 };
-            n * (2.0 * PARTICLE + flight + layer) + work.bounces * 2.0 * PARTICLE
-        }
+        // State in and out; flight where there is one.
+        "advect" => n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 }) + work.bounces * 2.0 * PARTICLE,
         // Every zone of a tallied step, and the blocks of each interval, read all states.
         "tally" => n / work.steps.max(1.0) * PARTICLE * work.tallies * work.zones,
         "blocks" => n / work.steps.max(1.0) * PARTICLE * work.intervals,
