@@ -107,7 +107,7 @@ pub fn small_difference(device: &Device, effort: Effort) -> Result<Findings, Stu
         let (reference, of_reference) = net_discharge(device, Method::Cell, dense, CELLS.0, CELLS.1)?;
         let (found, error) = net_discharge(device, Method::ClosestApproach, dense, many, dense_seeds)?;
         let quantity = format!("Cd at p2/p1 = {BEHIND}, Kn = {dense}, by that of cell (specification {specified})");
-        findings.checks.push(figure(quantity, reference, (found, error.hypot(of_reference)), known));
+        findings.checks.push(figure(quantity, reference, (found, error), known.hypot(3.0 * of_reference)));
         let (few, of_few) = net_discharge(device, Method::ClosestApproach, dense, FEW.0, FEW.1)?;
         findings.notes.push(format!(
             "The specification has a Cd of {specified} at Kn = {dense}. Two methods that share neither a collision rule nor a viscosity find \
