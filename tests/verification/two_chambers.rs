@@ -1,28 +1,10 @@
 //! Law: both pressures of the tank test follow the control volume with the discharge coefficient of the
-//! run's own Knudsen number, and the late mean is that of U0 + integral h dm: of the tank within 2 %, of the inner box, which has
-//! few particles, within three standard errors.
-
-use std::f64::consts::PI;
+//! run's own Knudsen number, and the late mean is that of U0 + integral h dm (within
+//! 2 %; on the way the inner box has few particles, and the coefficient is known to some 10 %).
 
 use corpuscle::simulation::{Options, reference};
 
 use crate::whole_run::{Run, published, run};
-
-/// s: from here on nothing flows in.
-const LATE: f64 = 0.08;
-/// Of the inner box, m3, and its hole, m2.
-const VOLUME: f64 = 0.16 * 0.12 * 0.12;
-const HOLE: f64 = 0.04 * 0.04;
-
-/// Standard error of the inner box's mean pressure over a time, of so many particles that come and go: at one moment p is off by
-/// sqrt(5 / (3 N)), N by 1 / sqrt(N) and T by sqrt(2 / (3 N)), and that is forgotten in the time in which n cbar A/4 changes
-/// them all.
-fn noise(particles: f64, temperature: f64, seconds: f64) -> f64 {
-    let speed = (8.0 * 8.314 * temperature / (PI * 0.0285)).sqrt();
-    let share = 4.0 * VOLUME / (speed * HOLE) / seconds;
-    let moments = 2.0 * share * (1.0 - share * (1.0 - (-1.0 / share).exp()));
-    (5.0 / (3.0 * particles) * moments).sqrt()
-}
 
 /// Relative deviation of the pressure of a chamber from the reference, by row.
 fn deviations(run: &Run, expected: &[f64], chamber: usize) -> Vec<f64> {
@@ -38,17 +20,16 @@ fn both_pressures_follow_the_control_volume() {
     let states = reference(&model, &times);
     let late = |values: &[f64]| {
         let late: Vec<f64> =
-            values.iter().zip(&times).filter(|(_, time)| **time > LATE).map(|(value, _)| *value).collect();
+            values.iter().zip(&times).filter(|(_, time)| **time > 0.08).map(|(value, _)| *value).collect();
         late.iter().sum::<f64>() / late.len() as f64
     };
-    let inner: Vec<f64> = run.rows.iter().map(|row| row.chambers[0].particles.iter().sum()).collect();
-    let temperature: Vec<f64> = run.rows.iter().map(|row| row.chambers[0].temperature).collect();
-    let noise = noise(late(&inner), late(&temperature), model.scene.end_time - LATE);
-    for (chamber, name, bound) in [(0, "inner", 3.0 * noise), (1, "tank", 0.02)] {
+    for (chamber, name) in ["inner", "tank"].iter().enumerate() {
         let expected: Vec<f64> = states.iter().map(|state| state[chamber].pressure).collect();
         let off = deviations(&run, &expected, chamber);
-        println!("{name}: late {:.4}, bound {bound:.4}, {off:.3?}", late(&off));
-        assert!(late(&off).abs() < bound, "{name}: {:.4}", late(&off));
+        println!("{name}: late {:.4}, {off:.3?}", late(&off));
+        // N particles in a chamber show p to sqrt(2 / (3N)) at one time; the inner one has 150, in some ten
+        // independent states.
+        assert!(late(&off).abs() < 0.02, "{name}: {:.4}", late(&off));
     }
     // The check can fail: gas of a tenth less temperature would have left the tank some 7 % lower.
     for point in &mut model.scene.orifices[0].temperature.points {
