@@ -19,9 +19,8 @@ use serde::{Deserialize, Serialize};
 
 /// What a new observation counts in the averages at least.
 const NEW: f64 = 0.25;
-/// Relative noise of a load, before any is learnt.
-const NOISE: f64 = 0.15;
-/// Loads that it counts as, loads from which on it counts no more, and loads over which the noise is averaged.
+/// Loads that the noise which is thought likely counts as, loads from which on it counts no more, and loads over which
+/// the noise is averaged.
 const NOISE_PRIOR: f64 = 3.0;
 const NOISE_LEARNT: f64 = 8.0;
 const NOISE_MEMORY: f64 = 20.0;
@@ -33,6 +32,8 @@ const MOST_DEMAND: f64 = 64.0;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Trigger {
     threshold: f64,
+    /// Relative noise of a load, before any is learnt.
+    likely: f64,
     /// Seconds of a rebalance: the estimate until one was measured.
     cost: f64,
     measured: bool,
@@ -111,10 +112,11 @@ impl fmt::Display for Decision {
 
 impl Trigger {
     /// `threshold`: the imbalance from which on to act, usually 1.1. `estimate`: the seconds of a rebalance, until one
-    /// is measured.
-    pub fn new(threshold: f64, estimate: f64) -> Trigger {
+    /// is measured. `likely`: the relative noise of a load, until it is learnt.
+    pub fn new(threshold: f64, estimate: f64, likely: f64) -> Trigger {
         Trigger {
             threshold,
+            likely,
             cost: estimate,
             measured: false,
             loads: Vec::new(),
@@ -222,7 +224,7 @@ impl Trigger {
     /// Of a load over the mean, by its noise.
     fn variance(&self) -> f64 {
         let prior = if self.noise_of < NOISE_LEARNT { NOISE_PRIOR } else { 0.0 };
-        (prior * NOISE * NOISE + self.noise_of * self.noise) / (prior + self.noise_of)
+        (prior * self.likely * self.likely + self.noise_of * self.noise) / (prior + self.noise_of)
     }
 
     /// What a new observation counts: as much as leaves the standard errors that are asked for within a quarter of what
