@@ -14,7 +14,7 @@ use super::SimulationError;
 use super::decomposition::Decomposition;
 use super::exchange::Traffic;
 
-/// Steps that a rebalance is thought to cost before one was measured.
+/// Steps that a rebalance is thought to cost before one was measured, nor the exchange that brings the first particles home.
 const STEPS_OF_A_REBALANCE: f64 = 2.0;
 /// Relative noise of the loads that the trigger sees, before it has learnt it. They are formed from counts of work, with the same costs for
 /// all ranks: timers' noise is in what ranks whose gas differs cost beside each other, not in a rank's load.
@@ -214,7 +214,10 @@ impl Balance {
             }
             let trigger = self.trigger.get_or_insert_with(|| {
                 let mean = predicted.iter().sum::<f64>() / predicted.len() as f64;
-                Trigger::new(self.options.threshold, STEPS_OF_A_REBALANCE * mean, NOISE)
+                // Most of a rebalance is an exchange among all, and so is the first of a run.
+                let first = loads.iter().map(|load| load.rebalancing).fold(0.0, f64::max);
+                let estimate = if first > 0.0 { first / unit } else { STEPS_OF_A_REBALANCE * mean };
+                Trigger::new(self.options.threshold, estimate, NOISE)
             });
             trigger.observe(&predicted, &self.model.shares());
         }
@@ -324,13 +327,21 @@ mod tests {
     use super::*;
 
     /// Two ranks of which one has so much more to do than the mean, for two intervals whose times are noisy.
-    fn after_two_intervals(excess: f64) -> Balance {
+    fn after_two_intervals(excess: f64, first_exchange: f64) -> Balance {
         let mut balance = Balance::new(BalanceOptions::default(), 2);
         for (turn, noise) in [0.8, 1.3].into_iter().enumerate() {
             let load = |off: f64, noise: f64| {
                 let particles = (1e5 * (1.0 + off)) as u64;
                 let seconds = 1e-6 * particles as f64 * noise;
-                Load { seconds, particles, owned: particles, candidates: 10 * particles, ..Load::default() }
+                let rebalancing = if turn == 0 { first_exchange } else { 0.0 };
+                Load {
+                    seconds,
+                    particles,
+                    owned: particles,
+                    candidates: 10 * particles,
+                    rebalancing,
+                    ..Load::default()
+                }
             };
             balance.take(32 * turn as u64, 32, 0.0, vec![load(excess, noise), load(-excess, 1.0 / noise)]);
         }
@@ -340,9 +351,16 @@ mod tests {
     /// Counts of work tell at the first check, whatever the timers say; what is below the threshold stays.
     #[test]
     fn two_ranks_are_rebalanced_at_the_first_check() {
-        assert!(!after_two_intervals(0.2).due(63));
-        assert!(after_two_intervals(0.2).due(64));
-        assert!(!after_two_intervals(0.05).due(64));
-        assert!(!after_two_intervals(-0.05).due(64));
+        assert!(!after_two_intervals(0.2, 0.0).due(63));
+        assert!(after_two_intervals(0.2, 0.0).due(64));
+        assert!(!after_two_intervals(0.05, 0.0).due(64));
+        assert!(!after_two_intervals(-0.05, 0.0).due(64));
+    }
+
+    /// A step takes a tenth of a second, so 64 of them would save 1.3 s.
+    #[test]
+    fn the_first_exchange_tells_what_a_rebalance_costs() {
+        assert!(after_two_intervals(0.2, 0.6).due(64));
+        assert!(!after_two_intervals(0.2, 2.6).due(64));
     }
 }

@@ -85,7 +85,7 @@ const QUICK_SEEDS: u64 = 4;
 /// Particles and seeds of a gas with the second Knudsen number by its density, and an occupancy of .34.
 const FEW: (u64, u64) = (8000, 5);
 /// Particles of a gas with it whose collisions are in cells of a mean free path, and seeds.
-const CELLS: (u64, u64) = (1_000_000, 1);
+const CELLS: (u64, u64) = (1_000_000, 2);
 /// Rows that see the flow start.
 const STARTING: usize = 2;
 
