@@ -231,14 +231,14 @@ impl ExchangeBuffers {
 /// Of the buffers that grow with the number of particles, on a device alone.
 pub fn bytes_per_particle(collisions: bool, rounds: bool, tails: u64) -> u64 {
     let particle = size_of::<GpuParticle>() as u64;
-    // `particles` and `rare`; `sorted`, `bins`, `slots`, `cells` and `layers`; `flights`, `middles`, `touched`, the lengths of
+    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `flights`, `cells`, `middles`, `touched`, the lengths of
     // the lists and their tails, and the copy that is kept to run an interval again.
     let mut bytes = particle + 4;
     if collisions {
-        bytes += particle + 8 + 8 + 4 + 4;
+        bytes += particle + 8 + 8 + 4;
     }
     if rounds {
-        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails + particle;
+        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 + 4 * tails + particle;
     }
     bytes
 }
@@ -305,7 +305,7 @@ impl ParticleBuffers {
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             flights: device.storage::<GpuFlight>("flights", chosen)?,
             middles: device.storage::<u32>("middles", chosen)?,
-            cells: device.storage::<u32>("cells", scratch)?,
+            cells: device.storage::<u32>("cells", weighed)?,
             touched: device.storage::<u32>("touched", chosen)?,
             neighbours: match apart {
                 true => Some(device.storage::<u32>("neighbours", DIRECT * capacity + tails)?),
