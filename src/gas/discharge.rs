@@ -16,7 +16,7 @@
 //!
 //! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight, where
 //! free flight and Sampson's creeping flow (.334/Kn of it) together are 1.33 times it. `corpuscle verify small-difference --full` finds .178
-//! there, the specification's .18, but .399 at Kn .1 with 120,000 particles, where the specification has .29, and .393 with the method `cell`.
+//! there, the specification's .18, but .399 at Kn .1 with 120,000 particles, where the specification has .29, and .389 with the method `cell`.
 //! With 8000 it finds .293 +- .016: spheres that fill a third of the space are more viscous than their Kn says. So .40 stands here, and the
 //! specification's .34 at .03, less than that at a third of the Kn, is left out.
 //!

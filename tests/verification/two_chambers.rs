@@ -20,7 +20,7 @@ fn deviations(run: &Run, expected: &[f64], chamber: usize) -> Vec<f64> {
 }
 
 #[test]
-#[ignore = "a second of the tank takes most of an hour on a CPU; ./scripts/test.sh --long runs it"]
+#[ignore = "more than a second of the tank takes long on a CPU; ./scripts/test.sh --long runs it"]
 fn both_pressures_follow_the_control_volume() {
     let mut model = published("tank.toml", 20_000, 1.2);
     let run = run(&model, Options::default());
