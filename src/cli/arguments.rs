@@ -81,6 +81,28 @@ pub enum Verb {
     Man(ManArguments),
 }
 
+impl Verb {
+    /// The name of one that measures or writes by itself: several processes of it would do all of it several times, into one folder.
+    pub fn of_one_process(&self) -> Option<&'static str> {
+        match self {
+            Verb::Refine(_) => Some("refine"),
+            Verb::Sweep(_) => Some("sweep"),
+            Verb::Verify(_) => Some("verify"),
+            Verb::Pareto(_) => Some("pareto"),
+            Verb::Stability(_) => Some("stability"),
+            Verb::Bench(_) => Some("bench"),
+            Verb::Run(_)
+            | Verb::Resume(_)
+            | Verb::Plan(_)
+            | Verb::Check(_)
+            | Verb::Schema
+            | Verb::Adapters
+            | Verb::Completions(_)
+            | Verb::Man(_) => None,
+        }
+    }
+}
+
 /// A scene, and what is to be different in it.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
@@ -201,12 +223,12 @@ pub struct SharingArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sharing the work (changes no result)")]
 pub struct TuningArguments {
-    /// Steps between two looks at the balance
-    #[arg(long, value_name = "STEPS", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..))]
-    pub balance_every: u64,
-    /// The load of the fullest rank over the mean from which on the space is cut anew, if that pays
-    #[arg(long, value_name = "RATIO", default_value_t = 1.1)]
-    pub balance_threshold: f64,
+    /// Steps between two looks at the balance [default: 64]
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub balance_every: Option<u64>,
+    /// The load of the fullest rank over the mean from which on the space is cut anew, if that pays [default: 1.1]
+    #[arg(long, value_name = "RATIO")]
+    pub balance_threshold: Option<f64>,
     /// What is balanced: the measured cost, or the number of particles
     #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
     pub balance_by: BalanceBy,

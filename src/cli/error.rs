@@ -83,12 +83,21 @@ pub enum CliError {
     )]
     #[diagnostic(help("add --launcher \"mpirun --bind-to none\", or validate 1"))]
     ValidateOnOne { devices: u32 },
+    #[error("--validate {devices}: the model has no {devices} to be set beside a run")]
+    #[diagnostic(help("name the count among --devices, too"))]
+    ValidateOther { devices: u32 },
+    #[error("{option}: an emulation makes no runs that it would change")]
+    #[diagnostic(help("leave it out, or make runs beside the emulation with --validate"))]
+    NoRuns { option: &'static str },
     #[error(transparent)]
     #[diagnostic(transparent)]
     Study(#[from] StudyError),
     #[error("--subdomains {asked} under a launcher of {ranks} ranks: each rank has one subdomain")]
     #[diagnostic(help("leave out --subdomains, or start the program without the launcher"))]
     SubdomainsOfRanks { asked: usize, ranks: usize },
+    #[error("`{verb}` is the work of one process, and a launcher has started several ({variable} = {value})")]
+    #[diagnostic(help("start it without the launcher; only `run` and `resume` share their work among ranks"))]
+    OneProcess { verb: &'static str, variable: &'static str, value: String },
     #[error(transparent)]
     #[diagnostic(help("docs/clusters.md says how ranks are started"))]
     Rank(#[from] RankError),
@@ -176,7 +185,10 @@ impl CliError {
             | CliError::InitialFrom
             | CliError::OtherScene { .. }
             | CliError::ValidateOnOne { .. }
+            | CliError::ValidateOther { .. }
+            | CliError::NoRuns { .. }
             | CliError::SubdomainsOfRanks { .. }
+            | CliError::OneProcess { .. }
             | CliError::PlanToml(_)
             | CliError::SchemaJson(_)
             | CliError::StandardOutput(_)

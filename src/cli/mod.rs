@@ -55,6 +55,11 @@ pub fn main() -> ExitCode {
 
 fn perform(arguments: Arguments) -> Result<(), CliError> {
     let quiet = arguments.quiet;
+    if let Some(verb) = arguments.verb.of_one_process()
+        && let Some((variable, value)) = crate::ranks::one_of_several()
+    {
+        return Err(CliError::OneProcess { verb, variable, value });
+    }
     match arguments.verb {
         Verb::Run(raw) => run::run(raw, quiet),
         Verb::Refine(raw) => refine::refine(raw),

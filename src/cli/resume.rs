@@ -8,7 +8,7 @@ use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::output::{Adapter, CHECKPOINT_FOLDER, Checkpoint, CheckpointError, OutputFolder, OutputState, latest};
+use crate::output::{Adapter, Checkpoint, CheckpointError, OutputFolder, OutputState, latest, run_folder};
 use crate::ranks::Communicator;
 use crate::scene::parse;
 use crate::simulation::{RunState, particles_of};
@@ -22,7 +22,7 @@ use super::terminal::say;
 
 pub fn resume(raw: ResumeArguments, quiet: bool) -> Result<(), CliError> {
     let started = Instant::now();
-    among_ranks(|comm| {
+    among_ranks("resume", |comm| {
         let execution = Execution::new(raw.execution)?;
         let Some(checkpoint) = agreed(&raw.from, comm)? else {
             return if comm.rank() == 0 { tell_the_end(&raw.from, quiet) } else { Ok(()) };
@@ -107,40 +107,9 @@ fn found(from: &Path) -> Result<Option<Checkpoint>, CliError> {
     Ok(Some(Checkpoint::open(&path)?))
 }
 
-/// The folder of the run that the checkpoint `path`, found for `from`, is of.
-fn run_folder(from: &Path, path: &Path) -> PathBuf {
-    if path.starts_with(from.join(CHECKPOINT_FOLDER)) {
-        return from.to_path_buf();
-    }
-    // A relative path may have too few parts.
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
-    whole.ancestors().nth(2).unwrap_or(&whole).to_path_buf()
-}
-
 fn tell_the_end(from: &Path, quiet: bool) -> Result<(), CliError> {
     if !quiet {
         say("the run has reached its end: there is nothing left to do\n")?;
     }
     say(&format!("{}\n", from.display()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_run_of_a_checkpoint_is_found_from_wherever_it_is_named() {
-        let step = "step-0000000064";
-        let inside = |folder: &str| Path::new(folder).join(step);
-        assert_eq!(run_folder(Path::new("a/b"), &inside("a/b/checkpoints")), Path::new("a/b"));
-        assert_eq!(run_folder(Path::new("."), &inside("./checkpoints")), Path::new("."));
-        let whole = std::path::absolute("a/b").unwrap();
-        for from in [Path::new("a/b/checkpoints"), &inside("a/b/checkpoints")] {
-            assert_eq!(run_folder(from, &inside("a/b/checkpoints")), whole);
-        }
-        assert_eq!(
-            run_folder(Path::new("checkpoints"), &inside("checkpoints")),
-            std::path::absolute("").unwrap_or_else(|_| std::env::current_dir().unwrap())
-        );
-    }
 }

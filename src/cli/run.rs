@@ -31,7 +31,7 @@ use super::CliError;
 use super::arguments::RunArguments;
 use super::resume::Beginning;
 use super::settings::RunSettings;
-use super::terminal::say;
+use super::terminal::{self, say};
 
 use checkpoints::Checkpoints;
 pub use checkpoints::Wanted;
@@ -40,19 +40,20 @@ use reference::Reference;
 
 pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
     let started = Instant::now();
-    among_ranks(|comm| match raw.repeat {
+    let verb = raw.repeat.map_or_else(|| "run".to_owned(), |times| format!("run --repeat {times}"));
+    among_ranks(&verb, |comm| match raw.repeat {
         Some(times) => repeat::repeat(RunSettings::new(raw)?, times, comm, quiet, started),
         None => launch(&RunSettings::new(raw)?, None, comm, quiet, started),
     })
 }
 
 /// What this process does as a rank of those that a launcher may have started.
-pub fn among_ranks(work: impl FnOnce(&dyn Communicator) -> Result<(), CliError>) -> Result<(), CliError> {
+pub fn among_ranks(verb: &str, work: impl FnOnce(&dyn Communicator) -> Result<(), CliError>) -> Result<(), CliError> {
     let comm = from_environment()?;
-    let done = work(&*comm);
+    let done = devices::agree_on_verb(verb, &*comm).and_then(|()| work(&*comm));
     if let Err(error) = &done {
-        // Under a launcher this ends all ranks; alone it changes nothing.
-        comm.fail(&error.to_string(), error.exit_code().into());
+        // Under a launcher this ends all ranks, and nobody tells of the error later; alone it changes nothing.
+        comm.fail(&terminal::report(error), error.exit_code().into());
     }
     done
 }
@@ -84,7 +85,7 @@ pub fn launch(
             tracing::info!("{}", choice.summary());
         }
     }
-    devices::agree_on_run(model, comm)?;
+    devices::agree_on_run(model, execution, comm)?;
     if model.plan.method == Method::ControlVolume {
         // Nothing to share out: the first rank does it.
         return if comm.rank() == 0 { uniform::run(settings, quiet, started) } else { Ok(()) };

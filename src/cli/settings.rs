@@ -115,21 +115,31 @@ impl From<&TuningArguments> for HaloOptions {
     }
 }
 
-impl Sharing {
-    fn new(raw: &SharingArguments) -> Result<Sharing, CliError> {
-        let threshold = raw.tuning.balance_threshold;
+/// In the mode that is the default.
+impl TryFrom<&TuningArguments> for BalanceOptions {
+    type Error = CliError;
+
+    fn try_from(raw: &TuningArguments) -> Result<BalanceOptions, CliError> {
+        let usual = BalanceOptions::default();
+        let threshold = raw.balance_threshold.unwrap_or(usual.threshold);
         if !(threshold.is_finite() && threshold >= 1.0) {
             return Err(CliError::Threshold { found: threshold });
         }
+        let every = raw.balance_every.unwrap_or(usual.every);
+        Ok(BalanceOptions { by: By::from(raw.balance_by), every, threshold, ..usual })
+    }
+}
+
+impl Sharing {
+    fn new(raw: &SharingArguments) -> Result<Sharing, CliError> {
         let mode = match raw.balance {
             Balance::Off => BalanceMode::Off,
             Balance::Initial => BalanceMode::Initial,
             Balance::Dynamic => BalanceMode::Dynamic,
         };
-        let by = By::from(raw.tuning.balance_by);
         Ok(Sharing {
             subdomains: raw.subdomains.unwrap_or(1) as usize,
-            balance: BalanceOptions { mode, by, every: raw.tuning.balance_every, threshold },
+            balance: BalanceOptions { mode, ..BalanceOptions::try_from(&raw.tuning)? },
             halo: HaloOptions::from(&raw.tuning),
         })
     }

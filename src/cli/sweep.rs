@@ -11,8 +11,8 @@ use crate::output::{
     OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, Timing, grouped,
 };
 use crate::scene::{Method, Scene, to_toml};
-use crate::simulation::SimulationError;
-use crate::study::launched::{Case, Measured, Program, compare, take_turns, together};
+use crate::simulation::{BalanceOptions, SimulationError};
+use crate::study::launched::{Case, Measured, Program, Start, compare, take_turns, together};
 use crate::study::report;
 use crate::study::state::{Moment, weights};
 use crate::study::{Strategy, StudyError};
@@ -132,14 +132,15 @@ impl SweepPlan {
                 cases.push(Case { devices, strategy, scene: self.scene_file(&runs, devices)?, from: None });
             }
             for moment in &self.moments {
-                let from = Some((moment.from.clone(), moment.step));
-                cases.push(Case { devices, strategy, scene: moment.from.clone(), from });
+                let start =
+                    Start { checkpoint: moment.checkpoint.clone(), folder: moment.folder.clone(), step: moment.step };
+                cases.push(Case { devices, strategy, scene: moment.from.clone(), from: Some(start) });
             }
         }
         let path = std::env::current_exe().map_err(|error| io("find", Path::new("the program"), error))?;
         let (launcher, arguments) = (self.launcher.clone(), self.run_arguments());
         let program = Program { path, launcher, arguments, steps: self.raw.runs.steps };
-        let turns = self.raw.runs.repeat as usize;
+        let turns = self.turns() as usize;
         let timings = take_turns(&cases, turns, |case, turn| {
             let at = self.moments.iter().position(|moment| moment.from == case.scene);
             let at = at.map_or_else(String::new, |at| format!("-state-{}", at + 1));
@@ -181,17 +182,19 @@ impl SweepPlan {
         Ok(path)
     }
 
+    fn turns(&self) -> u32 {
+        self.raw.runs.repeat.unwrap_or(TURNS)
+    }
+
     fn run_arguments(&self) -> Vec<String> {
         let tuning = &self.raw.tuning;
         let by = match tuning.balance_by {
             BalanceBy::Cost => "cost",
             BalanceBy::Particles => "particles",
         };
-        let mut words = vec![
-            ("--balance-every", tuning.balance_every.to_string()),
-            ("--balance-threshold", tuning.balance_threshold.to_string()),
-            ("--balance-by", by.to_owned()),
-        ];
+        let mut words = vec![("--balance-by", by.to_owned())];
+        words.extend(tuning.balance_every.map(|steps| ("--balance-every", steps.to_string())));
+        words.extend(tuning.balance_threshold.map(|ratio| ("--balance-threshold", ratio.to_string())));
         words.extend(tuning.halo_rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
         words.extend(tuning.ghosts.map(|ghosts| {
             let word = match ghosts {
@@ -242,7 +245,7 @@ impl SweepPlan {
             "\n## Measured\n\nWall time of {} steps without set-up, median of {} turns. {started}{held} All runs of a \
              scene left the same bytes in `history.csv`.\n\n{}",
             measured.first().map_or_else(String::new, |m| grouped(m.steps)),
-            self.raw.runs.repeat,
+            self.turns(),
             report::measured_table(measured),
         )
     }
@@ -257,13 +260,17 @@ impl SweepPlan {
         let _ = write!(
             text,
             "\n## Modelled: work alone\n\nSubdomains of {} particles{}, measured one at a time on {adapter}: {} intervals \
-             of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state. Speed-up \
-             of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
+             of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state, borders exchanged every {} of \
+             collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
              a wall test {:.2} of a particle, as fitted to the device times.\n\n{}",
             grouped(*particles),
             if self.raw.runs.weak { " on the fewest devices, as many more as there are more devices" } else { "" },
             raw.intervals,
             self.states(),
+            match emulated::halo(&self.raw.tuning).rounds {
+                None | Some(1) => "round".to_owned(),
+                Some(rounds) => format!("{rounds} rounds"),
+            },
             relative(costs.candidate),
             relative(costs.wall),
             report::work_table(points),
@@ -317,18 +324,34 @@ fn check(raw: &SweepArguments) -> Result<(), CliError> {
         let expected = "a number above 0";
         return Err(CliError::SweepFigure { option: "--bandwidth-gbs", found: bandwidth, expected });
     }
-    let threshold = raw.tuning.balance_threshold;
-    if !(threshold.is_finite() && threshold >= 1.0) {
-        return Err(CliError::Threshold { found: threshold });
-    }
+    BalanceOptions::try_from(&raw.tuning)?;
     if raw.runs.launcher.as_ref().is_some_and(|text| text.trim().is_empty()) {
         return Err(CliError::NoLauncher);
     }
-    match emulation.validate.iter().find(|&&devices| devices > 1) {
-        Some(&devices) if raw.runs.launcher.is_none() => Err(CliError::ValidateOnOne { devices }),
-        _ => Ok(()),
+    if emulation.emulate && emulation.validate.is_empty() {
+        let of_runs = [
+            ("--launcher", raw.runs.launcher.is_some()),
+            ("--repeat", raw.runs.repeat.is_some()),
+            ("--steps", raw.runs.steps.is_some()),
+            ("--balance-every", raw.tuning.balance_every.is_some()),
+            ("--balance-threshold", raw.tuning.balance_threshold.is_some()),
+        ];
+        if let Some(&(option, _)) = of_runs.iter().find(|(_, given)| *given) {
+            return Err(CliError::NoRuns { option });
+        }
+    }
+    if let Some(&devices) = emulation.validate.iter().find(|&&devices| devices > 1)
+        && raw.runs.launcher.is_none()
+    {
+        return Err(CliError::ValidateOnOne { devices });
+    }
+    match emulation.validate.iter().find(|devices| !raw.devices.contains(devices)) {
+        Some(&devices) => Err(CliError::ValidateOther { devices }),
+        None => Ok(()),
     }
 }
+
+const TURNS: u32 = 3;
 
 fn sorted(counts: &[u32]) -> Vec<usize> {
     let mut counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();

@@ -1,9 +1,10 @@
 //! What the user sees: results on standard output; logs and errors on standard error, with colours only where
 //! that is a terminal.
 
+use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 
-use miette::MietteHandlerOpts;
+use miette::{MietteHandler, MietteHandlerOpts, ReportHandler};
 use tracing::Level;
 
 use super::CliError;
@@ -46,6 +47,18 @@ pub fn say(text: &str) -> Result<(), CliError> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::StandardOutput(error)),
         _ => Ok(()),
     }
+}
+
+/// An error with its place in the scene file and its remedy, in lines of any length.
+pub fn report(error: &CliError) -> String {
+    struct Shown<'a>(MietteHandler, &'a CliError);
+    impl fmt::Display for Shown<'_> {
+        fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+            self.0.debug(self.1, to)
+        }
+    }
+    let handler = MietteHandlerOpts::new().color(false).without_cause_chain().terminal_links(false).wrap_lines(false);
+    Shown(handler.build(), error).to_string()
 }
 
 /// Prints an error with its place in the scene file and its remedy.

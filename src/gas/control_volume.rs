@@ -220,7 +220,7 @@ impl ControlVolume {
     }
 
     /// Integrates over a stretch without kinks; `step` is the step to try, kept from stretch to stretch.
-    /// A vent opens between two steps: at most one step late.
+    /// A vent opens between two steps, of which the one before is so short that it is at most [`LEAST_STEP`] of the stretch late.
     fn advance(&self, contents: &mut Vec<f64>, start: f64, end: f64, step: &mut f64, open: &mut [bool]) {
         let flowing: Vec<bool> = self
             .sources
@@ -238,6 +238,10 @@ impl ControlVolume {
             let half = runge_kutta(contents, now, 0.5 * tried, &rate);
             let halves = runge_kutta(&half, now + 0.5 * tried, 0.5 * tried, &rate);
             let error = self.error(&whole, &halves) / (15.0 * TOLERANCE);
+            if error <= 1.0 && tried > least && self.opens_any(now + tried, &halves, open) {
+                *step = 0.5 * tried;
+                continue;
+            }
             if error <= 1.0 || tried <= least {
                 *contents = halves;
                 now = if last { end } else { now + tried };

@@ -32,7 +32,7 @@ pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
     Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, MeshRecord, Moment, Origin,
-    OutputState, RECORD_BYTES, forget_after, latest,
+    OutputState, RECORD_BYTES, forget_after, latest, run_folder,
 };
 pub use environment::{AdapterRecord, Environment};
 pub use error::OutputError;

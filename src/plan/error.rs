@@ -69,6 +69,11 @@ pub enum PlanError {
     #[error("an accuracy or a budget together with [[motion]]: errors beside moving walls are not predicted yet")]
     #[diagnostic(help("leave out `accuracy`, `time_budget` and `particle_budget`, and set `particles` in [model]"))]
     WishOfMotion,
+    #[error("an accuracy or a budget together with the method `control-volume`: {why}")]
+    #[diagnostic(help(
+        "leave out `method` in [model]: the plan takes one whose error is predicted; or leave out the wish"
+    ))]
+    WishOfControlVolume { why: &'static str },
     #[error("an accuracy or a budget together with `switch`: what a switch saves is not predicted yet")]
     #[diagnostic(help("leave out the wish, or `switch` in [model]"))]
     WishOfSwitch,

@@ -190,7 +190,8 @@ fn random_pattern(comm: &dyn Communicator) -> Result<(), String> {
 
 fn reduction(comm: &dyn Communicator) -> Result<(), String> {
     let (own, size) = (comm.rank() as u64, comm.size() as u64);
-    for length in [0, 1, 63, 64, 65, 1_000] {
+    // What is short for one reduction may be long for the next, and the other way round.
+    for length in [0, 1, 63, 64, 65, 1_000, 1_000, 65, 0, 20_000, 20_000, 3] {
         let lists = |rank: u64| -> (Vec<u64>, Vec<u64>) {
             let mut numbers = Numbers(rank);
             let sums: Vec<u64> = (0..length).map(|_| numbers.next()).collect();

@@ -38,6 +38,12 @@ impl Launcher {
     }
 }
 
+/// The variable by which a launcher tells this process that it is one of several, and its value.
+pub fn one_of_several() -> Option<(&'static str, String)> {
+    let launcher = Launcher::find(|name| std::env::var(name).ok())?;
+    (!launcher.started(1)).then_some((launcher.variable, launcher.value))
+}
+
 /// The ranks that this process belongs to: MPI's if a launcher started it, else itself alone.
 pub fn from_environment() -> Result<Box<dyn Communicator>, RankError> {
     match Launcher::find(|name| std::env::var(name).ok()) {

@@ -27,7 +27,7 @@ mod tests;
 
 pub use agreement::agree;
 pub use devices::choose_device;
-pub use environment::from_environment;
+pub use environment::{from_environment, one_of_several};
 pub use error::RankError;
 pub use in_process::in_process;
 pub use reduction::Reduction;

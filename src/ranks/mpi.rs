@@ -6,7 +6,8 @@
 //!
 //! MPI's behaviour is undefined where ranks reduce lists of different lengths. Therefore the first words of a
 //! reduction travel in messages of one size for all, together with the lengths; what does not fit follows once
-//! the lengths are known to agree. Short reductions are non-blocking as a whole, long ones in their head.
+//! the lengths are known to agree, and then ranks wait. That size grows with the longest that was ever finished, which all
+//! ranks know alike: of reductions that are made again and again only the first ones wait.
 
 mod channel;
 mod pending;
@@ -22,7 +23,7 @@ use ::mpi::topology::{Communicator as _, SimpleCommunicator};
 use ::mpi::{Count, Rank, Tag, Threading};
 use channel::{Inbox, LONG_MESSAGE, MESSAGE, Room, parts};
 use pending::{Operation, PendingReduction, PendingSend};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, VecDeque};
 use std::io::Write;
 use std::marker::PhantomData;
@@ -30,8 +31,10 @@ use std::panic;
 use std::thread;
 
 const GATHERED: Tag = 1;
-/// Words of a reduction's head, of sums and of maxima each.
+/// Words of a reduction's head, of sums and of maxima each, at first.
 const HEAD: usize = 64;
+/// And at most.
+const LONGEST_HEAD: usize = 1 << 14;
 /// Exit code after a panic, as of any program in Rust.
 const PANICKED: i32 = 101;
 
@@ -46,6 +49,9 @@ pub(super) struct Mpi {
     rooms: RefCell<Vec<Room>>,
     tickets: Tickets,
     under_way: RefCell<VecDeque<UnderWay>>,
+    /// Words of the heads of reductions that are started from now on: the same for all ranks, since they start and finish in one
+    /// order.
+    head: Cell<usize>,
     rank: usize,
     size: usize,
     node_rank: usize,
@@ -58,9 +64,9 @@ pub(super) struct Mpi {
 
 /// A reduction whose head is being reduced.
 struct UnderWay {
-    /// [`HEAD`] sums.
+    /// As many as its head has.
     sums: PendingReduction,
-    /// [`Lengths`] and [`HEAD`] maxima.
+    /// [`Lengths`] and as many maxima.
     maxima: PendingReduction,
     count: (usize, usize),
     rest: (Vec<u64>, Vec<u64>),
@@ -85,6 +91,7 @@ impl Mpi {
             rooms: RefCell::new(vec![Room::first(); size]),
             tickets: Tickets::default(),
             under_way: RefCell::default(),
+            head: Cell::new(HEAD),
             rank,
             size,
             node_rank: node.rank() as usize,
@@ -165,12 +172,12 @@ impl Communicator for Mpi {
     }
 
     fn start_reduction(&self, mut sums: Vec<u64>, mut maxima: Vec<u64>) -> Result<Reduction, RankError> {
-        let count = (sums.len(), maxima.len());
+        let (count, words) = ((sums.len(), maxima.len()), self.head.get());
         let mut head = Lengths::of(&sums, &maxima).0.to_vec();
-        let rest = (sums.split_off(count.0.min(HEAD)), maxima.split_off(count.1.min(HEAD)));
-        sums.resize(HEAD, 0);
+        let rest = (sums.split_off(count.0.min(words)), maxima.split_off(count.1.min(words)));
+        sums.resize(words, 0);
         head.append(&mut maxima);
-        head.resize(Lengths::WORDS + HEAD, 0);
+        head.resize(Lengths::WORDS + words, 0);
         self.under_way.borrow_mut().push_back(UnderWay {
             sums: PendingReduction::start(&self.world, Operation::Sum, sums),
             maxima: PendingReduction::start(&self.world, Operation::Maximum, head),
@@ -187,6 +194,8 @@ impl Communicator for Mpi {
         let (lengths, maxima) = head.split_at(Lengths::WORDS);
         let mut maxima = maxima.to_vec();
         Lengths([lengths[0], lengths[1], lengths[2], lengths[3]]).check()?;
+        let longest = under_way.count.0.max(under_way.count.1).min(LONGEST_HEAD);
+        self.head.set(self.head.get().max(longest.next_power_of_two()));
         sums.truncate(under_way.count.0);
         maxima.truncate(under_way.count.1);
         self.reduce_rest(Operation::Sum, under_way.rest.0, &mut sums);

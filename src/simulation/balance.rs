@@ -171,6 +171,8 @@ pub struct Balance {
     /// From the first loads on.
     trigger: Option<Trigger>,
     next_check: u64,
+    /// Steps of the interval that was read last.
+    interval: u64,
     /// The step of the last rebalance, until its cost is known; loads of before count no more.
     since: Option<u64>,
     rebalances: Vec<(u64, [f64; 2])>,
@@ -184,6 +186,7 @@ impl Balance {
             model: CostModel::new(options.by, ranks),
             trigger: None,
             next_check: options.every,
+            interval: 0,
             since: None,
             rebalances: Vec::new(),
             records: Vec::new(),
@@ -195,6 +198,7 @@ impl Balance {
         if loads.is_empty() {
             return;
         }
+        self.interval = steps.into();
         let measured: Vec<Measurement> = loads.iter().map(Load::measurement).collect();
         self.model.observe(&measured);
         let predicted: Vec<f64> = match self.options.by {
@@ -302,7 +306,8 @@ impl Balance {
             return false;
         }
         self.next_check = step + self.options.every;
-        let decision: Decision = trigger.check(self.options.every);
+        // Checks are at the ends of intervals.
+        let decision: Decision = trigger.check(self.options.every.max(self.interval));
         tracing::debug!("step {step}: {decision}");
         decision.rebalances()
     }

@@ -5,10 +5,13 @@
 //! both, and the median over the turns is told.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::output::{HISTORY_FILE, OutputError, RankTiming, Timing};
+use crate::output::{
+    AUDIT_FILE, CHECKPOINT_FOLDER, HISTORY_FILE, OutputError, OutputFolder, RankTiming, TIMING_FILE, Timing,
+};
 
 use super::emulation::median;
 use super::{Strategy, StudyError};
@@ -31,8 +34,16 @@ pub struct Case {
     pub devices: usize,
     pub strategy: Strategy,
     pub scene: PathBuf,
-    /// A checkpoint to go on from, instead of the start of the scene, and the steps it has done.
-    pub from: Option<(PathBuf, u64)>,
+    /// To go on from, instead of the start of the scene.
+    pub from: Option<Start>,
+}
+
+/// A checkpoint, the folder of its run, and the steps that it has done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    pub checkpoint: PathBuf,
+    pub folder: PathBuf,
+    pub step: u64,
 }
 
 /// A run that was made.
@@ -48,8 +59,8 @@ impl Program {
     /// # Errors
     /// If it cannot be started, fails, or leaves no results.
     pub fn run(&self, case: &Case, folder: &Path) -> Result<Trial, StudyError> {
-        if let Some((from, _)) = &case.from {
-            copy(from, folder)?;
+        if let Some(start) = &case.from {
+            start.copy(folder)?;
         }
         let mut command = self.command(case, folder);
         let name = command.get_program().to_string_lossy().into_owned();
@@ -64,8 +75,7 @@ impl Program {
             });
         }
         let history = folder.join(HISTORY_FILE);
-        let bytes = std::fs::read(&history);
-        let bytes = bytes.map_err(|source| OutputError::Io { action: "read", path: history, source })?;
+        let bytes = std::fs::read(&history).map_err(io("read", &history))?;
         Ok(Trial { timing: Timing::read(folder)?, history: bytes })
     }
 
@@ -82,8 +92,8 @@ impl Program {
         let mut done = 0;
         match &case.from {
             None => command.arg("run").arg(&case.scene).arg("--out").arg(folder),
-            Some((_, step)) => {
-                done = *step;
+            Some(start) => {
+                done = start.step;
                 command.arg("resume").arg(folder)
             }
         };
@@ -98,23 +108,44 @@ impl Program {
     }
 }
 
-/// Copies a run's folder, that the run can go on in the copy.
-fn copy(from: &Path, to: &Path) -> Result<(), OutputError> {
-    let io = |action, path: &Path| {
-        let path = path.to_path_buf();
-        move |source| OutputError::Io { action, path, source }
-    };
+impl Start {
+    /// Copies the run as it was at this checkpoint, that it can go on in `to`: not what it wrote at its end, nor later checkpoints,
+    /// and nothing of an earlier sweep that failed stays there.
+    fn copy(&self, to: &Path) -> Result<(), OutputError> {
+        OutputFolder::open(&self.folder)?;
+        if to.exists() {
+            OutputFolder::open(to)?;
+            std::fs::remove_dir_all(to).map_err(io("remove", to))?;
+        }
+        let after = [CHECKPOINT_FOLDER, AUDIT_FILE, TIMING_FILE];
+        copy(&self.folder, to, &|name| !after.iter().any(|after| name == *after))?;
+        // A named checkpoint has a name.
+        let name = self.checkpoint.file_name().unwrap_or_default();
+        copy(&self.checkpoint, &to.join(CHECKPOINT_FOLDER).join(name), &|_| true)
+    }
+}
+
+/// Copies what is in a folder and has one of the wanted names, and all in the folders among it.
+fn copy(from: &Path, to: &Path, wanted: &dyn Fn(&OsStr) -> bool) -> Result<(), OutputError> {
     std::fs::create_dir_all(to).map_err(io("create", to))?;
     for entry in std::fs::read_dir(from).map_err(io("read", from))? {
         let entry = entry.map_err(io("read", from))?;
         let (path, target) = (entry.path(), to.join(entry.file_name()));
+        if !wanted(&entry.file_name()) {
+            continue;
+        }
         if path.is_dir() {
-            copy(&path, &target)?;
+            copy(&path, &target, &|_| true)?;
         } else {
             std::fs::copy(&path, &target).map_err(io("copy", &path))?;
         }
     }
     Ok(())
+}
+
+fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> OutputError {
+    let path = path.to_path_buf();
+    move |source| OutputError::Io { action, path, source }
 }
 
 /// One timing for several states of a run: each state's, for as many steps as it stands for.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::output::{Checkpoint, latest};
+use crate::output::{Checkpoint, latest, run_folder};
 use crate::scene::parse;
 use crate::simulation::{Clock, Model, ModelError, RunState, particles_of};
 use crate::subdomain::GpuParticle;
@@ -13,6 +13,9 @@ use super::StudyError;
 pub struct Moment {
     /// The folder or checkpoint that was named.
     pub from: PathBuf,
+    /// The checkpoint, and the folder of its run.
+    pub checkpoint: PathBuf,
+    pub folder: PathBuf,
     pub model: Model,
     pub run: RunState,
     /// All of them, by id.
@@ -27,7 +30,9 @@ impl Moment {
     /// # Errors
     /// If there is no sound checkpoint, or its scene cannot be planned as it was.
     pub fn read(from: &Path) -> Result<Moment, StudyError> {
-        let checkpoint = Checkpoint::open(&latest(from)?)?;
+        let path = latest(from)?;
+        let checkpoint = Checkpoint::open(&path)?;
+        let folder = run_folder(from, &path);
         let name = checkpoint.path().join("scene.toml").display().to_string();
         let scene = parse(&checkpoint.scene()?, &name, Path::new(""))?;
         let unsound = |error: ModelError| StudyError::Model { from: from.to_path_buf(), error: Box::new(error) };
@@ -36,7 +41,7 @@ impl Moment {
         let (_, run) = checkpoint.state()?;
         let particles = particles_of(&checkpoint)?;
         let (step, time) = (checkpoint.manifest().step, checkpoint.manifest().time);
-        Ok(Moment { from: from.to_path_buf(), model, run, particles, step, time })
+        Ok(Moment { from: from.to_path_buf(), checkpoint: path, folder, model, run, particles, step, time })
     }
 
     pub fn name(&self) -> String {

@@ -189,12 +189,50 @@ fn what_cannot_be_swept_is_refused_with_the_reason() {
     refused(&["--devices", "1", "--validate", "1"], 2, "--emulate");
     refused(&["--devices", "1", "--latency-us", "3"], 2, "--emulate");
     refused(&["--devices", "4", "--emulate", "--validate", "2"], 2, "--launcher");
+    refused(&["--devices", "4", "--emulate", "--validate", "1"], 2, "among --devices");
+    refused(&["--devices", "4", "--emulate", "--steps", "32"], 2, "--steps: an emulation makes no runs");
+    refused(&["--devices", "4", "--emulate", "--balance-every", "32"], 2, "--balance-every: an emulation");
     refused(&["--devices", "4", "--emulate", "--latency-us=-1"], 2, "--latency-us -1");
     refused(&["--devices", "4", "--emulate", "--bandwidth-gbs=0"], 2, "above 0");
     refused(&["--devices", "1", "--balance-threshold", "0.5"], 2, "--balance-threshold");
     refused(&["--devices", "1", "--launcher", " "], 2, "--launcher is empty");
     refused(&["--devices", "1", "--gpu", "no such", "--emulate"], 3, "no such");
     assert!(!folder.path().join("out").join("sweep.csv").exists());
+}
+
+/// From whatever names the checkpoint; what the run wrote at its end, or after that checkpoint, is not taken for the sweep's. A failed
+/// sweep before leaves nothing to go on with.
+#[test]
+fn a_sweep_goes_on_from_a_run_that_has_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    let path = |path: &Path| path.to_str().unwrap().to_owned();
+    let basic = ["run", "scenes/corner.toml", "--quiet", "--particles", "2000", "--steps", "96"];
+    let (code, _, err) = outcome(&[&basic[..], &["--checkpoint-every", "32", "--out", &path(&run)]].concat());
+    assert_eq!(code, 0, "{err}");
+    // As if the scene had ended there.
+    fs::write(run.join("audit.txt"), "all is well").unwrap();
+    let timing = fs::read(run.join("timing.json")).unwrap();
+    let out = folder.path().join("out");
+    let sweep = |from: &Path, more: &[&str]| {
+        let basic = ["sweep", "scenes/corner.toml", "--out", out.to_str().unwrap(), "--from", from.to_str().unwrap()];
+        outcome(&[&basic[..], &["--devices", "1,2", "--balance", "off", "--repeat", "1"], more].concat())
+    };
+    let (code, _, err) = sweep(&run, &["--steps", "32", "--gpu", "no such"]);
+    assert!(code == 3 && out.join("runs/1-off-1-state-1").exists(), "{err}");
+    let checkpoints = run.join("checkpoints");
+    for (from, done) in [(run.clone(), 96), (checkpoints.clone(), 96), (checkpoints.join("step-0000000064"), 64)] {
+        let (code, text, err) = sweep(&from, &["--steps", "32", "--force"]);
+        assert_eq!(code, 0, "{} steps: {err}", done);
+        let table = Table::of(&out);
+        assert_eq!(table.cases(), [("measured", "1", "off"), ("measured", "2", "off")], "{text}");
+        for row in 1..=2 {
+            let share =
+                table.value(row, "particle_steps_per_s") * table.value(row, "seconds") / table.value(row, "steps");
+            assert!((share - 2000.0).abs() < 2.0, "{share} particles in each step");
+        }
+    }
+    assert_eq!(fs::read(run.join("timing.json")).unwrap(), timing, "the run's own folder is not touched");
 }
 
 /// The message of what failed reaches the user, with the code of whose fault it was.

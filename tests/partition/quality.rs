@@ -40,8 +40,8 @@ fn imbalance(weights: &[u64]) -> f64 {
     *weights.iter().max().unwrap() as f64 * weights.len() as f64 / weights.iter().sum::<u64>() as f64
 }
 
-/// The imbalance of our parts is no worse than that of coupe's but for the granularity of planes; coupe cuts between
-/// points, to a tolerance of 0.1 % per cut. On these grids the granularity is at most a few per cent.
+/// The imbalance of our parts is no worse than that of coupe's, which has the points where we have them: in cells, between which it
+/// must cut as we do (to a tolerance of 0.1 % per cut).
 #[test]
 fn parts_are_as_even_as_coupes() {
     let root = grid([1024, 1024, 1024]);
@@ -53,7 +53,7 @@ fn parts_are_as_even_as_coupes() {
             let tree = bisect(root, &vec![1.0; parts], None, points.iter().copied()).unwrap();
             let ours = imbalance(&weights(&tree, &points));
             let mut ids = vec![0_usize; points.len()];
-            let at: Vec<Point3D> = positions.iter().map(|at| Point3D::from(*at)).collect();
+            let at: Vec<Point3D> = points.iter().map(|(cell, _)| Point3D::from(cell.map(f64::from))).collect();
             let mut rcb = coupe::Rcb { iter_count: levels, tolerance: 0.001, fast: false };
             rcb.partition(&mut ids, (at, vec![1.0_f64; points.len()])).unwrap();
             let mut theirs = vec![0; parts];
@@ -61,11 +61,8 @@ fn parts_are_as_even_as_coupes() {
             let theirs = imbalance(&theirs);
             let plane = granularity(&tree, &vec![1.0; parts], &points).into_iter().fold(1.0, f64::max) - 1.0;
             println!("{cloud:?}, {parts} parts: ours {ours:.4}, coupe {theirs:.4}, granularity {plane:.4}");
-            assert!(
-                ours <= theirs + plane,
-                "{cloud:?}, {parts} parts: ours {ours}, coupe {theirs}, granularity {plane}"
-            );
-            assert!(plane < 0.1, "the grid is too coarse to compare on: {plane}");
+            assert!(ours <= theirs, "{cloud:?}, {parts} parts: ours {ours}, coupe {theirs}");
+            assert!(ours <= 1.0 + plane, "{cloud:?}, {parts} parts: ours {ours}, granularity {plane}");
         }
     }
 }

@@ -12,6 +12,9 @@ pub const TESTS: &[(&str, fn())] = &[
     ("a_dead_process_ends_all", death_ends_all),
     ("differing_facts_are_told", differing_facts_are_told),
     ("ranks_of_different_scenes_stop_at_the_start", different_scenes_stop),
+    ("ranks_with_different_options_stop_at_the_start", different_options_stop),
+    ("an_error_of_a_rank_keeps_its_place_and_its_remedy", errors_are_whole),
+    ("what_is_the_work_of_one_process_is_not_started_several_times", one_process),
 ];
 
 struct Ended {
@@ -31,8 +34,9 @@ fn mpirun(ranks: usize, role: &str, environment: &[(&str, &str)]) -> Ended {
     ended(command, &format!("{ranks} ranks in the role `{role}`"))
 }
 
-fn ended(mut command: Command, who: &str) -> Ended {
+fn ended(mut command: impl std::borrow::BorrowMut<Command>, who: &str) -> Ended {
     let mut child = command
+        .borrow_mut()
         .env("RUST_BACKTRACE", "0")
         // More ranks than cores, also as root.
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
@@ -119,4 +123,49 @@ fn different_scenes_stop() {
     assert_eq!(ended.code, Some(3), "{}{}", ended.stdout, ended.stderr);
     assert!(ended.stderr.contains("the ranks disagree on the scene"), "{}", ended.stderr);
     assert!(!folder.path().join("results").exists(), "nothing was begun");
+}
+
+/// Ranks that stop after different steps, or of which one goes on with a run, would wait for each other for ever.
+fn different_options_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("box.toml"), include_str!("../../scenes/box.toml")).unwrap();
+    let program = env!("CARGO_BIN_EXE_corpuscle");
+    let first = ["run", "box.toml", "--steps", "32"];
+    for (other, told) in [
+        (["run", "box.toml", "--steps", "64"], "the ranks disagree on the options"),
+        (["resume", "results/box", "--steps", "32"], "the ranks disagree on the verb"),
+    ] {
+        let mut command = Command::new("mpirun");
+        command.args(["--bind-to", "none"]).current_dir(folder.path());
+        command.args(["-n", "1", program]).args(first).args([":", "-n", "1", program]).args(other);
+        let ended = ended(command, "ranks with different options");
+        assert_eq!(ended.code, Some(3), "{}{}", ended.stdout, ended.stderr);
+        assert!(ended.stderr.contains(told), "{}", ended.stderr);
+        assert!(!folder.path().join("results").exists(), "nothing was begun");
+    }
+}
+
+fn errors_are_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = include_str!("../../scenes/box.toml").replace("particles = 8000", "particels = 8000\nparticles = -1");
+    std::fs::write(folder.path().join("box.toml"), text).unwrap();
+    let mut command = Command::new("mpirun");
+    command.args(["--bind-to", "none", "-n", "2", env!("CARGO_BIN_EXE_corpuscle"), "run", "box.toml"]);
+    let ended = ended(command.current_dir(folder.path()), "ranks of a scene with two errors");
+    assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+    for part in ["particels", "box.toml:", "-1"] {
+        assert!(ended.stderr.contains(part), "{part}: {}", ended.stderr);
+    }
+}
+
+fn one_process() {
+    let folder = tempfile::tempdir().unwrap();
+    for verb in [&["refine", "run", "--times", "2", "--out", "out"][..], &["bench", "--particles", "100"]] {
+        let mut command = Command::new("mpirun");
+        command.args(["--bind-to", "none", "-n", "2", env!("CARGO_BIN_EXE_corpuscle")]).args(verb);
+        let ended = ended(command.current_dir(folder.path()), "processes of one verb");
+        assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+        assert!(ended.stderr.contains("the work of one process"), "{}", ended.stderr);
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was begun");
 }

@@ -45,9 +45,9 @@ pub struct RealRunArguments {
     /// devices are subdomains of one process on one device]
     #[arg(long, value_name = "COMMAND")]
     pub launcher: Option<String>,
-    /// Times that every count is run; medians are told
-    #[arg(long, value_name = "TIMES", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub repeat: u32,
+    /// Times that every count is run; medians are told [default: 3]
+    #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub repeat: Option<u32>,
     /// Stop each run after that many steps, at the end of an interval
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: Option<u64>,

@@ -9,6 +9,7 @@ use crate::scene::to_toml;
 use crate::simulation::Model;
 
 use super::super::CliError;
+use super::super::settings::Execution;
 
 /// The device that was asked for, or the one that is this rank's among those of its machine: GPUs in turn,
 /// a CPU adapter only where there is no GPU.
@@ -24,13 +25,20 @@ pub fn open(asked: Option<&str>, comm: &dyn Communicator) -> Result<Device, CliE
     Ok(Device::open(index.map(|index| index.to_string()).as_deref())?)
 }
 
-/// All ranks must be the same program on the same scene. To be asked before any rank takes a way of its own.
-pub fn agree_on_run(model: &Model, comm: &dyn Communicator) -> Result<(), CliError> {
+/// All ranks must do the same. To be asked first of all: what each does next is to be done by all.
+pub fn agree_on_verb(verb: &str, comm: &dyn Communicator) -> Result<(), CliError> {
+    Ok(ranks::agree(comm, &[("verb", verb.to_owned())])?)
+}
+
+/// All ranks must be the same program on the same scene, with the same options but for the device. To be asked before any rank
+/// takes a way of its own.
+pub fn agree_on_run(model: &Model, execution: &Execution, comm: &dyn Communicator) -> Result<(), CliError> {
     let facts = [
         ("version of the program", env!("CARGO_PKG_VERSION").to_owned()),
         ("build of the program", env!("CORPUSCLE_SOURCE").to_owned()),
         ("scene", to_toml(&model.scene)),
         ("plan", model.plan.to_toml()?),
+        ("options", format!("{:?}", Execution { gpu: None, ..execution.clone() })),
     ];
     Ok(ranks::agree(comm, &facts)?)
 }

@@ -11,12 +11,18 @@ use crate::study::modelled::{Costs, Gpu, Network, Point, point};
 use crate::study::state::{Moment, weights};
 
 use super::super::CliError;
-use super::super::arguments::EmulationArguments;
+use super::super::arguments::{EmulationArguments, TuningArguments};
 use super::super::settings::model_of;
 use super::SweepPlan;
 
 /// Steps of an interval that is measured in an emulation: of the first and last another thing is measured.
 pub(super) const EMULATED_STEPS: u32 = 3;
+
+/// So few steps are no time to try what is faster, and what is compared must have one halo.
+pub(super) fn halo(raw: &TuningArguments) -> HaloOptions {
+    let asked = HaloOptions::from(raw);
+    HaloOptions { rounds: asked.rounds.or(Some(1)), ghosts: asked.ghosts.or(Some(Ghosts::Asked)) }
+}
 
 /// The states of a count, and how many steps of the run each stands for.
 type Emulations = Vec<(f64, Emulated)>;
@@ -35,9 +41,7 @@ impl SweepPlan {
         let path = &self.raw.scene.scene;
         let (network, gpu) = assumed(&self.raw.emulation);
         let by = By::from(self.raw.tuning.balance_by);
-        // So few steps are no time to try what is faster.
-        let halo = HaloOptions::from(&self.raw.tuning);
-        let halo = HaloOptions { ghosts: halo.ghosts.or(Some(Ghosts::Asked)), ..halo };
+        let halo = halo(&self.raw.tuning);
         let effort = Effort { intervals: self.raw.emulation.intervals as usize, by, halo };
         let pairs = self.pairs(&self.devices);
         let mut of_pairs: Vec<Emulations> = vec![Vec::new(); pairs.len()];

@@ -15,6 +15,14 @@ impl ControlVolume {
         }
     }
 
+    /// Whether a vent that is not open would be opened.
+    pub(super) fn opens_any(&self, time: f64, contents: &[f64], open: &[bool]) -> bool {
+        self.vents
+            .iter()
+            .zip(open)
+            .any(|(vent, open)| !open && opens(&vent.vent, false, self.side(contents, vent.chamber, time).pressure()))
+    }
+
     /// Takes the losses at a time (s) from the time derivative of the unknowns of the chambers, and adds them to that of what
     /// has left.
     pub(super) fn lose(&self, time: f64, contents: &[f64], open: &[bool], rate: &mut [f64]) {

@@ -123,3 +123,13 @@ pub fn latest(path: &Path) -> Result<PathBuf, CheckpointError> {
     let newest = complete(&folder)?.pop();
     newest.map(|(_, path)| path).ok_or(CheckpointError::None { path: folder })
 }
+
+/// The folder of the run that the checkpoint `path`, found for `from`, is of.
+pub fn run_folder(from: &Path, path: &Path) -> PathBuf {
+    if path.starts_with(from.join(super::CHECKPOINT_FOLDER)) {
+        return from.to_path_buf();
+    }
+    // A relative path may have too few parts.
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    whole.ancestors().nth(2).unwrap_or(&whole).to_path_buf()
+}

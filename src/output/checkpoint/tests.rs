@@ -374,3 +374,19 @@ fn lengths_that_a_manifest_claims_take_no_memory() {
     assert!(claim(&|manifest| manifest.file.push(manifest.file[0].clone())).contains("twice"));
     assert!(claim(&|manifest| drop(manifest.file.remove(0))).contains("does not name scene.toml"));
 }
+
+#[test]
+fn the_run_of_a_checkpoint_is_found_from_wherever_it_is_named() {
+    let step = "step-0000000064";
+    let inside = |folder: &str| Path::new(folder).join(step);
+    assert_eq!(run_folder(Path::new("a/b"), &inside("a/b/checkpoints")), Path::new("a/b"));
+    assert_eq!(run_folder(Path::new("."), &inside("./checkpoints")), Path::new("."));
+    let whole = std::path::absolute("a/b").unwrap();
+    for from in [Path::new("a/b/checkpoints"), &inside("a/b/checkpoints")] {
+        assert_eq!(run_folder(from, &inside("a/b/checkpoints")), whole);
+    }
+    assert_eq!(
+        run_folder(Path::new("checkpoints"), &inside("checkpoints")),
+        std::path::absolute("").unwrap_or_else(|_| std::env::current_dir().unwrap())
+    );
+}

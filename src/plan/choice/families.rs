@@ -3,7 +3,7 @@
 use crate::gas::kinetics;
 use crate::plan::amounts::Amounts;
 use crate::plan::resolution::default_occupancy;
-use crate::plan::{Measured, Reason, forecast::Forecaster};
+use crate::plan::{Measured, PlanError, Reason, forecast::Forecaster};
 use crate::scene::{DiameterCap, Method, Scene};
 
 /// All candidates but for the number of particles.
@@ -29,8 +29,8 @@ pub fn families(
     measured: &Measured,
     amounts: &Amounts,
     forecaster: &Forecaster<'_>,
-) -> (Vec<Family>, Reason) {
-    let (methods, why) = methods(scene, measured, amounts, forecaster);
+) -> Result<(Vec<Family>, Reason), PlanError> {
+    let (methods, why) = methods(scene, measured, amounts, forecaster)?;
     let occupancies: &[f64] = if forecaster.is_release() { &OF_FRONTS } else { &USUAL };
     let mut families = Vec::new();
     for &method in &methods {
@@ -53,7 +53,32 @@ pub fn families(
         }
     }
     let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
-    (families, Reason { quantity: "methods compared".into(), value: names.join(", "), why })
+    Ok((families, Reason { quantity: "methods compared".into(), value: names.join(", "), why }))
+}
+
+/// What the scene is that no control volume is, or whose effect on one is not predicted.
+fn beyond_control_volumes(scene: &Scene, forecaster: &Forecaster<'_>) -> Option<&'static str> {
+    let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
+    if forecaster.is_release() {
+        Some("a release without a wall is no control volume")
+    } else if !scene.vents.is_empty() || rough {
+        Some("its error beside vents, rough walls and walls that keep a temperature is not predicted yet")
+    } else {
+        None
+    }
+}
+
+/// The first that the scene asks for of what only methods with particles have.
+fn asked_of_particles(scene: &Scene) -> Option<&'static str> {
+    let model = &scene.model;
+    let asked = [
+        ("particles", model.particles.is_some()),
+        ("diameter", model.diameter.is_some()),
+        ("occupancy", model.occupancy.is_some()),
+        ("rounds", model.rounds.is_some()),
+        ("time_step", model.time_step.is_some()),
+    ];
+    asked.into_iter().find_map(|(name, asked)| asked.then_some(name))
 }
 
 fn methods(
@@ -61,39 +86,44 @@ fn methods(
     measured: &Measured,
     amounts: &Amounts,
     forecaster: &Forecaster<'_>,
-) -> (Vec<Method>, String) {
+) -> Result<(Vec<Method>, String), PlanError> {
+    let beyond = beyond_control_volumes(scene, forecaster);
     if let Some(method) = scene.model.method {
-        return (vec![method], "asked for in the scene".into());
+        return match beyond.filter(|_| method == Method::ControlVolume) {
+            Some(why) => Err(PlanError::WishOfControlVolume { why }),
+            None => Ok((vec![method], "asked for in the scene".into())),
+        };
     }
     if let Some(DiameterCap::Spacings(_)) = scene.model.diameter_cap {
-        return (vec![Method::ClosestApproach], "the only one that has a `diameter_cap`".into());
+        return Ok((vec![Method::ClosestApproach], "the only one that has a `diameter_cap`".into()));
     }
     let path = kinetics::molecular_mean_free_path(amounts.total() / measured.gas_volume);
     let knudsen = path / libm::cbrt(measured.gas_volume);
     if knudsen >= FREE_KNUDSEN {
         let why =
             format!("the molecules themselves do not meet: Kn {knudsen:.1} of the vessel, of molecules of 0.37 nm");
-        return (vec![Method::None], why);
+        return Ok((vec![Method::None], why));
     }
     let mut methods = Vec::new();
     let mut why = Vec::new();
-    let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
-    let losses = !scene.vents.is_empty() || rough;
-    if forecaster.is_release() {
-        why.push("a release without a wall is no control volume");
-    } else if losses {
-        why.push("not the method control-volume, whose error beside vents, rough walls and walls that keep a temperature is not predicted yet");
-    } else {
-        methods.push(Method::ControlVolume);
+    match (beyond, asked_of_particles(scene)) {
+        (Some(beyond), _) => why.push(format!("not the method control-volume: {beyond}")),
+        (None, Some(asked)) => why.push(format!("not the method control-volume, which has no `{asked}`")),
+        (None, None) => methods.push(Method::ControlVolume),
     }
     // Specification, section 6, point 5.
-    if scene.orifices.is_empty() && scene.vents.is_empty() && measured.openings.is_empty() && scene.openings.is_empty()
-    {
-        methods.push(Method::Cell);
-        why.push("cell in open volumes");
+    let open = scene.orifices.is_empty()
+        && scene.vents.is_empty()
+        && measured.openings.is_empty()
+        && scene.openings.is_empty();
+    if !open {
+        why.push("closest-approach, not cell, near jets, holes and vents".into());
+    } else if scene.model.rounds.is_some() {
+        why.push("not cell, which has no `rounds`".into());
     } else {
-        why.push("closest-approach, not cell, near jets, holes and vents");
+        methods.push(Method::Cell);
+        why.push("cell in open volumes".into());
     }
     methods.push(Method::ClosestApproach);
-    (methods, why.join("; "))
+    Ok((methods, why.join("; ")))
 }

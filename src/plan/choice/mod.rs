@@ -74,7 +74,7 @@ pub fn choose(scene: &Scene, measured: &Measured, outlook: &Outlook) -> Result<C
     let species = species(scene, measured, &mut unused)?;
     let amounts = Amounts::of(scene, &species, measured)?;
     let forecaster = Forecaster::new(scene, measured, outlook, &species, &amounts);
-    let (families, why) = families(scene, measured, &amounts, &forecaster);
+    let (families, why) = families(scene, measured, &amounts, &forecaster)?;
     let (hottest, _) = highest_temperature(scene, measured);
     let wish = &scene.model.wish;
     let chooser = Chooser {

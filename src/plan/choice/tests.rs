@@ -134,7 +134,12 @@ fn what_the_scene_asks_for_is_kept() {
         model.wish.accuracy = Some(0.3);
     });
     let request = choice.unwrap().request;
-    assert!(request.particles == Some(30_000) || request.method == Some(Method::ControlVolume));
+    assert_eq!(request.particles, Some(30_000));
+    assert_eq!(request.method, Some(Method::ClosestApproach), "a control volume has no particles");
+    for rounds in [3, 5] {
+        let request = chosen(|model| (model.rounds, model.wish.accuracy) = (Some(rounds), Some(0.3))).unwrap().request;
+        assert_eq!((request.rounds, request.method), (Some(rounds), Some(Method::ClosestApproach)));
+    }
 }
 
 /// What cannot be had is refused with the best that can, what limits it and what to give up.

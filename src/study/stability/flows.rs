@@ -23,6 +23,8 @@ const FLOW: f64 = 0.07;
 const PROFILE: f64 = 0.024;
 /// Of the pressure behind a shock that is a few mean free paths wide, and of its excess.
 const ON_PISTON: [f64; 2] = [0.05, 0.2];
+/// Intervals of a hole's run at least: its flow is the slope over the rows behind the first two.
+const ROWS: u32 = 24;
 /// Occupancies of holes' runs, the second of rigid spheres.
 const USUAL: f64 = 0.12;
 const THIN: f64 = 0.03;
@@ -49,7 +51,11 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
         // The Knudsen number is that of the gas that stays, which is denser than the mean.
         scene.model.diameter_cap = Some(DiameterCap::Off);
     }
-    let model = model_from("orifice", scene)?;
+    let mut model = model_from("orifice", scene)?;
+    // A row is of whole intervals: of long steps there are few.
+    let intervals = (model.plan.estimated_steps / f64::from(ROWS)) as u32;
+    model.plan.steps_per_interval = intervals.clamp(1, model.plan.steps_per_interval);
+    model.plan.tally_every = model.plan.tally_every.min(model.plan.steps_per_interval);
     let run = run(device, &model, Options::default())?;
     let (found, error) = discharge_of(&run.rows);
     let mut checks = of_any(&model, &run);

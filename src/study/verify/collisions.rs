@@ -41,7 +41,7 @@ pub fn pressure_in(model: &Model, gas: &EquilibriumBox<'_>, row: &Row) -> Pressu
     PressureRatio {
         ratio: row.surfaces[0].pressure / ideal,
         error: (2.0 / gas.particles as f64).sqrt() / 6.0 * EDGE / (gas.thermal_speed() * window),
-        of_hits: error_of_hits(row.surfaces[0].hits as f64),
+        of_hits: row.surfaces[0].pressure / ideal * error_of_hits(row.surfaces[0].hits as f64),
     }
 }
 
@@ -82,7 +82,8 @@ pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Resu
         duration += length;
         hits += row.surfaces[0].hits;
     }
-    Ok(((ratio / duration, error_of_hits(hits as f64)), run.outcome.steps))
+    let ratio = ratio / duration;
+    Ok(((ratio, ratio * error_of_hits(hits as f64)), run.outcome.steps))
 }
 
 /// Steps, and wall pressure over n k T of rigid spheres by the specification's table, section 2 (x = .1, R = 2,
