@@ -16,7 +16,7 @@ fn member(begin: u32, k: u32, part: u32) -> u32 {
     return begin + k;
 }
 
-fn hidden(i: Particle, j: Particle) -> bool {
+fn hidden(s: u32, t: u32) -> bool {
     return false;
 }
 

@@ -50,8 +50,8 @@ var<private> places: array<vec3<u32>, 8>;
 var<private> part_of_place: array<u32, 8>;
 var<private> place_count: u32;
 
-fn hidden(i: Particle, j: Particle) -> bool {
-    return !sees(i.position, j.position);
+fn hidden(s: u32, t: u32) -> bool {
+    return !sees(sorted[s].place.xyz, sorted[t].place.xyz);
 }
 
 // Finds `close` and `ahead`, by all threads.
@@ -316,7 +316,7 @@ fn collide_moved(
     let begin = cell_start[bin];
     let end = select(begin, last_of(begin, cell_start[bin + 1u]), listed);
     for (var s = begin + thread; s < end; s += WORKGROUP) {
-        put_in_part(s, part_of(sorted[s].position));
+        put_in_part(s, part_of(sorted[s].place.xyz));
     }
     storageBarrier();
     workgroupBarrier();

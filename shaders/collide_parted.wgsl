@@ -10,8 +10,8 @@
 @group(0) @binding(51) var<storage, read> parted: array<u32>;
 @group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
 
-fn hidden(i: Particle, j: Particle) -> bool {
-    return blocked(i.position, j.position, 0.0);
+fn hidden(s: u32, t: u32) -> bool {
+    return blocked(sorted[s].place.xyz, sorted[t].place.xyz, 0.0);
 }
 
 fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
@@ -43,7 +43,7 @@ fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     let begin = cell_start[bin];
     let end = last_of(begin, cell_start[bin + 1u]);
     for (var s = begin; s < end; s++) {
-        put_in_part(s, part_of(sorted[s].position, first_part(entry), parts));
+        put_in_part(s, part_of(sorted[s].place.xyz, first_part(entry), parts));
     }
     var candidates = 0u;
     for (var part = 0u; part < parts; part++) {

@@ -19,7 +19,7 @@ override ORIFICES: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 
 // More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
 const MOST_CANDIDATES: f32 = 65536.0;
@@ -29,7 +29,7 @@ const MOST_CANDIDATES: f32 = 65536.0;
 fn last_of(begin: u32, bin_end: u32) -> u32 {
     var end = bin_end;
     if (ORIFICES) {
-        while (end > begin && id_of(sorted[end - 1u].tag) - step.newborn_first_id < step.newborns) {
+        while (end > begin && id_of(sorted[end - 1u].place.w) - step.newborn_first_id < step.newborns) {
             end--;
         }
     }
@@ -64,12 +64,12 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
     let key = vec2<u32>(SEED_LOW, CELL_SEED_HIGH);
     var mean = vec3<f32>(0.0);
     for (var k = 0u; k < count; k++) {
-        mean += sorted[member(begin, k, part)].velocity;
+        mean += sorted[member(begin, k, part)].motion.xyz;
     }
     mean /= f32(count);
     var farthest = 0.0;
     for (var k = 0u; k < count; k++) {
-        let away = sorted[member(begin, k, part)].velocity - mean;
+        let away = sorted[member(begin, k, part)].motion.xyz - mean;
         farthest = max(farthest, dot(away, away));
     }
     // (A little more than the bound, for its rounding.)
@@ -87,20 +87,23 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
         // By id, as the members are.
         let s = member(begin, min(one, other), part);
         let t = member(begin, max(one, other), part);
-        let i = sorted[s];
-        let j = sorted[t];
-        let g = j.velocity - i.velocity;
+        let motion_i = sorted[s].motion;
+        let motion_j = sorted[t].motion;
+        let g = motion_j.xyz - motion_i.xyz;
         let speed = length(g);
         if (unit_interval(draw.z) * bound >= speed) {
             continue;
         }
         done.collisions++;
-        if (hidden(i, j)) {
+        if (hidden(s, t)) {
             // Counted as the other methods do: as a pair that met, and was parted.
             atomicAdd(&counters[BLOCKED], 1u);
             continue;
         }
         let draw2 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 1u, part), key);
+        // A collision changes no place.
+        let i = Particle(vec3<u32>(0u), sorted[s].place.w, motion_i.xyz, motion_i.w);
+        let j = Particle(vec3<u32>(0u), sorted[t].place.w, motion_j.xyz, motion_j.w);
         let mass_i = gases[kind_of(i.tag)].mass;
         let mass_j = gases[kind_of(j.tag)].mass;
         let mu = mass_i * mass_j / (mass_i + mass_j);
@@ -115,8 +118,8 @@ fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) ->
         let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw, pick);
         let relative = exchange.speed * direction(draw2.x, draw2.y);
         let after = deflected(i, j, mu, relative - g, exchange);
-        sorted[s] = after.i;
-        sorted[t] = after.j;
+        sorted[s].motion = vec4<f32>(after.i.velocity, after.i.spin);
+        sorted[t].motion = vec4<f32>(after.j.velocity, after.j.spin);
         let new_bound = 2.000002 * max(length(after.i.velocity - mean), length(after.j.velocity - mean));
         if (new_bound > bound) {
             let rest = f32(candidates - done.candidates) * (new_bound / bound);

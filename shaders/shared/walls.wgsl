@@ -82,12 +82,20 @@ fn may_part(c: vec3<u32>) -> bool {
 }
 
 fn class_of(cell: u32) -> u32 {
-    return (cell_class[cell >> 4u].x >> ((cell & 15u) * 2u)) & 3u;
+    return class_among(cell_class[cell >> 4u], cell);
+}
+
+// The same by the word of its sixteen.
+fn class_among(classes: vec2<u32>, cell: u32) -> u32 {
+    return (classes.x >> ((cell & 15u) * 2u)) & 3u;
 }
 
 // How many cells before this one are near walls: `wall_start` has an entry for each of those alone.
 fn near_before(cell: u32) -> u32 {
-    let classes = cell_class[cell >> 4u];
+    return near_among(cell_class[cell >> 4u], cell);
+}
+
+fn near_among(classes: vec2<u32>, cell: u32) -> u32 {
     // CLASS_GAS, 1, and CLASS_CUT, 2: of their two bits one is set.
     let near = (classes.x ^ (classes.x >> 1u)) & 0x55555555u;
     return classes.y + countOneBits(near & ((1u << ((cell & 15u) * 2u)) - 1u));
@@ -97,9 +105,9 @@ fn near_before(cell: u32) -> u32 {
 override CLEARANCE_UNIT: f32;
 
 // Whether the way between two points, the second less than a cell from the first, lies before the plane that all walls in the 27 cells
-// around are behind. `c` is near walls and the nearest cell to the first point; of one that is not in it nothing is known.
-fn before_walls(c: vec3<u32>, p: vec3<u32>, q: vec3<u32>) -> bool {
-    let plane = wall_start[near_before(cell_index(c))].y;
+// around are behind. `c` is near walls, the `near`-th that is, and the nearest cell to the first point; of one that is not in it nothing is known.
+fn before_walls(c: vec3<u32>, near: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
+    let plane = wall_start[near].y;
     let normal = vec3<f32>(bitcast<vec3<i32>>(vec3<u32>(plane << 24u, plane << 16u, plane << 8u)) >> vec3<u32>(24u));
     let least = f32(bitcast<i32>(plane) >> 24u) * (CLEARANCE_UNIT * f32(1u << CELL_BITS));
     let middle = (c << vec3<u32>(CELL_BITS)) + (1u << (CELL_BITS - 1u));
@@ -142,19 +150,21 @@ fn row_list(cells: Cells, y: u32, z: u32) -> vec2<u32> {
 
 // Takes the triangle into account as the first wall that a flight meets that is at `from_point` at the time `start`.
 fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>, start: f32, end: f32) {
-    let triangle = triangles[index];
-    let approach = -dot(v, triangle.normal);
+    // (What is left out early is not read.)
+    let normal = triangles[index].normal;
+    let approach = -dot(v, normal);
     if (approach <= 0.0) {
         return;
     }
-    let a = between(triangle.a, from_point);
-    let distance = dot(a, triangle.normal);
+    let a = between(triangles[index].a, from_point);
+    let distance = dot(a, normal);
     // From behind the wall it is hit where the flight starts: at a grazing flight the place on
     // the plane, far back, may be on no triangle.
     let delay = max(distance, 0.0) / approach;
     if (distance < -TOLERANCE || delay > end - start) {
         return;
     }
+    let triangle = triangles[index];
     let ab = between(triangle.a, triangle.b);
     let ac = between(triangle.a, triangle.c);
     if (!within(triangle, a + v * delay, ab, ac, TOLERANCE * length(v) / approach)) {
@@ -205,8 +215,11 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
     if (reach >= f32(1u << CELL_BITS)) {
         return true;
     }
-    let around = class_of(cell_index(c));
-    if (around == CLASS_SOLID || (around != CLASS_CLEAR && !before_walls(c, from_point, shifted(x0, v * dt)))) {
+    let cell = cell_index(c);
+    let classes = cell_class[cell >> 4u];
+    let around = class_among(classes, cell);
+    if (around == CLASS_SOLID
+        || (around != CLASS_CLEAR && !before_walls(c, near_among(classes, cell), from_point, shifted(x0, v * dt)))) {
         return true;
     }
     if (MOVING) {
