@@ -49,6 +49,9 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
             }
         }
     }
+    if !all.is_empty() {
+        say(&format!("\n{}", report::summary(&all, &device)))?;
+    }
     if let Some(path) = &raw.json {
         let missing: Vec<(String, String)> =
             failed.iter().map(|(what, error)| (what.clone(), error.to_string())).collect();

@@ -80,6 +80,22 @@ impl DomainBuffers {
     }
 }
 
+impl DomainBuffers {
+    /// Of those that grow with the cells.
+    pub fn cell_bytes(&self) -> u64 {
+        let of_cells = [
+            &self.wall_start,
+            &self.wall_list,
+            &self.cell_class,
+            &self.parting,
+            &self.cell_volume,
+            &self.cell_parts,
+            &self.still_gas,
+        ];
+        of_cells.iter().map(|buffer| buffer.size()).sum()
+    }
+}
+
 /// Words of the tallies of one interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TallyWords {

@@ -24,6 +24,7 @@ mod walls;
 use std::sync::Arc;
 
 use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
+use crate::plan::Plan;
 
 pub use buffers::{
     BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles,
@@ -95,6 +96,11 @@ pub struct Subdomain {
     spare_staging: Vec<wgpu::Buffer>,
 }
 
+/// The most particles that room is made for ahead of need: a device alone has at most all that the plan has.
+fn most(plan: &Plan, features: Features) -> u64 {
+    if features.halo { u64::MAX } else { plan.particles }
+}
+
 impl Subdomain {
     /// A subdomain at `place` that starts with these particles.
     ///
@@ -112,8 +118,10 @@ impl Subdomain {
         let tables =
             [domain.patches.coats as u64, domain.vent_entries as u64, domain.parted_cells, domain.moved_cells, shares];
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
-        // Room for what is there and some inflow; it grows as the inflow comes.
-        let capacity = particles.len() as u64 + (particles.len() as u64 / 8).max(1024);
+        // Room for what is there, and for some that come: of an inflow, or from other devices.
+        let present = particles.len() as u64;
+        let come = if features.orifices || features.halo { (present / 8).max(1024) } else { 0 };
+        let capacity = present.max((present + come).min(most(plan, features)));
         let particle = ParticleBuffers::new(device, capacity, 1024, capacity / FIRST_TAILS, features)?;
         // Without collisions nothing is binned.
         let bins = if features.collisions { bins_of(&place, &domain) } else { 4 };
@@ -162,9 +170,10 @@ impl Subdomain {
         self.particle.bytes()
     }
 
-    /// Bytes of the buffers that grow with the cells that have bins.
+    /// Bytes of the buffers that grow with the cells, lists of walls included.
     pub fn cell_bytes(&self) -> u64 {
-        self.cell.bytes()
+        let lists = self.fixed.parted.size() + self.fixed.moved.size();
+        self.cell.bytes() + self.domain.buffers.cell_bytes() + lists
     }
 
     /// Entries of a particle's neighbour list in the last step, on average; 0 of a method without.
@@ -230,7 +239,8 @@ impl Subdomain {
         if needed <= old.capacity && newborns <= room_for_newborns && tails <= old.tails {
             return Ok(());
         }
-        let capacity = if needed > old.capacity { needed + needed / 4 } else { old.capacity };
+        let most = most(&self.domain.plan, self.domain.features);
+        let capacity = if needed > old.capacity { needed.max((needed + needed / 4).min(most)) } else { old.capacity };
         // More particles of the same gas have more tails. Among others what another device wanted may have been made here.
         let grown_tails = if self.domain.features.halo { old.tails } else { old.tails * capacity / old.capacity };
         let tails = tails.max(grown_tails);

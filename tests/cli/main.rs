@@ -314,6 +314,16 @@ fn a_bench_measures_each_scene_and_method() {
         path,
     ]);
     assert!(text.contains("GB/s") && text.contains("of the target"), "{text}");
+    // At the end a line for each run, whose last column is the ratio to its target.
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+    let last = &lines[lines.len() - 4..];
+    for (line, (scene, method)) in
+        last.iter().zip([("box", "cell"), ("box", "none"), ("tank", "cell"), ("tank", "none")])
+    {
+        assert_eq!(line[..2], [scene, method], "{text}");
+        let [rate, target, ratio]: [f64; 3] = std::array::from_fn(|k| line[line.len() - 3 + k].parse().unwrap());
+        assert!(rate > 0.0 && (ratio - rate / target).abs() < 0.01 / target + 0.001, "{text}");
+    }
     let value: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
     assert!(value["copy_bytes_per_second"].as_f64().unwrap() > 0.0);
     let runs = value["runs"].as_array().unwrap();

@@ -87,7 +87,7 @@ pub fn threads() -> f64 {
     told.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1) as f64
 }
 
-/// Runs a scene for some steps; what is compiled and touched for the first time is not timed.
+/// Runs a scene for some steps; what is compiled for the first time is not timed.
 ///
 /// # Errors
 /// If the scene cannot be planned so, or a run fails.

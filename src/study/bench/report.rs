@@ -41,6 +41,36 @@ pub fn table(measured: &Measured, ceilings: &Ceilings) -> String {
     aligned(&rows)
 }
 
+/// A line for each run; the ratio to the target is the last column.
+pub fn summary(all: &[Measured], device: &Device) -> String {
+    let head = [
+        "scene",
+        "method",
+        "particles",
+        "bytes/particle",
+        "bytes/cell",
+        "M particle-steps/s",
+        "target",
+        "of the target",
+    ];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for measured in all {
+        let [particles, cells] = measured.buffers.map(|bytes| bytes as f64);
+        let target = measured.target(device);
+        rows.push(vec![
+            measured.scene.to_owned(),
+            measured.method.name().to_owned(),
+            measured.present.to_string(),
+            format!("{:.1}", particles / measured.present.max(1) as f64),
+            if measured.cells > 0 { format!("{:.1}", cells / measured.cells as f64) } else { "-".into() },
+            format!("{:.2}", 1e-6 * measured.rate()),
+            target.map_or_else(|| "-".into(), |target| format!("{:.0}", 1e-6 * target)),
+            target.map_or_else(|| "-".into(), |target| format!("{:.3}", measured.rate() / target)),
+        ]);
+    }
+    aligned(&rows)
+}
+
 /// The line of a run: what it was, how fast, and over its target.
 pub fn line(measured: &Measured, device: &Device) -> String {
     let target = measured.target(device);
