@@ -14,7 +14,7 @@ use super::SimulationError;
 use super::decomposition::Decomposition;
 use super::exchange::Traffic;
 
-/// Steps that a rebalance is thought to cost before one was measured, nor the exchange that brings the first particles home.
+/// Steps that a rebalance is thought to cost at most before one was measured.
 const STEPS_OF_A_REBALANCE: f64 = 2.0;
 /// Relative noise of the loads that the trigger sees, before it has learnt it. They are formed from counts of work, with the same costs for
 /// all ranks: timers' noise is in what ranks whose gas differs cost beside each other, not in a rank's load.
@@ -218,9 +218,11 @@ impl Balance {
             }
             let trigger = self.trigger.get_or_insert_with(|| {
                 let mean = predicted.iter().sum::<f64>() / predicted.len() as f64;
-                // Most of a rebalance is an exchange among all, and so is the first of a run.
+                // Most of a rebalance is an exchange among all, and so is the first of a run; in that of a small run the driver
+                // may have been compiling for longer.
                 let first = loads.iter().map(|load| load.rebalancing).fold(0.0, f64::max);
-                let estimate = if first > 0.0 { first / unit } else { STEPS_OF_A_REBALANCE * mean };
+                let most = STEPS_OF_A_REBALANCE * mean;
+                let estimate = if first > 0.0 { most.min(first / unit) } else { most };
                 Trigger::new(self.options.threshold, estimate, NOISE)
             });
             trigger.observe(&predicted, &self.model.shares());
@@ -362,10 +364,17 @@ mod tests {
         assert!(!after_two_intervals(-0.05, 0.0).due(64));
     }
 
-    /// A step takes a tenth of a second, so 64 of them would save 1.3 s.
+    /// What is saved until the next check must be more than that; and it is no more than two steps, however long the first took.
     #[test]
     fn the_first_exchange_tells_what_a_rebalance_costs() {
-        assert!(after_two_intervals(0.2, 0.6).due(64));
-        assert!(!after_two_intervals(0.2, 2.6).due(64));
+        let due = |every: u64, first_exchange: f64| {
+            let mut balance = after_two_intervals(0.2, first_exchange);
+            (balance.options.every, balance.next_check, balance.interval) = (every, 64, 1);
+            balance.due(64)
+        };
+        // A step takes a tenth of a second, of which a fifth would be saved.
+        assert!(due(4, 0.05) && !due(2, 0.05), "half of a step");
+        assert!(due(7, 0.12) && !due(5, 0.12), "more than a step");
+        assert!(due(11, 60.0) && !due(9, 60.0), "two steps");
     }
 }

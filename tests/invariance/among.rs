@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use corpuscle::gpu::Device;
+use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
     BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model, Options, Outcome, Setup, Shuffle, Simulation,
@@ -24,6 +25,7 @@ pub struct Way {
     pub order: Option<&'static Shuffle>,
     /// Where the run stops before its end.
     pub stop: Option<u64>,
+    pub by: By,
 }
 
 impl Way {
@@ -36,7 +38,7 @@ impl Way {
             Pace::OneAtATime
         };
         let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::Asked } else { Ghosts::All });
-        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None, stop: None }
+        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None, stop: None, by: By::Cost }
     }
 
     pub fn name(&self) -> String {
@@ -50,7 +52,7 @@ impl Way {
 
     fn options(&self) -> Options<'static> {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
-        let balance = BalanceOptions { mode: self.mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
+        let balance = BalanceOptions { mode: self.mode, by: self.by, every: 1, threshold: 1.0 };
         let halo = HaloOptions { rounds: self.halo_rounds, ghosts: self.ghosts };
         // Lists that grow on the way: those of one device fit from the start.
         let lists_start_short = true;

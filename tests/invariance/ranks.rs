@@ -1,5 +1,6 @@
 //! Among ranks.
 
+use corpuscle::partition::By;
 use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
 use corpuscle::simulation::BalanceMode::{self, Dynamic, Forced, Initial, Off};
@@ -218,6 +219,18 @@ fn lists_that_grow_among_ranks_change_no_bit() {
 fn a_burst_near_a_cut_changes_no_bit() {
     let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 5 }, 2)];
     same(&burst(), &ways);
+}
+
+/// Cut anew where it pays, as runs do by themselves: gas flows into one side. (So few particles cost a device nothing that
+/// could be measured: they are balanced by their number.)
+#[test]
+fn cuts_that_follow_the_gas_change_no_bit() {
+    let by_number = |way: Way| Way { by: By::Particles, ..way };
+    let ways = [by_number(Way::new(2, Dynamic, 1)), by_number(Way::new(3, Dynamic, 2))];
+    let runs = same(&burst(), &ways);
+    assert!(runs[1..].iter().all(|run| rebalanced(run) > 0), "the cuts do not move");
+    let runs = same(&by(Method::Cell, burst()), &ways[..1]);
+    assert!(rebalanced(&runs[1]) > 0, "the cuts do not move");
 }
 
 /// A look at the state by one rank moves no particle.

@@ -22,6 +22,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use bits::Bits;
+use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, from_environment};
 use corpuscle::simulation::{BalanceMode, BalanceOptions, Model, Options, Setup, Simulation, SimulationError};
 use whole_run::{Run, Witness, device, run};
@@ -137,7 +138,8 @@ fn of_rank(case: &str, comm: &dyn Communicator) -> Result<Run, SimulationError> 
         "forced" => BalanceMode::Forced { seed: 1 },
         _ => BalanceMode::Dynamic,
     };
-    let balance = BalanceOptions { mode, every: 1, threshold: 1.0, ..BalanceOptions::default() };
+    // By their number: so few particles cost a device nothing that could be measured, and dynamic cuts would never move.
+    let balance = BalanceOptions { mode, by: By::Particles, every: 1, threshold: 1.0 };
     let options = Options { balance, ..Options::default() };
     let device = device();
     if let Some(scene) = scene.strip_suffix(MIDWAY) {
