@@ -2,8 +2,9 @@
 //!
 //! Each group is one task done in several ways on the same data, turn about; a line has the median wall time of a way,
 //! the time per item, and that over the first way's, formed turn by turn. The ways of a group must agree in what they
-//! give, or the bench fails. `search`, `records` and `arrays` are the inner loops of the step's kernels without what
-//! they do besides; the scan of chunks are the step's own kernels.
+//! give, or the bench fails. `records` and `arrays` are the inner loops of the step's kernels without what
+//! they do besides, `search` is that of the search that finds each pair from both of its particles, row after row (the step's own finds it once, in one
+//! loop); the scan of chunks are the step's own kernels.
 //!
 //! `-- 1000000` chooses the number of particles (default 262144), `-- --turns N` the turns (default 9).
 
@@ -306,7 +307,6 @@ impl Bench {
     }
 
     fn groups(&self, items: usize, workgroup: u32) -> [u32; 3] {
-        // The kernels of this bench do not fold.
         let limit = self.device.limits().max_compute_workgroups_per_dimension;
         fold(items as u64, workgroup, limit)
     }

@@ -12,21 +12,23 @@ const VELOCITY: u32 = 4;
 @group(0) @binding(2) var<storage, read_write> ordered: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn fly(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < COUNT) {
+fn fly(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let item = id.x + id.y * groups.x * WORKGROUP;
+    if (item < COUNT) {
         for (var axis = 0u; axis < 3u; axis++) {
-            let moved = bitcast<u32>(i32(bitcast<f32>(particles[(VELOCITY + axis) * COUNT + id.x])));
-            particles[axis * COUNT + id.x] += moved;
+            let moved = bitcast<u32>(i32(bitcast<f32>(particles[(VELOCITY + axis) * COUNT + item])));
+            particles[axis * COUNT + item] += moved;
         }
     }
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < COUNT) {
-        let source = order[id.x];
+fn gather(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let item = id.x + id.y * groups.x * WORKGROUP;
+    if (item < COUNT) {
+        let source = order[item];
         for (var word = 0u; word < WORDS; word++) {
-            ordered[word * COUNT + id.x] = particles[word * COUNT + source];
+            ordered[word * COUNT + item] = particles[word * COUNT + source];
         }
     }
 }

@@ -15,16 +15,18 @@ struct Particle {
 @group(0) @binding(2) var<storage, read_write> ordered: array<Particle>;
 
 @compute @workgroup_size(WORKGROUP)
-fn fly(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < COUNT) {
-        let moved = bitcast<vec3<u32>>(vec3<i32>(particles[id.x].velocity));
-        particles[id.x].position += moved;
+fn fly(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let item = id.x + id.y * groups.x * WORKGROUP;
+    if (item < COUNT) {
+        let moved = bitcast<vec3<u32>>(vec3<i32>(particles[item].velocity));
+        particles[item].position += moved;
     }
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < COUNT) {
-        ordered[id.x] = particles[order[id.x]];
+fn gather(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let item = id.x + id.y * groups.x * WORKGROUP;
+    if (item < COUNT) {
+        ordered[item] = particles[order[item]];
     }
 }

@@ -9,13 +9,14 @@ override COUNT: u32;
 @group(0) @binding(2) var<storage, read> values: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_add(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x >= COUNT) {
+fn scan_add(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let item = id.x + id.y * groups.x * WORKGROUP;
+    if (item >= COUNT) {
         return;
     }
-    let sum = sums[id.x] + before[id.x / SPAN];
-    sums[id.x] = sum;
-    if (id.x + 1u == COUNT) {
-        sums[COUNT] = sum + values[id.x];
+    let sum = sums[item] + before[item / SPAN];
+    sums[item] = sum;
+    if (item + 1u == COUNT) {
+        sums[COUNT] = sum + values[item];
     }
 }

@@ -15,8 +15,13 @@ override TOTALS: bool;
 var<workgroup> shared_sums: array<u32, SPAN>;
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_tree(@builtin(local_invocation_index) thread: u32, @builtin(workgroup_id) group: vec3<u32>) {
-    let first = group.x * SPAN;
+fn scan_tree(
+    @builtin(local_invocation_index) thread: u32,
+    @builtin(workgroup_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let group = id.x + id.y * groups.x;
+    let first = group * SPAN;
     for (var k = thread; k < SPAN; k += WORKGROUP) {
         var value = 0u;
         if (first + k < COUNT) {
@@ -45,6 +50,6 @@ fn scan_tree(@builtin(local_invocation_index) thread: u32, @builtin(workgroup_id
         }
     }
     if (TOTALS && thread == 0u) {
-        totals[group.x] = shared_sums[SPAN - 1u];
+        totals[group] = shared_sums[SPAN - 1u];
     }
 }

@@ -27,8 +27,8 @@ fn distance2(a: u32, b: u32) -> u32 {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn search(@builtin(global_invocation_id) id: vec3<u32>) {
-    let s = id.x;
+fn search(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let s = id.x + id.y * groups.x * WORKGROUP;
     if (s >= COUNT) {
         return;
     }
