@@ -10,7 +10,9 @@ use crate::scene::{HeatCapacity, Scene};
 const LARGEST_RESIDUAL: f64 = 0.01;
 /// Beyond the coldest and the hottest that the scene names: gas that expands, and what is noise.
 const COLDER: f64 = 0.8;
-const VENTED: f64 = 0.6;
+const EXPANDING: f64 = 0.6;
+/// Ratio of two chambers' pressures below which they count as equal.
+const EQUAL: f64 = 1.01;
 const HOTTER: f64 = 1.1;
 
 /// K, over which heat capacities count.
@@ -19,8 +21,11 @@ fn range(scene: &Scene, measured: &Measured) -> [f64; 2] {
     let orifices = scene.orifices.iter().flat_map(|orifice| orifice.temperature.points.iter().map(|point| point[1]));
     let walls = scene.walls.iter().filter_map(|wall| wall.heat.as_ref()).map(|heat| heat.temperature);
     let coldest = chambers.chain(orifices).chain(walls).fold(f64::INFINITY, f64::min);
-    // What is left behind a vent, or behind a wall that recedes, expands as no other gas does.
-    let colder = if scene.vents.is_empty() && scene.motions.is_empty() { COLDER } else { VENTED };
+    // What is left behind a vent, behind a wall that recedes, or in a chamber that empties into another, expands as no other gas does.
+    let pressures = || scene.chambers.iter().map(|chamber| chamber.pressure);
+    let empties = pressures().fold(0.0, f64::max) > EQUAL * pressures().fold(f64::INFINITY, f64::min);
+    let expands = empties || !scene.vents.is_empty() || !scene.motions.is_empty();
+    let colder = if expands { EXPANDING } else { COLDER };
     [colder * coldest, HOTTER * highest_temperature(scene, measured).0]
 }
 

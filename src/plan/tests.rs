@@ -394,6 +394,21 @@ fn heat_capacities_cover_the_walls() {
     assert!(reason.why.contains("from 160 to"), "{}", reason.why);
 }
 
+/// Gas that a chamber of a higher pressure keeps has expanded more than a fifth: half of it gone, to .76 of its temperature.
+#[test]
+fn heat_capacities_cover_a_chamber_that_empties() {
+    let reason = |pressure: f64| {
+        let plan = planned(|scene, _| {
+            scene.chambers[0].pressure = pressure;
+            scene.gases[1].heat = HeatCapacity::Curve([23.0, 5.6e-2, -2.2e-5]);
+        });
+        let reasons = plan.unwrap().reasons;
+        reasons.into_iter().find(|reason| reason.quantity == "cp(T) of nitrogen").unwrap().why
+    };
+    assert!(reason(101_325.0).contains("from 234.4 to"), "{}", reason(101_325.0));
+    assert!(reason(3e5).contains("from 175.8 to"), "{}", reason(3e5));
+}
+
 /// The diameter is that of the mean density, and falls where gas is denser: from 1.5 times on, unless the scene says where.
 #[test]
 fn the_diameter_is_capped_where_gas_is_dense() {

@@ -124,7 +124,7 @@ impl Decomposition {
         std::mem::take(&mut self.scattered)
     }
 
-    /// Particles fly farther than thought: everyone is a peer from now on.
+    /// Particles fly farther than thought: everyone is a peer until the cells are shared out anew.
     pub fn widen(&mut self) {
         self.wide = true;
     }
@@ -132,6 +132,7 @@ impl Decomposition {
     /// A tree from outside.
     pub fn replace(&mut self, tree: Tree) {
         self.tree = tree;
+        self.wide = false;
         self.scatter();
     }
 

@@ -16,7 +16,8 @@ use super::reference::Reference;
 
 pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), CliError> {
     let RunSettings { model, folder, force, execution, .. } = settings;
-    if execution.stop_after_steps.is_some() || execution.checkpoints.every.is_some() {
+    let checkpoints = execution.checkpoints;
+    if execution.stop_after_steps.is_some() || checkpoints.every.is_some() || checkpoints.stop_after.is_some() {
         tracing::warn!("a control volume takes no steps: it is not stopped after some, and writes no checkpoints");
     }
     let folder = OutputFolder::create(folder, *force)?;
