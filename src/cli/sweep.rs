@@ -24,6 +24,8 @@ use super::terminal::say;
 use emulated::{EMULATED_STEPS, Emulation};
 
 const RUNS_FOLDER: &str = "runs";
+/// Times that every count is run unless said.
+const TURNS: u32 = 3;
 
 pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
     let plan = SweepPlan::new(raw)?;
@@ -350,8 +352,6 @@ fn check(raw: &SweepArguments) -> Result<(), CliError> {
         None => Ok(()),
     }
 }
-
-const TURNS: u32 = 3;
 
 fn sorted(counts: &[u32]) -> Vec<usize> {
     let mut counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
