@@ -176,7 +176,7 @@ pub struct Balance {
     /// The step of the last rebalance, until its cost is known; loads of before count no more.
     since: Option<u64>,
     rebalances: Vec<(u64, [f64; 2])>,
-    records: Vec<BalanceRecord>,
+    latest: Option<BalanceRecord>,
 }
 
 impl Balance {
@@ -189,7 +189,7 @@ impl Balance {
             interval: 0,
             since: None,
             rebalances: Vec::new(),
-            records: Vec::new(),
+            latest: None,
         }
     }
 
@@ -228,7 +228,7 @@ impl Balance {
             trigger.observe(&predicted, &self.model.shares());
         }
         let rebalanced = self.rebalances.iter().find(|(step, _)| *step == first_step).map(|(_, imbalance)| *imbalance);
-        self.records.push(BalanceRecord { step: first_step + u64::from(steps), time, loads, predicted, rebalanced });
+        self.latest = Some(BalanceRecord { step: first_step + u64::from(steps), time, loads, predicted, rebalanced });
     }
 
     /// Seconds of a unit of `predicted`: without a cost model particles stand for seconds.
@@ -244,11 +244,12 @@ impl Balance {
 
     /// The interval that was read last, if there are loads of it.
     pub fn latest(&self) -> Option<&BalanceRecord> {
-        self.records.last()
+        self.latest.as_ref()
     }
 
-    pub fn into_records(self) -> Vec<BalanceRecord> {
-        self.records
+    /// How often the cells were shared out anew.
+    pub fn rebalances(&self) -> usize {
+        self.rebalances.len()
     }
 
     /// Before an interval: shares the cells out anew where that is due. Collective.
@@ -289,7 +290,7 @@ impl Balance {
 
     /// Of the weights, that even out the ranks' times.
     fn shares(&self) -> Vec<f64> {
-        let Some(latest) = self.records.last() else {
+        let Some(latest) = &self.latest else {
             return self.model.shares();
         };
         let load = |load: &Load| (load.work(), load.particles.saturating_sub(load.owned));

@@ -139,7 +139,8 @@ pub struct Outcome {
     pub step_range: [f64; 2],
     /// What this rank sent and waited for.
     pub traffic: Traffic,
-    pub balance: Vec<BalanceRecord>,
+    /// How often the cells were shared out anew.
+    pub rebalances: usize,
     /// Wall time of the steps, s: without the set-up, and without the account at the end.
     pub stepping_seconds: f64,
 }

@@ -339,7 +339,7 @@ impl<'a> Simulation<'a> {
             particles,
             owners,
             traffic: self.exchange.traffic(),
-            balance: self.balance.into_records(),
+            rebalances: self.balance.rebalances(),
             audit,
             continued,
             warnings: self.guards.told().to_vec(),

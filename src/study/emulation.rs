@@ -8,7 +8,8 @@ use crate::gpu::Device;
 use crate::partition::By;
 use crate::ranks::{Communicator, Pace, in_process};
 use crate::simulation::{
-    BalanceMode, BalanceOptions, HaloOptions, Model, Options, RunState, Setup, Simulation, SimulationError,
+    BalanceMode, BalanceOptions, BalanceRecord, HaloOptions, Model, Observer, Options, RunState, Setup, Simulation,
+    SimulationError,
 };
 
 use super::stopwatch::{Event, Lap, Stopwatch, laps};
@@ -107,8 +108,19 @@ pub fn emulate(
 /// What a rank has seen.
 struct Seen {
     events: Vec<Event>,
-    balance: Vec<crate::simulation::BalanceRecord>,
+    balance: Vec<BalanceRecord>,
     passes: f64,
+}
+
+/// What the ranks had to do in each interval.
+#[derive(Default)]
+struct Records(Vec<BalanceRecord>);
+
+impl Observer for Records {
+    fn balance(&mut self, record: &BalanceRecord) -> Result<(), SimulationError> {
+        self.0.push(record.clone());
+        Ok(())
+    }
 }
 
 fn one(
@@ -120,24 +132,25 @@ fn one(
     intervals: usize,
 ) -> Result<Seen, SimulationError> {
     let watch = Stopwatch::new(comm);
+    let mut records = Records::default();
     let outcome = {
         let mut simulation = match state.run {
             Some(run) => Simulation::resume(state.model, device, setup, &watch, options, run)?,
             None => Simulation::among(state.model, device, setup, &watch, options)?,
         };
-        simulation.begin(&mut ())?;
+        simulation.begin(&mut records)?;
         for _ in 0..intervals {
             watch.mark();
-            if !simulation.advance(&mut ())? {
+            if !simulation.advance(&mut records)? {
                 break;
             }
         }
         // What follows is no interval's.
         watch.mark();
-        simulation.finish(&mut ())?
+        simulation.finish(&mut records)?
     };
     let passes = outcome.phases.rows.iter().map(|(_, _, count)| count).sum::<u64>() as f64;
-    Ok(Seen { events: watch.events(), balance: outcome.balance, passes: passes / outcome.steps.max(1) as f64 })
+    Ok(Seen { events: watch.events(), balance: records.0, passes: passes / outcome.steps.max(1) as f64 })
 }
 
 /// `None` if no interval was as it should be.

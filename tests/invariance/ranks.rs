@@ -66,7 +66,7 @@ fn all_ways() -> Vec<Way> {
 }
 
 fn rebalanced(run: &Run) -> usize {
-    run.outcome.balance.iter().filter(|record| record.rebalanced.is_some()).count()
+    run.outcome.rebalances
 }
 
 /// Inflow, two gases, two chambers, an inner box with a hole, and steps that change.
