@@ -58,7 +58,9 @@ pub fn report(error: &CliError) -> String {
         }
     }
     let handler = MietteHandlerOpts::new().color(false).without_cause_chain().terminal_links(false).wrap_lines(false);
-    Shown(handler.build(), error).to_string()
+    let shown = Shown(handler.build(), error).to_string();
+    // Without what marks it as an error: it follows the name of who has it.
+    shown.trim().trim_start_matches("× ").to_owned()
 }
 
 /// Prints an error with its place in the scene file and its remedy.
