@@ -28,8 +28,8 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var place: vec4<u32>;
     var motion: vec4<f32>;
     if (COLLISIONS) {
-        // A slot behind the last particle (on a device alone only after others have left), or a ghost.
-        var nobody = VENTS && s >= cell_start[step.bins];
+        // A slot behind the last particle, or a ghost.
+        var nobody = s >= cell_start[step.bins];
         if (step.peers > 0u) {
             nobody = (layers[s] & LAYER) != 0u;
         }
