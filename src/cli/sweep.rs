@@ -11,14 +11,14 @@ use crate::output::{
     OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, Timing, grouped,
 };
 use crate::scene::{Method, Scene, to_toml};
-use crate::simulation::{BalanceOptions, SimulationError};
+use crate::simulation::{BalanceOptions, Ghosts, HaloOptions, SimulationError};
 use crate::study::launched::{Case, Measured, Program, Start, compare, take_turns, together};
 use crate::study::report;
 use crate::study::state::{Moment, weights};
 use crate::study::{Strategy, StudyError};
 
 use super::CliError;
-use super::arguments::{Balance, BalanceBy, GhostsThatChoose, SweepArguments};
+use super::arguments::{Balance, BalanceBy, SweepArguments};
 use super::settings::{model_of, scene_of};
 use super::terminal::say;
 use emulated::{EMULATED_STEPS, Emulation};
@@ -197,11 +197,13 @@ impl SweepPlan {
         let mut words = vec![("--balance-by", by.to_owned())];
         words.extend(tuning.balance_every.map(|steps| ("--balance-every", steps.to_string())));
         words.extend(tuning.balance_threshold.map(|ratio| ("--balance-threshold", ratio.to_string())));
-        words.extend(tuning.halo_rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
-        words.extend(tuning.ghosts.map(|ghosts| {
+        // Runs that are set beside an emulation have its halo.
+        let halo = if self.raw.emulation.emulate { emulated::halo(tuning) } else { HaloOptions::from(tuning) };
+        words.extend(halo.rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
+        words.extend(halo.ghosts.map(|ghosts| {
             let word = match ghosts {
-                GhostsThatChoose::Asked => "asked",
-                GhostsThatChoose::All => "all",
+                Ghosts::Asked => "asked",
+                Ghosts::All => "all",
             };
             ("--ghosts", word.to_owned())
         }));

@@ -26,10 +26,13 @@ pub fn start(verbosity: Verbosity) {
         .with_target(false)
         .without_time()
         .init();
-    // An error's own text names its causes. The hook can only be set already by an embedding program.
-    let _ = miette::set_hook(Box::new(move |_| {
-        Box::new(MietteHandlerOpts::new().color(colour).without_cause_chain().terminal_links(false).build())
-    }));
+    // The hook can only be set already by an embedding program.
+    let _ = miette::set_hook(Box::new(move |_| Box::new(handler().color(colour).build())));
+}
+
+/// An error's own text names its causes.
+fn handler() -> MietteHandlerOpts {
+    MietteHandlerOpts::new().without_cause_chain().terminal_links(false)
 }
 
 /// <https://no-color.org>
@@ -57,8 +60,7 @@ pub fn report(error: &CliError) -> String {
             self.0.debug(self.1, to)
         }
     }
-    let handler = MietteHandlerOpts::new().color(false).without_cause_chain().terminal_links(false).wrap_lines(false);
-    let shown = Shown(handler.build(), error).to_string();
+    let shown = Shown(handler().color(false).wrap_lines(false).build(), error).to_string();
     // Without what marks it as an error: it follows the name of who has it.
     shown.trim().trim_start_matches("× ").to_owned()
 }

@@ -24,7 +24,7 @@ const PROFILE: f64 = 0.024;
 /// Of the pressure behind a shock that is a few mean free paths wide, and of its excess.
 const ON_PISTON: [f64; 2] = [0.05, 0.2];
 /// Intervals of a hole's run at least: its flow is the slope over the rows behind the first two.
-const ROWS: u32 = 24;
+const INTERVALS: u32 = 24;
 /// Occupancies of holes' runs, the second of rigid spheres.
 const USUAL: f64 = 0.12;
 const THIN: f64 = 0.03;
@@ -53,8 +53,8 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
     }
     let mut model = model_from("orifice", scene)?;
     // A row is of whole intervals: of long steps there are few.
-    let intervals = (model.plan.estimated_steps / f64::from(ROWS)) as u32;
-    model.plan.steps_per_interval = intervals.clamp(1, model.plan.steps_per_interval);
+    let steps = (model.plan.estimated_steps / f64::from(INTERVALS)) as u32;
+    model.plan.steps_per_interval = steps.clamp(1, model.plan.steps_per_interval);
     model.plan.tally_every = model.plan.tally_every.min(model.plan.steps_per_interval);
     let run = run(device, &model, Options::default())?;
     let (found, error) = discharge_of(&run.rows);
