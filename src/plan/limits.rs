@@ -123,7 +123,7 @@ pub const LIMITS: &[Limit] = &[
         "rigid spheres press harder than a gas, and flow faster",
     ),
     limit_of(Quantity::Knudsen, None, AtMost(0.1), "its flow is off by 7 % or more"),
-    // Measured at the occupancy of plans: 21 % too little at .1, 41 % at .3; taken as proportional below.
+    // Measured at the occupancy of plans: 20 % too little at .1, 37 % at .3; taken as proportional below.
     limit_of(Quantity::Knudsen, Some(Method::Cell), AtMost(0.03), "its flow is off by 7 % or more"),
     // Measured at f = .03: 24 % too much at .1, where the others hold. What rigid spheres press harder drives the flow; no
     // Knudsen number mends it.
