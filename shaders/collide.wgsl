@@ -1,10 +1,10 @@
-//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 // The collisions of the method `cell`, in cells that no wall parts.
 //
 // Reads `cell_start`, `cell_volume`, `newborns`, `motions`; reads and writes `sorted`, appends the cells that walls part
 // to `parted`, those that moving walls may touch to `moved`, and among other devices leaves the number of a cell's candidates with its first particle, in
-// `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids.
-// Collisions are at the start of the step, where positions hold and no particle has met a wall.
+// `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids, in which up to
+// MEMBERS need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
 
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(51) var<storage, read_write> parted: array<u32>;
@@ -12,22 +12,126 @@
 
 var<workgroup> collisions: atomic<u32>;
 
+// The numbers of a cell's particles by their ids, the first eight and the others; not if they lie in order.
+var<private> by_id: vec2<u32>;
+var<private> crowded: bool;
+
 fn member(begin: u32, k: u32, part: u32) -> u32 {
-    return begin + k;
+    let number = extractBits(select(by_id.y, by_id.x, k < 8u), NUMBER_BITS * (k & 7u), NUMBER_BITS);
+    return begin + select(number, k, crowded);
+}
+
+// The id, and below it the number.
+fn key(begin: u32, count: u32, k: u32) -> u32 {
+    var found = NOBODY;
+    if (k < count) {
+        found = (sorted[begin + k].place.w << NUMBER_BITS) | k;
+    }
+    return found;
+}
+
+fn exchange(a: ptr<function, u32>, b: ptr<function, u32>) {
+    let lower = min(*a, *b);
+    *b = max(*a, *b);
+    *a = lower;
+}
+
+fn numbers(keys: vec4<u32>) -> u32 {
+    let number = extractBits(keys, 0u, NUMBER_BITS);
+    return dot(number, vec4<u32>(1u, 1u << NUMBER_BITS, 1u << (2u * NUMBER_BITS), 1u << (3u * NUMBER_BITS)));
+}
+
+// Finds the order by id of up to MEMBERS particles: a network of exchanges (Batcher, 1968), so that no thread waits for another.
+fn put_in_order(begin: u32, count: u32) {
+    var key0 = key(begin, count, 0u);
+    var key1 = key(begin, count, 1u);
+    var key2 = key(begin, count, 2u);
+    var key3 = key(begin, count, 3u);
+    var key4 = key(begin, count, 4u);
+    var key5 = key(begin, count, 5u);
+    var key6 = key(begin, count, 6u);
+    var key7 = key(begin, count, 7u);
+    var key8 = key(begin, count, 8u);
+    var key9 = key(begin, count, 9u);
+    var key10 = key(begin, count, 10u);
+    var key11 = key(begin, count, 11u);
+    exchange(&key0, &key8); exchange(&key1, &key9); exchange(&key2, &key10); exchange(&key3, &key11);
+    exchange(&key0, &key4); exchange(&key1, &key5); exchange(&key2, &key6); exchange(&key3, &key7);
+    exchange(&key4, &key8); exchange(&key5, &key9); exchange(&key6, &key10); exchange(&key7, &key11);
+    exchange(&key0, &key2); exchange(&key1, &key3); exchange(&key4, &key6); exchange(&key5, &key7);
+    exchange(&key8, &key10); exchange(&key9, &key11);
+    exchange(&key2, &key8); exchange(&key3, &key9);
+    exchange(&key2, &key4); exchange(&key3, &key5); exchange(&key6, &key8); exchange(&key7, &key9);
+    exchange(&key0, &key1); exchange(&key2, &key3); exchange(&key4, &key5); exchange(&key6, &key7);
+    exchange(&key8, &key9); exchange(&key10, &key11);
+    exchange(&key1, &key8); exchange(&key3, &key10);
+    exchange(&key1, &key4); exchange(&key3, &key6); exchange(&key5, &key8); exchange(&key7, &key10);
+    exchange(&key1, &key2); exchange(&key3, &key4); exchange(&key5, &key6); exchange(&key7, &key8);
+    exchange(&key9, &key10);
+    let third = numbers(vec4<u32>(key8, key9, key10, key11));
+    let second = numbers(vec4<u32>(key4, key5, key6, key7));
+    let first = numbers(vec4<u32>(key0, key1, key2, key3));
+    by_id = vec2<u32>(first | (second << (4u * NUMBER_BITS)), third);
+}
+
+// Zero behind the last.
+fn velocity(begin: u32, count: u32, k: u32) -> vec3<f32> {
+    var found = vec3<f32>(0.0);
+    if (k < count) {
+        found = sorted[member(begin, k, 0u)].motion.xyz;
+    }
+    return found;
+}
+
+fn away2(velocity: vec3<f32>, mean: vec3<f32>, there: bool) -> f32 {
+    let away = velocity - mean;
+    return select(0.0, dot(away, away), there);
+}
+
+// As `bulk_of`, of up to MEMBERS particles, each read once.
+fn bulk_of_few(begin: u32, count: u32) -> Bulk {
+    let v0 = velocity(begin, count, 0u);
+    let v1 = velocity(begin, count, 1u);
+    let v2 = velocity(begin, count, 2u);
+    let v3 = velocity(begin, count, 3u);
+    let v4 = velocity(begin, count, 4u);
+    let v5 = velocity(begin, count, 5u);
+    let v6 = velocity(begin, count, 6u);
+    let v7 = velocity(begin, count, 7u);
+    let v8 = velocity(begin, count, 8u);
+    let v9 = velocity(begin, count, 9u);
+    let v10 = velocity(begin, count, 10u);
+    let v11 = velocity(begin, count, 11u);
+    var bulk = Bulk(vec3<f32>(0.0), 0.0);
+    bulk.mean += v0;
+    bulk.mean += v1;
+    bulk.mean += v2;
+    bulk.mean += v3;
+    bulk.mean += v4;
+    bulk.mean += v5;
+    bulk.mean += v6;
+    bulk.mean += v7;
+    bulk.mean += v8;
+    bulk.mean += v9;
+    bulk.mean += v10;
+    bulk.mean += v11;
+    bulk.mean /= f32(count);
+    bulk.farthest2 = max(bulk.farthest2, away2(v0, bulk.mean, 0u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v1, bulk.mean, 1u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v2, bulk.mean, 2u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v3, bulk.mean, 3u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v4, bulk.mean, 4u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v5, bulk.mean, 5u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v6, bulk.mean, 6u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v7, bulk.mean, 7u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v8, bulk.mean, 8u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v9, bulk.mean, 9u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v10, bulk.mean, 10u < count));
+    bulk.farthest2 = max(bulk.farthest2, away2(v11, bulk.mean, 11u < count));
+    return bulk;
 }
 
 fn hidden(s: u32, t: u32) -> bool {
-    return false;
-}
-
-fn moves(c: vec3<u32>) -> bool {
-    if (MOVING) {
-        for (var m = 0u; m < MOTIONS; m++) {
-            if (in_motion(c, motion_of(m))) {
-                return true;
-            }
-        }
-    }
     return false;
 }
 
@@ -58,16 +162,31 @@ fn collide(
             let place = cell_of(bin);
             let cell = cell_index(place);
             let entry = cell_volume[cell];
-            let end = last_of(begin, bin_end);
-            if (moves(place)) {
+            if (in_any_motion(place)) {
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;
-            } else if (end > begin + 1u) {
-                let done = collide_members(begin, end - begin, bitcast<f32>(entry), cell, 0u);
-                candidates = done.candidates;
-                if (done.collisions > 0u) {
-                    atomicAdd(&collisions, done.collisions);
+            } else {
+                var count = bin_end - begin;
+                crowded = count > MEMBERS;
+                if (!crowded) {
+                    put_in_order(begin, count);
+                }
+                while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+                    count--;
+                }
+                if (count > 1u) {
+                    var bulk: Bulk;
+                    if (crowded) {
+                        bulk = bulk_of(begin, count, 0u);
+                    } else {
+                        bulk = bulk_of_few(begin, count);
+                    }
+                    let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
+                    candidates = done.candidates;
+                    if (done.collisions > 0u) {
+                        atomicAdd(&collisions, done.collisions);
+                    }
                 }
             }
         }

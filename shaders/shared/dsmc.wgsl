@@ -24,16 +24,9 @@ override ORIFICES: bool = true;
 // More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
 const MOST_CANDIDATES: f32 = 65536.0;
 
-// The particles begin .. end of a bin that can collide: those that enter in this step cannot yet. They have the
-// highest ids and so come last.
-fn last_of(begin: u32, bin_end: u32) -> u32 {
-    var end = bin_end;
-    if (ORIFICES) {
-        while (end > begin && id_of(sorted[end - 1u].place.w) - step.newborn_first_id < step.newborns) {
-            end--;
-        }
-    }
-    return end;
+// Those that enter in a step cannot collide yet. They have the highest ids.
+fn is_newborn(id: u32) -> bool {
+    return ORIFICES && id - step.newborn_first_id < step.newborns;
 }
 
 fn at_most(wanted: f32) -> u32 {
@@ -54,26 +47,36 @@ fn direction(word: u32, word2: u32) -> vec3<f32> {
     return d / length(d);
 }
 
+// The mean velocity of a part's members, and the square of the largest difference from it.
+struct Bulk {
+    mean: vec3<f32>,
+    farthest2: f32,
+}
+
+fn bulk_of(begin: u32, count: u32, part: u32) -> Bulk {
+    var bulk = Bulk(vec3<f32>(0.0), 0.0);
+    for (var k = 0u; k < count; k++) {
+        bulk.mean += sorted[member(begin, k, part)].motion.xyz;
+    }
+    bulk.mean /= f32(count);
+    for (var k = 0u; k < count; k++) {
+        let away = sorted[member(begin, k, part)].motion.xyz - bulk.mean;
+        bulk.farthest2 = max(bulk.farthest2, dot(away, away));
+    }
+    return bulk;
+}
+
 struct Collided {
     candidates: u32,
     collisions: u32,
 }
 
 // The collisions of the `count` members, two at least, of a part of this volume, m3, from `begin` on.
-fn collide_members(begin: u32, count: u32, volume: f32, cell: u32, part: u32) -> Collided {
+fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, part: u32) -> Collided {
     let key = vec2<u32>(SEED_LOW, CELL_SEED_HIGH);
-    var mean = vec3<f32>(0.0);
-    for (var k = 0u; k < count; k++) {
-        mean += sorted[member(begin, k, part)].motion.xyz;
-    }
-    mean /= f32(count);
-    var farthest = 0.0;
-    for (var k = 0u; k < count; k++) {
-        let away = sorted[member(begin, k, part)].motion.xyz - mean;
-        farthest = max(farthest, dot(away, away));
-    }
+    let mean = bulk.mean;
     // (A little more than the bound, for its rounding.)
-    var bound = 2.000002 * sqrt(farthest);
+    var bound = 2.000002 * sqrt(bulk.farthest2);
     let pairs = 0.5 * f32(count) * f32(count - 1u);
     let first = philox(vec4<u32>(step.index, cell, 0u, part), key);
     var candidates = at_most(pairs * (CROSS_SECTION * bound * step.dt / volume) + unit_interval(first.x));

@@ -31,3 +31,14 @@ fn motion_of(m: u32) -> Motion {
 fn in_motion(c: vec3<u32>, motion: Motion) -> bool {
     return all(c >= motion.low) && all(c <= motion.high);
 }
+
+fn in_any_motion(c: vec3<u32>) -> bool {
+    if (MOVING) {
+        for (var m = 0u; m < MOTIONS; m++) {
+            if (in_motion(c, motion_of(m))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}

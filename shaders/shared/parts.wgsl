@@ -7,6 +7,15 @@
 
 const PART_SHIFT: u32 = 16;
 
+// The particles begin .. end of a bin, by id, that can collide.
+fn last_of(begin: u32, bin_end: u32) -> u32 {
+    var end = bin_end;
+    while (end > begin && is_newborn(id_of(sorted[end - 1u].place.w))) {
+        end--;
+    }
+    return end;
+}
+
 fn put_in_part(s: u32, part: u32) {
     layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
 }
@@ -36,7 +45,7 @@ fn collide_part(begin: u32, end: u32, volume: f32, cell: u32, part: u32) -> u32 
     if (count < 2u) {
         return 0u;
     }
-    let done = collide_members(begin, count, volume, cell, part);
+    let done = collide_members(begin, count, bulk_of(begin, count, part), volume, cell, part);
     if (done.collisions > 0u) {
         count_collisions(done.collisions);
     }

@@ -273,7 +273,7 @@ pub struct ParticleBuffers {
     /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, to screen the lists in its second half; afterwards
     /// the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// One after the other `crowded` or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub flights: wgpu::Buffer,
@@ -422,7 +422,7 @@ impl<'a> Buffers<'a> {
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "choices") => &particle.bins,
             (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
-            (_, "near_walls" | "rechoose" | "bouncing") => &particle.rare,
+            (_, "crowded" | "near_walls" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,

@@ -150,6 +150,7 @@ pub fn constants(
         ("CELL_POINTS", CELL_POINTS as f64),
         ("GENERATOR_Y", CELL_GENERATOR[1] as f64),
         ("GENERATOR_Z", CELL_GENERATOR[2] as f64),
+        ("PARTED_GAS", flag(features.parted)),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
         ("MOST_BOUNCES", MOST_BOUNCES),

@@ -79,6 +79,7 @@ impl StepSlot {
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
 const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
+const LIST_CROWDED: u32 = 2;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
@@ -334,18 +335,19 @@ impl Subdomain {
     }
 
     pub fn sort(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(kernels) = &self.kernels.sort {
-            let device = rec.device();
-            let offset = self.offset(device, step, 0);
-            let slots = u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals);
-            let pass = rec.phase("sort");
-            kernels.scatter.dispatch(pass, offset, threads(device, slots));
-            kernels.order.dispatch(pass, offset, threads(device, slots));
-        }
+        let device = rec.device();
+        let offset = self.offset(device, step, 0);
+        let slots = threads(device, u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals));
         if let Some(kernels) = &self.kernels.collisions {
-            let offset = self.offset(rec.device(), step, 0);
             let pass = rec.phase("sort");
+            kernels.scatter.dispatch(pass, offset, slots);
+            kernels.order.dispatch(pass, offset, slots);
             kernels.wall_times.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_NEAR_WALLS);
+        }
+        if let Some(kernels) = &self.kernels.cells {
+            let pass = rec.phase("sort");
+            kernels.arrange.dispatch(pass, offset, slots);
+            kernels.arrange_crowded.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_CROWDED);
         }
     }
 

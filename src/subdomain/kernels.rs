@@ -25,12 +25,12 @@ pub struct SortKernels<K> {
     pub scan_sums: K,
     pub scan_chunks: K,
     pub scan_cells: K,
-    pub scatter: K,
-    pub order: K,
 }
 
 /// Collisions of neighbours, in rounds.
 pub struct CollisionKernels<K> {
+    pub scatter: K,
+    pub order: K,
     pub wall_times: K,
     pub neighbours: K,
     /// On a device among others.
@@ -49,6 +49,8 @@ pub struct CollisionKernels<K> {
 
 /// Collisions within cells.
 pub struct CellKernels<K> {
+    pub arrange: K,
+    pub arrange_crowded: K,
     pub collide: K,
     /// Of a scene whose walls part the gas of a cell.
     pub parted: Option<K>,
@@ -80,14 +82,14 @@ impl<K> Kernels<K> {
                 scan_sums: make("scan_sums")?,
                 scan_chunks: make("scan_chunks")?,
                 scan_cells: make("scan_cells")?,
-                scatter: make("scatter")?,
-                order: make("order")?,
             })
         } else {
             None
         };
         let cells = if features.collisions && !features.rounds {
             Some(CellKernels {
+                arrange: make("arrange")?,
+                arrange_crowded: make("arrange_crowded")?,
                 collide: make("collide")?,
                 parted: if features.parted { Some(make("collide_parted")?) } else { None },
                 moved: if features.moving { Some(make("collide_moved")?) } else { None },
@@ -97,6 +99,8 @@ impl<K> Kernels<K> {
         };
         let collisions = if features.rounds {
             Some(CollisionKernels {
+                scatter: make("scatter")?,
+                order: make("order")?,
                 wall_times: make("wall_times")?,
                 neighbours: make("neighbours")?,
                 neighbours_asked: if features.halo { Some(make("neighbours_asked")?) } else { None },

@@ -193,6 +193,37 @@ fn workgroups_that_change_places_reach_every_cell_once() {
     assert!(after(&whole) != cloud.particles[..alike]);
 }
 
+/// Cells in which few lie are worked on by id, in whatever order these lie: up to 12, and no more.
+#[test]
+fn the_order_in_which_few_lie_changes_no_bit() {
+    const MEMBERS: usize = 12;
+    let cloud = Cloud::of(65, &[tank([0.06, 0.07, 0.08])], 2600);
+    let shuffled = |most: usize| {
+        let mut stream = Stream::new(66);
+        let mut other = cloud.particles.clone();
+        for cell in (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell)).filter(|cell| cell.len() <= most) {
+            stream.shuffle(&mut other[cell]);
+        }
+        Cloud { particles: other, ..Cloud::of(65, &[tank([0.06, 0.07, 0.08])], 2600) }
+    };
+    let by_id = |cloud: &Cloud| {
+        let limit = 2000;
+        let rig = cloud.run(GpuStep { newborn_first_id: limit, newborns: 2000, ..GpuStep::default() }, 2);
+        let mut after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
+        after.sort_by_key(GpuParticle::id);
+        (after, rig.counter(32))
+    };
+    let sizes: Vec<usize> = (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell).len()).collect();
+    for size in 0..=MEMBERS + 1 {
+        assert!(sizes.contains(&size), "no cell of {size}");
+    }
+    let (few, found) = (shuffled(MEMBERS), by_id(&cloud));
+    assert!(few.particles != cloud.particles && found.1 > 100);
+    assert!(by_id(&few) == found);
+    // The check can fail: those of more are taken as they lie.
+    assert!(by_id(&shuffled(MEMBERS + 1)) != found);
+}
+
 /// Those that enter in this step do not collide, and others are not slower for it: a cell of theirs alone stays as it is.
 #[test]
 fn newborns_do_not_collide_yet() {

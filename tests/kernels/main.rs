@@ -37,6 +37,8 @@ mod weigh;
 fn every_kernel_has_its_test() {
     let tested = [
         "advect",
+        "arrange",
+        "arrange_crowded",
         "bin",
         "blocks",
         "bounce",

@@ -1,6 +1,7 @@
-//! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly.
+//! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly; `arrange` and `arrange_crowded`: by cell, and by id where
+//! `collide` wants it.
 
-use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep};
+use corpuscle::subdomain::{GpuFlight, GpuMotion, GpuNewborn, GpuParticle, GpuStep, MOTION_ENTRIES};
 
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
@@ -187,6 +188,100 @@ fn order_is_canonical() {
         // The check can fail: the particles came in another order.
         assert_ne!(particles, expected);
     }
+}
+
+/// Particles of the method `cell` come into the places of their cells: as their slots say, but by id in cells of more than
+/// `collide` puts in order by itself, in those that walls part and in those that walls may touch which move. Among others their cells are noted.
+#[test]
+fn particles_of_cells_are_arranged() {
+    const MEMBERS: u32 = 12;
+    const PARTED: u32 = 1 << 31;
+    let Sorted { world, particles, mut cell, .. } = sorted(12);
+    let cells = world.cells();
+    let mut stream = Stream::new(13);
+    // One cell has just as many as `collide` takes, another one more, others many more: all in the middle of the grid.
+    let middle = [3, 4, 4];
+    let crowds = [(MEMBERS, [0, 0, 0]), (MEMBERS + 1, [1, 0, 0]), (40, [0, 1, 0]), (3 * MEMBERS, [1, 1, 0])];
+    let mut next = 0;
+    for &(count, off) in &crowds {
+        let there = cells.index([0, 1, 2].map(|k| middle[k] + off[k]));
+        for at in cell.iter_mut() {
+            if *at == there {
+                *at = cells.index([1, 1, 1]);
+            }
+        }
+        cell[next..next + count as usize].fill(there);
+        next += count as usize;
+    }
+    let parted = cells.index([2, 3, 4]);
+    let (low, high) = ([5, 2, 2], [6, 3, 2]);
+    let moved = |of: u32| {
+        let [nx, ny, _] = world.grid.cells;
+        let at = [of % nx, of / nx % ny, of / (nx * ny)];
+        (0..3).all(|k| (low[k]..=high[k]).contains(&at[k]))
+    };
+    let mut start = vec![0u32; cells.count() + 1];
+    for &c in &cell {
+        start[c as usize + 1..].iter_mut().for_each(|later| *later += 1);
+    }
+    let mut arrival: Vec<usize> = (0..COUNT).collect();
+    stream.shuffle(&mut arrival);
+    let mut filled = start.clone();
+    let mut bins = vec![[0u32; 2]; COUNT];
+    let mut by_slot = vec![GpuParticle::default(); COUNT];
+    for &k in &arrival {
+        let place = filled[cell[k] as usize];
+        filled[cell[k] as usize] += 1;
+        bins[k] = [cell[k], place - start[cell[k] as usize]];
+        by_slot[place as usize] = particles[k];
+    }
+    for (walls, peers) in [(false, 0), (true, 1)] {
+        let ordered = |c: u32| {
+            let crowded = start[c as usize + 1] - start[c as usize] > MEMBERS;
+            crowded || walls && (c == parted || moved(c))
+        };
+        let mut expected = by_slot.clone();
+        for c in (0..cells.count() as u32).filter(|&c| ordered(c)) {
+            expected[start[c as usize] as usize..start[c as usize + 1] as usize].sort_by_key(GpuParticle::id);
+        }
+        let mut volume = vec![1e-9f32.to_bits(); cells.count()];
+        volume[parted as usize] = PARTED | 2 << 24;
+        let mut rig = Rig::new(&world);
+        rig.put("particles", &particles);
+        rig.put("bins", &bins);
+        rig.put("cell_start", &start);
+        rig.put("cell_volume", &volume);
+        rig.put("slots", &vec![NOBODY; COUNT]);
+        rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
+        for buffer in ["crowded", "cells", "layers"] {
+            rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
+        }
+        rig.constant("PARTED_GAS", f64::from(u8::from(walls)));
+        if walls {
+            let mut table = [GpuMotion::default(); MOTION_ENTRIES];
+            table[0] = GpuMotion { low, high, ..GpuMotion::default() };
+            rig.uniform("motions", &table);
+            rig.constant("MOVING", 1.0);
+            rig.constant("MOTIONS", 1.0);
+        }
+        rig.step(GpuStep { total: (COUNT + EMPTY) as u32, peers, ..step() });
+        rig.run("arrange", COUNT + EMPTY);
+        let of_ordered: Vec<u32> = (0..COUNT as u32).filter(|&k| ordered(cell[k as usize])).collect();
+        assert_eq!(rig.list("crowded", LIST_CROWDED), of_ordered);
+        rig.run("arrange_crowded", of_ordered.len());
+        assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "walls {walls}");
+        // The check can fail: by their slots they are not in order.
+        assert_ne!(by_slot, expected);
+        let mut noted = vec![9; COUNT + EMPTY];
+        let mut layers = noted.clone();
+        if peers > 0 {
+            cell.iter().zip(&bins).for_each(|(&c, bin)| noted[(start[c as usize] + bin[1]) as usize] = c);
+            layers[..COUNT].fill(0);
+            layers[COUNT..].fill(LAYER);
+        }
+        assert_eq!((rig.get::<u32>("cells", COUNT + EMPTY), rig.get::<u32>("layers", COUNT + EMPTY)), (noted, layers));
+    }
+    assert!((0..COUNT).any(|k| cell[k] == parted) && (0..COUNT).any(|k| moved(cell[k])));
 }
 
 /// Only walls that can part two points of the gas have neighbours screened; the surface of a convex cavity

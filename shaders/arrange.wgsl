@@ -1,0 +1,53 @@
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl cell_gas.wgsl members.wgsl lay.wgsl
+// Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
+// order by itself.
+//
+// Reads `bins`, `cell_start`, `particles`, `cell_volume` and `motions`; writes `sorted` (lay.wgsl), for the others `slots`, and
+// appends these to `crowded`. One thread per particle as they lie in `particles`.
+
+@group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(9) var<storage, read_write> slots: array<u32>;
+@group(0) @binding(25) var<storage, read_write> crowded: array<u32>;
+
+// Walls part the gas of some cell.
+override PARTED_GAS: bool = true;
+
+// Whether other kernels work on a cell as well, which want its particles in order.
+fn parted_or_moved(cell: u32) -> bool {
+    var found = false;
+    if (PARTED_GAS || MOVING) {
+        let place = cell_of(cell);
+        found = in_any_motion(place);
+        if (PARTED_GAS) {
+            found |= (cell_volume[cell_index(place)] & PARTED) != 0u;
+        }
+    }
+    return found;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn arrange(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear(id, groups);
+    if (step.peers > 0u) {
+        // Places behind the last particle: particles have been dropped that are nowhere near this device.
+        if (i >= cell_start[step.bins] && i < step.total) {
+            layers[i] = LAYER;
+        }
+    }
+    if (i >= step.count + step.newborns + step.arrivals) {
+        return;
+    }
+    let bin = bins[i];
+    if (bin.x == NOBODY) {
+        return;
+    }
+    let begin = cell_start[bin.x];
+    let place = begin + bin.y;
+    if (cell_start[bin.x + 1u] - begin > MEMBERS || parted_or_moved(bin.x)) {
+        slots[place] = id_of(particles[i].place.w);
+        crowded[append(LIST_CROWDED)] = i;
+        return;
+    }
+    lay(i, place, bin.x);
+}
