@@ -294,11 +294,7 @@ impl Account {
     pub fn phases(&self) -> PhaseTable {
         let mut rows = self.counted.phases.clone();
         rows.sort_by_key(|(name, ..)| place(name));
-        PhaseTable {
-            rows,
-            steps: self.counted.steps,
-            particle_steps: self.counted.particle_steps,
-        }
+        PhaseTable { rows, steps: self.counted.steps, particle_steps: self.counted.particle_steps }
     }
 
     /// The account at the end; `outside` particles were found in no gas.

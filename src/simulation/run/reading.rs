@@ -88,6 +88,7 @@ impl Simulation<'_> {
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples();
         self.account.add(plan, &tallies, &interval, samples, &timed);
+        self.lists.add(&tallies.counters);
         let particle_steps = interval.particles * u64::from(interval.steps);
         let clipped = self.account.state().clipped();
         let shown = Shown {
