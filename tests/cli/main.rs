@@ -337,17 +337,16 @@ fn a_bench_measures_each_scene_and_method() {
         for (phase, method) in [("collide", "cell"), ("lost", "closest-approach"), ("remember", "closest-approach")] {
             assert_eq!(phases.iter().any(|own| own["phase"] == phase), run["method"] == method, "{phase}: {phases:?}");
         }
-        // Every phase is counted, and timed as often as it is in two intervals less the first.
+        // Every phase is counted, as often as it is in one interval.
         let counts = ["bytes", "floating_operations", "integer_operations", "share_of_copy", "share_of_arithmetic"];
         assert!(phases.iter().all(|phase| counts.iter().all(|&count| phase[count].is_number())), "{phases:#?}");
         for phase in phases {
-            let once = ["lost", "blocks", "remember"].iter().any(|&name| phase["phase"] == name);
-            let times = if once {
-                1
-            } else if phase["phase"] == "tally" {
-                4
-            } else {
-                32
+            let times = match phase["phase"].as_str().unwrap() {
+                "lost" | "blocks" | "remember" => 1,
+                "tally" => 4,
+                // In each of two rounds.
+                "choose" | "settle" => 64,
+                _ => 32,
             };
             assert_eq!(phase["dispatches"], times, "{phase:#?}");
         }
