@@ -5,7 +5,8 @@
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
-//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build.
+//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the commit of
+//! the working tree that is built, marked where its sources are others; not set where there is none, or no git.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -57,12 +58,31 @@ fn main() {
         let mut number = FNV_START;
         SOURCES.iter().try_for_each(|path| add_to(&mut number, Path::new(path)))?;
         println!("cargo::rustc-env=CORPUSCLE_SOURCE={number:016x}");
+        if let Some(commit) = commit() {
+            println!("cargo::rustc-env=CORPUSCLE_COMMIT={commit}");
+        }
         Ok(())
     });
     if let Err(message) = numbered {
         eprintln!("{message}");
         process::exit(1);
     }
+}
+
+/// What git says of this package's own working tree.
+fn commit() -> Option<String> {
+    let git = |arguments: &[&str]| {
+        let done = process::Command::new("git").args(arguments).output().ok().filter(|done| done.status.success())?;
+        Some(String::from_utf8(done.stdout).ok()?.trim().to_owned())
+    };
+    // The package may lie within another's working tree.
+    let root = fs::canonicalize(git(&["rev-parse", "--show-toplevel"])?).ok()?;
+    if root != fs::canonicalize(".").ok()? {
+        return None;
+    }
+    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
+    let changed = !git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?.is_empty();
+    Some(if changed { commit + "-changed" } else { commit })
 }
 
 /// Adds a file, or all files of a folder in the order of their names, to a hash (FNV-1a, 64 bits).

@@ -37,7 +37,8 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
                 match measure(&device, scene, method, particles, raw.steps) {
                     Ok(measured) => {
                         let table = report::table(&measured, &ceilings);
-                        say(&format!("\n{}\n{table}", report::line(&measured, &device)))?;
+                        let host = report::host_line(&measured, &device);
+                        say(&format!("\n{}\n{table}{host}\n", report::line(&measured, &device)))?;
                         all.push(measured);
                     }
                     Err(error) => {

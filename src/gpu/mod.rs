@@ -3,11 +3,13 @@
 mod buffer;
 mod device;
 mod kernel;
+mod operations;
 mod timer;
 
 pub use buffer::Readback;
 pub use device::{AdapterDescription, Device, adapters};
 pub use kernel::{Access, Binding, BoundKernel, Constants, KERNELS, Kernel, KernelSource, STEP_BYTES, fold};
+pub use operations::{Operations, Stretch};
 pub use timer::{PhaseTimer, Recording};
 
 /// Trouble with the device: exit code 3.

@@ -58,14 +58,18 @@ impl PhaseTimer {
 pub struct Recording<'a> {
     device: &'a Device,
     timer: Option<&'a PhaseTimer>,
+    /// The phase that is timed alone.
+    alone: Option<&'static str>,
     encoder: Option<wgpu::CommandEncoder>,
     pass: Option<wgpu::ComputePass<'static>>,
+    /// The phase whose pass is open, where it is timed.
+    open: Option<&'static str>,
     names: Vec<&'static str>,
 }
 
 impl<'a> Recording<'a> {
     pub fn new(device: &'a Device) -> Recording<'a> {
-        Recording { device, timer: None, encoder: None, pass: None, names: Vec::new() }
+        Recording { device, timer: None, alone: None, encoder: None, pass: None, open: None, names: Vec::new() }
     }
 
     pub fn device(&self) -> &'a Device {
@@ -76,6 +80,13 @@ impl<'a> Recording<'a> {
     pub fn time(&mut self, timer: Option<&'a PhaseTimer>) {
         self.pass = None;
         self.timer = timer;
+        self.alone = None;
+    }
+
+    /// Times of the phases from here on this one alone.
+    pub fn time_alone(&mut self, timer: Option<&'a PhaseTimer>, name: &'static str) {
+        self.time(timer);
+        self.alone = Some(name);
     }
 
     /// The names of the phases timed so far, in order.
@@ -86,22 +97,25 @@ impl<'a> Recording<'a> {
     /// The pass in which the dispatches of `name` go; a phase goes on until another is named.
     pub fn phase(&mut self, name: &'static str) -> &mut wgpu::ComputePass<'static> {
         let slot = self.names.len() as u32;
-        let goes_on = self.pass.is_some() && self.names.last() == Some(&name);
+        let timer = self.timer.filter(|_| slot < SLOTS && self.alone.is_none_or(|alone| alone == name));
+        let goes_on = self.open == Some(name) || (self.open.is_none() && timer.is_none());
+        if self.pass.is_none() || !goes_on {
+            self.pass = None;
+            self.open = timer.map(|_| name);
+        }
         let device = self.device;
         let encoder = self.encoder.get_or_insert_with(|| device.encoder());
-        if let Some(timer) = self.timer.filter(|_| slot < SLOTS && !goes_on) {
-            self.pass = None;
-            self.names.push(name);
-            let writes = wgpu::ComputePassTimestampWrites {
-                query_set: &timer.queries,
-                beginning_of_pass_write_index: Some(2 * slot),
-                end_of_pass_write_index: Some(2 * slot + 1),
-            };
-            let descriptor = wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes: Some(writes) };
-            self.pass = Some(encoder.begin_compute_pass(&descriptor).forget_lifetime());
-        }
         self.pass.get_or_insert_with(|| {
-            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()).forget_lifetime()
+            let timestamp_writes = timer.map(|timer| {
+                self.names.push(name);
+                wgpu::ComputePassTimestampWrites {
+                    query_set: &timer.queries,
+                    beginning_of_pass_write_index: Some(2 * slot),
+                    end_of_pass_write_index: Some(2 * slot + 1),
+                }
+            });
+            let descriptor = wgpu::ComputePassDescriptor { label: timer.map(|_| name), timestamp_writes };
+            encoder.begin_compute_pass(&descriptor).forget_lifetime()
         })
     }
 

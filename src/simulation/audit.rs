@@ -17,6 +17,7 @@ use super::conditions::Conditions;
 use super::interval::Interval;
 use super::model::Model;
 use super::run_state::StateError;
+use super::step::{once_an_interval, place};
 
 /// The same limit as that of the audit at the end.
 const ENERGY_ERROR: f64 = 1e-4;
@@ -254,12 +255,11 @@ impl Account {
         for (total, own) in self.counted.injected_momentum.iter_mut().zip(interval.momentum) {
             *total += own;
         }
-        // One step was timed, the last; a tally is in fewer steps than the rest, and what is known of blocks is summed after the
-        // last alone.
+        // One step was timed, the last; a tally is in fewer steps than the rest.
         for &(name, seconds) in timed {
             let share = match name {
                 "tally" => u64::from(samples),
-                "blocks" => 1,
+                name if once_an_interval(name) => 1,
                 _ => steps,
             };
             match self.counted.phases.iter_mut().find(|(known, ..)| known == name) {
@@ -292,11 +292,9 @@ impl Account {
     }
 
     pub fn phases(&self) -> PhaseTable {
-        PhaseTable {
-            rows: self.counted.phases.clone(),
-            steps: self.counted.steps,
-            particle_steps: self.counted.particle_steps,
-        }
+        let mut rows = self.counted.phases.clone();
+        rows.sort_by_key(|(name, ..)| place(name));
+        PhaseTable { rows, steps: self.counted.steps, particle_steps: self.counted.particle_steps }
     }
 
     /// The account at the end; `outside` particles were found in no gas.

@@ -12,7 +12,7 @@ use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tabl
 use super::SimulationError;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
-use super::step::{Sampling, step};
+use super::step::{LOST, Sampling, step};
 
 /// An interval as it was decided.
 pub struct Interval {
@@ -45,7 +45,7 @@ pub struct InFlight {
     pub interval: Interval,
     pub before: Remembered,
     pub tallies: Pending,
-    /// Phases of the timed step.
+    /// Phases that were timed: of the last step, and what is once an interval.
     pub phases: Vec<&'static str>,
     /// Particles on this rank, ghosts included, in the last step.
     pub present: u32,
@@ -208,7 +208,11 @@ impl Machine<'_, '_> {
         let mut present = 0;
         for (k, mut slot) in slots.into_iter().enumerate() {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k] };
-            rec.time(self.timer.filter(|_| k == last));
+            if k == last {
+                rec.time(self.timer);
+            } else {
+                rec.time_alone(self.timer.filter(|_| sampling.lost), LOST);
+            }
             self.subdomain.begin_step(device, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
             if k == last {
@@ -224,8 +228,6 @@ impl Machine<'_, '_> {
                 decomposition.apply(device, self.subdomain, self.exchange)?;
             }
         }
-        // Once an interval, and so no part of a mean step.
-        rec.time(None);
         self.subdomain.remember_end(&mut rec, &end);
         let phases = rec.timed().to_vec();
         let timed = self.timer.map(|timer| (timer, phases.len()));

@@ -48,6 +48,7 @@ pub use observer::{Continued, Moment, Observer, Options, Outcome};
 pub use reference::reference;
 pub use refine::{RefineError, RefineReport, Refined, refine};
 pub use run::Simulation;
+pub use run::meter::{Done, Lists};
 pub use run_state::{Asked, RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
 pub use setup::{Setup, Shuffle, initial_particles};

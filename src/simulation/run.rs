@@ -4,7 +4,7 @@
 //! host code on the inflow. Rank 0 tells the observer.
 
 mod handover;
-mod meter;
+pub mod meter;
 mod reading;
 mod snapshots;
 
@@ -35,6 +35,7 @@ use super::setup::Setup;
 use super::switch::Switching;
 use super::tuning::Tuner;
 
+use meter::Lists;
 use reading::all_tallies;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
@@ -98,6 +99,7 @@ pub struct Simulation<'a> {
     options: Options<'a>,
     /// The steps began.
     began: Instant,
+    lists: Lists,
 }
 
 impl<'a> Simulation<'a> {
@@ -181,6 +183,7 @@ impl<'a> Simulation<'a> {
             read_until: 0.0,
             repeated: 0,
             began: Instant::now(),
+            lists: Lists::default(),
             wish: Request::None,
             request: Request::None,
             stopping: false,

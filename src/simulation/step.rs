@@ -8,7 +8,38 @@ use super::SimulationError;
 use super::exchange::Exchange;
 
 /// The phases in which pairs are sought and collide.
-pub const PAIR_PHASES: [&str; 5] = ["neighbours", "collide", "choose", "settle", "lost"];
+pub const PAIR_PHASES: [&str; 4] = ["neighbours", "collide", "choose", "settle"];
+
+/// In the order of a step; `lost`, `blocks` and `remember` are once an interval.
+const PHASES: [&str; 15] = [
+    "inject",
+    "bin",
+    "exchange",
+    "scan",
+    "sort",
+    "neighbours",
+    "collide",
+    "update",
+    "choose",
+    "settle",
+    LOST,
+    "advect",
+    "tally",
+    "blocks",
+    "remember",
+];
+/// In the first step of an interval.
+pub const LOST: &str = "lost";
+
+/// Where in a step a phase is.
+pub fn place(phase: &str) -> usize {
+    PHASES.iter().position(|&known| known == phase).unwrap_or(PHASES.len())
+}
+
+/// Whether a phase is once an interval, and so no part of a mean step.
+pub fn once_an_interval(phase: &str) -> bool {
+    [LOST, "blocks", "remember"].contains(&phase)
+}
 
 /// What else a step does.
 #[derive(Debug, Clone, Copy, Default)]

@@ -7,6 +7,9 @@ pub const ALL_WORDS: usize = WORDS + 1;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
+/// The lists of those that choose, by round.
+const RECHOOSE: usize = 16;
+pub const MOST_ROUNDS: usize = 10;
 pub const BORDER: usize = 12;
 pub const CHANGED: usize = 13;
 pub const OUTBOX: usize = 14;
@@ -46,6 +49,8 @@ pub struct Counters {
     /// Of the last step: entries of all neighbour lists, and particles that may meet a wall.
     pub candidates: u32,
     pub near_walls: u32,
+    /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
+    pub choosers: [u32; MOST_ROUNDS],
 }
 
 impl Counters {
@@ -69,6 +74,7 @@ impl Counters {
             fast_pairs: words[49],
             candidates: words[47],
             near_walls: words[NEAR_WALLS],
+            choosers: std::array::from_fn(|round| words[RECHOOSE + round]),
         }
     }
 

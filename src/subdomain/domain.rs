@@ -32,6 +32,7 @@ pub struct DomainInput<'a> {
 pub struct Domain {
     pub(super) plan: Plan,
     pub(super) features: Features,
+    pub(super) constants: Vec<(&'static str, f64)>,
     pub(super) compiled: Compiled,
     pub(super) buffers: DomainBuffers,
     pub(super) words: TallyWords,
@@ -58,14 +59,12 @@ impl Domain {
             surfaces: input.patches.words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
+        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan));
         Ok(Domain {
             plan: plan.clone(),
             features,
-            compiled: Compiled::new(
-                device,
-                features,
-                &constants(plan, features, input.patches, input.walls, &Scales::new(plan)),
-            )?,
+            compiled: Compiled::new(device, features, &constants)?,
+            constants,
             buffers: DomainBuffers::new(
                 device,
                 input.walls,

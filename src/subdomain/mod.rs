@@ -23,7 +23,7 @@ mod walls;
 
 use std::sync::Arc;
 
-use crate::gpu::{BoundKernel, Device, GpuError, PhaseTimer, Readback, Recording};
+use crate::gpu::{BoundKernel, Constants, Device, GpuError, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 
 pub use buffers::{
@@ -31,7 +31,7 @@ pub use buffers::{
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, WORKGROUP, block_counts, constants};
-pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters};
+pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
 pub use domain::{Domain, DomainInput};
 pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
 pub use exchange::{Messages, Outgoing};
@@ -176,16 +176,24 @@ impl Subdomain {
         self.cell.bytes() + self.domain.buffers.cell_bytes() + lists
     }
 
-    /// Entries of a particle's neighbour list in the last step, on average; 0 of a method without.
+    /// What the kernels are specialised by.
+    pub fn constants(&self) -> &Constants {
+        &self.domain.constants
+    }
+
+    /// Of the neighbour lists of the last step: entries for each particle, and the share of the particles that have any; 0 of a
+    /// method without.
     ///
     /// # Errors
     /// If the device fails.
-    pub fn mean_candidates(&self, device: &Device) -> Result<f64, GpuError> {
+    pub fn mean_lists(&self, device: &Device) -> Result<[f64; 2], GpuError> {
         if !self.domain.features.rounds || self.count == 0 {
-            return Ok(0.0);
+            return Ok([0.0; 2]);
         }
         let lengths: Vec<u32> = device.read(&self.particle.neighbour_count, self.count as usize)?;
-        Ok(lengths.iter().map(|&length| f64::from(length)).sum::<f64>() / lengths.len() as f64)
+        let entries = lengths.iter().map(|&length| f64::from(length)).sum::<f64>();
+        let listed = lengths.iter().filter(|&&length| length > 0).count() as f64;
+        Ok([entries, listed].map(|sum| sum / lengths.len() as f64))
     }
 
     /// Other cells and peers, from the next step on, whose exchange moves the particles there.

@@ -309,17 +309,20 @@ fn a_bench_measures_each_scene_and_method() {
         "--steps",
         "32",
         "--methods",
-        "cell,none",
+        "closest-approach,cell,none",
         "--json",
         path,
     ]);
-    assert!(text.contains("GB/s") && text.contains("of the target"), "{text}");
+    for part in ["GB/s", "of the copy", "of the arithmetic", "of the target", "32 steps after 32"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    // The tests' device is the CPU.
+    assert!(text.contains("host: not measurable: the device is the CPU"), "{text}");
     // At the end a line for each run, whose last column is the ratio to its target.
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
-    let last = &lines[lines.len() - 4..];
-    for (line, (scene, method)) in
-        last.iter().zip([("box", "cell"), ("box", "none"), ("tank", "cell"), ("tank", "none")])
-    {
+    let methods = ["closest-approach", "cell", "none"];
+    let all: Vec<_> = ["box", "tank"].iter().flat_map(|&scene| methods.map(|method| (scene, method))).collect();
+    for (line, &(scene, method)) in lines[lines.len() - all.len()..].iter().zip(&all) {
         assert_eq!(line[..2], [scene, method], "{text}");
         let [rate, target, ratio]: [f64; 3] = std::array::from_fn(|k| line[line.len() - 3 + k].parse().unwrap());
         assert!(rate > 0.0 && (ratio - rate / target).abs() < 0.01 / target + 0.001, "{text}");
@@ -328,15 +331,33 @@ fn a_bench_measures_each_scene_and_method() {
     assert!(value["copy_bytes_per_second"].as_f64().unwrap() > 0.0);
     let runs = value["runs"].as_array().unwrap();
     let names: Vec<_> = runs.iter().map(|run| (run["scene"].as_str(), run["method"].as_str())).collect();
-    let both = |scene| [(Some(scene), Some("cell")), (Some(scene), Some("none"))];
-    assert_eq!(names, [both("box"), both("tank")].concat());
+    assert_eq!(names, all.iter().map(|&(scene, method)| (Some(scene), Some(method))).collect::<Vec<_>>());
     for run in runs {
         let phases = run["phases"].as_array().unwrap();
-        let collides = run["method"] == "cell";
-        assert_eq!(phases.iter().any(|phase| phase["phase"] == "collide"), collides);
-        // Every phase is counted.
-        assert!(phases.iter().all(|phase| phase["bytes"].is_number()), "{phases:?}");
+        for (phase, method) in [("collide", "cell"), ("lost", "closest-approach"), ("remember", "closest-approach")] {
+            assert_eq!(phases.iter().any(|own| own["phase"] == phase), run["method"] == method, "{phase}: {phases:?}");
+        }
+        // Every phase is counted, as often as it is in one interval.
+        let counts = ["bytes", "floating_operations", "integer_operations", "share_of_copy", "share_of_arithmetic"];
+        assert!(phases.iter().all(|phase| counts.iter().all(|&count| phase[count].is_number())), "{phases:#?}");
+        for phase in phases {
+            let times = match phase["phase"].as_str().unwrap() {
+                "lost" | "blocks" | "remember" => 1,
+                "tally" => 4,
+                // In each of two rounds.
+                "choose" | "settle" => 64,
+                _ => 32,
+            };
+            assert_eq!(phase["dispatches"], times, "{phase:#?}");
+        }
+        assert!(run["host_cores"].is_null() && run["steps"] == 32 && run["steps_before"] == 32, "{run:#?}");
     }
+    for (key, of_text) in
+        [("date", true), ("build", true), ("sources", true), ("version", true), ("cpu_threads", false)]
+    {
+        assert!(if of_text { value[key].is_string() } else { value[key].is_u64() }, "{key}");
+    }
+    assert!(value.get("cpu").is_some() && value.get("commit").is_some() && value.get("lp_num_threads").is_some());
     for (arguments, part) in [
         (&["bench", "--scene", "sphere"][..], "sphere"),
         (&["bench", "--methods", "control-volume"][..], "no steps of particles"),

@@ -10,7 +10,7 @@ use crate::simulation::interrupt::Request;
 use crate::simulation::interval::{InFlight, Interval, Pending};
 use crate::simulation::observer::Observer;
 use crate::simulation::run_state::Asked;
-use crate::simulation::step::PAIR_PHASES;
+use crate::simulation::step::{PAIR_PHASES, once_an_interval};
 use crate::subdomain::{Remembered, Tallies};
 
 use super::Simulation;
@@ -36,7 +36,8 @@ impl Simulation<'_> {
         let Some(timer) = &self.timer else {
             return (traffic.device_seconds / traffic.steps.max(1) as f64, None);
         };
-        let timed = timer.seconds(phases, stamps);
+        let mut timed = timer.seconds(phases, stamps);
+        timed.retain(|(phase, _)| !once_an_interval(phase));
         let pairs = timed.iter().filter(|(phase, _)| PAIR_PHASES.contains(phase)).map(|(_, seconds)| seconds).sum();
         (timed.iter().map(|(_, seconds)| seconds).sum(), Some(pairs))
     }
@@ -87,6 +88,7 @@ impl Simulation<'_> {
         let timed = self.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let samples = interval.samples();
         self.account.add(plan, &tallies, &interval, samples, &timed);
+        self.lists.add(&tallies.counters);
         let particle_steps = interval.particles * u64::from(interval.steps);
         let clipped = self.account.state().clipped();
         let shown = Shown {

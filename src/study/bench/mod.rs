@@ -1,25 +1,30 @@
-//! What a step costs, phase by phase: time, bytes, and their share of what the device can do.
+//! What a step costs, phase by phase: time, bytes, operations, and their share of what the device can do.
 //!
 //! Each run is a published scene at its start, at a stated occupancy, step and number of rounds, so that figures of two
 //! devices or two versions compare. What the device can do at most is measured in the same run ([`Ceilings`]); bytes are
-//! counted from the buffers ([`traffic`]).
+//! counted from the buffers ([`traffic`]), operations from the kernels ([`operations`]), both by what the run did ([`Work`]).
 
 mod ceilings;
+mod host;
+pub mod operations;
 pub mod report;
 pub mod traffic;
+mod work;
 
 use std::time::Instant;
 
-use crate::gpu::Device;
+use crate::gpu::{Device, Operations};
 use crate::output::PhaseTable;
 use crate::scene::Method;
-use crate::simulation::{Model, Options, Simulation};
+use crate::simulation::{Options, Simulation};
 use crate::study::StudyError;
 use crate::study::pareto::{Setting, model_with};
 use crate::study::verify::scene_of;
 
 pub use ceilings::Ceilings;
-use traffic::Work;
+use host::{CpuTime, HostLoad, threads};
+use operations::Counted;
+pub use work::Work;
 
 /// A published scene.
 pub struct BenchScene {
@@ -45,17 +50,32 @@ pub struct Measured {
     pub method: Method,
     /// x of the plan's step, without collisions 0.
     pub step: f64,
+    /// Those that count, and those before.
     pub steps: u64,
+    pub warm_steps: u64,
     pub particle_steps: u64,
     /// Wall time of the steps, s: all that lies between the phases is in it.
     pub seconds: f64,
-    /// Of the device, by phase.
-    pub phases: PhaseTable,
+    /// By phase; empty of a device that does not time them.
+    pub costs: Vec<Cost>,
+    pub host: HostLoad,
     pub work: Work,
     /// Bytes of the device's buffers that grow with particles and cells, and how many of each there is room for.
     pub buffers: [u64; 2],
     pub cells: u64,
     pub present: u64,
+}
+
+/// A phase in all steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cost {
+    pub phase: String,
+    /// Of the device.
+    pub seconds: f64,
+    pub dispatches: u64,
+    /// `None` of a phase that is not counted.
+    pub bytes: Option<f64>,
+    pub operations: Option<Operations>,
 }
 
 impl Measured {
@@ -81,13 +101,8 @@ fn target(method: Method, cpu: bool) -> Option<f64> {
     Some(if cpu { core * threads() } else { gpu })
 }
 
-/// Of a software device: as many as it is told to take, or all cores.
-pub fn threads() -> f64 {
-    let told = std::env::var("LP_NUM_THREADS").ok().and_then(|text| text.parse::<usize>().ok()).filter(|&n| n > 0);
-    told.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1) as f64
-}
-
-/// Runs a scene for some steps; what is compiled for the first time is not timed.
+/// Runs a scene for some steps, after an interval that does not count: in it kernels are compiled and buffers touched for the first
+/// time, and lists get their room.
 ///
 /// # Errors
 /// If the scene cannot be planned so, or a run fails.
@@ -109,79 +124,73 @@ pub fn measure(
         rounds: method.has_rounds().then_some(ROUNDS),
     };
     let model = model_with(scene.name, asked, &setting, None)?;
-    run(device, &model, u64::from(model.plan.steps_per_interval))?;
-    let (seconds, outcome, candidates, buffers) = run(device, &model, steps)?;
-    let plan = &model.plan;
-    let cells: u64 = plan.grid.cells.iter().map(|&n| u64::from(n)).product();
-    let steps = outcome.steps as f64;
-    let work = Work {
-        steps,
-        particle_steps: outcome.particle_steps as f64,
-        cell_steps: if collides { cells as f64 * steps } else { 0.0 },
-        candidates: candidates * outcome.particle_steps as f64,
-        newborns: outcome.audit.particles_injected as f64,
-        collisions: outcome.collisions as f64,
-        bounces: outcome.bounces as f64,
-        tallies: (steps / f64::from(plan.tally_every)).floor(),
-        zones: zones_read(&model) as f64,
-        intervals: (steps / f64::from(plan.steps_per_interval)).ceil(),
-    };
+    let warm = u64::from(model.plan.steps_per_interval);
+    let options = Options { stop_after_steps: Some(warm + steps), ..Options::default() };
+    let mut simulation = Simulation::new(&model, device, options)?;
+    simulation.begin(&mut ())?;
+    simulation.advance(&mut ())?;
+    simulation.settle(&mut ())?;
+    let before = simulation.done();
+    let (start, cpu_start) = (Instant::now(), CpuTime::now());
+    while simulation.advance(&mut ())? {}
+    simulation.settle(&mut ())?;
+    let (seconds, cpu) = (start.elapsed().as_secs_f64(), CpuTime::now().since(cpu_start));
+    let after = simulation.done();
+    let lists = simulation.mean_lists()?;
+    let buffers = simulation.buffer_bytes();
+    let counted = Counted::new(simulation.constants())?;
+    let outcome = simulation.finish(&mut ())?;
+    let work = Work::new(&model, &before, &after, &outcome, lists);
+    let phases = since(&before.phases, &after.phases);
+    let costs = phases.rows.iter().map(|(name, seconds, dispatches)| Cost {
+        phase: name.clone(),
+        seconds: *seconds,
+        dispatches: *dispatches,
+        bytes: traffic::bytes(name, method, &work),
+        operations: operations::operations(name, method, &work, &counted),
+    });
     Ok(Measured {
         scene: scene.name,
         method,
         step: if collides { STEP } else { 0.0 },
-        steps: outcome.steps,
-        particle_steps: outcome.particle_steps,
+        steps: phases.steps,
+        warm_steps: before.phases.steps,
+        particle_steps: phases.particle_steps,
         seconds,
-        phases: outcome.phases,
+        costs: costs.collect(),
+        host: HostLoad::new(cpu, seconds, device.adapter().is_cpu()),
         work,
         buffers,
-        cells: if collides { cells } else { 0 },
+        cells: if collides { model.plan.grid.cell_count() as u64 } else { 0 },
         present: outcome.particles.len() as u64,
     })
 }
 
-/// Zones whose tally reads the particles: of the whole only where the chambers have not all of them.
-fn zones_read(model: &Model) -> usize {
-    let chambers = &model.scene.chambers;
-    let covered = chambers.last().is_some_and(|chamber| chamber.region.is_none());
-    usize::from(!covered) + chambers.len() + model.scene.probes.len()
-}
-
-type Ran = (f64, crate::simulation::Outcome, f64, [u64; 2]);
-
-fn run(device: &Device, model: &Model, steps: u64) -> Result<Ran, StudyError> {
-    let options = Options { stop_after_steps: Some(steps), ..Options::default() };
-    let mut simulation = Simulation::new(model, device, options)?;
-    simulation.begin(&mut ())?;
-    let start = Instant::now();
-    while simulation.advance(&mut ())? {}
-    simulation.settle(&mut ())?;
-    let seconds = start.elapsed().as_secs_f64();
-    let candidates = simulation.candidates()?;
-    let buffers = simulation.buffer_bytes();
-    let outcome = simulation.finish(&mut ())?;
-    Ok((seconds, outcome, candidates, buffers))
+/// What a table has that it did not have before.
+fn since(before: &PhaseTable, after: &PhaseTable) -> PhaseTable {
+    let rows = after.rows.iter().map(|(name, seconds, dispatches)| {
+        let (_, then, done) = before.rows.iter().find(|(known, ..)| known == name).cloned().unwrap_or_default();
+        (name.clone(), seconds - then, dispatches - done)
+    });
+    PhaseTable {
+        rows: rows.collect(),
+        steps: after.steps - before.steps,
+        particle_steps: after.particle_steps - before.particle_steps,
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::Region;
-
     use super::*;
-    use crate::study::verify::model_from;
 
-    /// The box has one chamber without a region; the tank two, the last without one, and a probe.
     #[test]
-    fn the_whole_is_read_only_where_chambers_have_not_all() {
-        let zones = SCENES.map(|scene| {
-            let asked = scene_of(scene.name, scene.text).expect("a scene");
-            let mut model = model_from(scene.name, asked).expect("a plan");
-            let covered = zones_read(&model);
-            let last = model.scene.chambers.len() - 1;
-            model.scene.chambers[last].region = Some(Region::Box { min: [0.0; 3], max: [0.01; 3] });
-            [covered, zones_read(&model)]
-        });
-        assert_eq!(zones, [[1, 2], [3, 4], [2, 3]]);
+    fn what_was_before_does_not_count() {
+        let row = |name: &str, seconds, dispatches| (name.to_owned(), seconds, dispatches);
+        let before = PhaseTable { rows: vec![row("bin", 0.5, 32)], steps: 32, particle_steps: 3200 };
+        let after =
+            PhaseTable { rows: vec![row("bin", 0.75, 96), row("tally", 0.1, 8)], steps: 96, particle_steps: 9600 };
+        let expected =
+            PhaseTable { rows: vec![row("bin", 0.25, 64), row("tally", 0.1, 8)], steps: 64, particle_steps: 6400 };
+        assert_eq!(since(&before, &after), expected);
     }
 }

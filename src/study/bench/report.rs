@@ -2,42 +2,55 @@
 
 use serde_json::{Value, json};
 
-use crate::gpu::Device;
+use crate::gpu::{Device, Operations};
 use crate::output::aligned;
 
-use super::{Ceilings, Measured, OCCUPANCY, ROUNDS, traffic};
+use super::{Ceilings, Measured, OCCUPANCY, ROUNDS, host};
 
-/// A run's phases: device time, bytes counted, their rate, and that over the copy's.
+/// A run's phases: device time; bytes counted, their rate, and that over the copy's; the same of operations and the ceiling of arithmetic.
 pub fn table(measured: &Measured, ceilings: &Ceilings) -> String {
-    let Measured { phases, work, .. } = measured;
-    let head = ["phase", "device s", "%", "ns/particle-step", "bytes/particle-step", "GB/s", "of the copy"];
+    let head = [
+        "phase",
+        "device s",
+        "%",
+        "ns/particle-step",
+        "bytes/particle-step",
+        "GB/s",
+        "of the copy",
+        "operations/particle-step",
+        "G/s",
+        "of the arithmetic",
+    ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    let total = phases.seconds();
-    let per = |value: f64| value / work.particle_steps.max(1.0);
-    let mut all = 0.0;
-    let mut line = |name: &str, seconds: f64, bytes: Option<f64>| {
+    let total: f64 = measured.costs.iter().map(|cost| cost.seconds).sum();
+    let per = |value: f64| value / measured.work.particle_steps.max(1.0);
+    let rates = |amount: Option<f64>, seconds: f64, ceiling: f64, decimals: usize| match amount {
+        Some(amount) if seconds > 0.0 => [
+            format!("{:.decimals$}", per(amount)),
+            format!("{:.2}", 1e-9 * amount / seconds),
+            format!("{:.1} %", 100.0 * amount / seconds / ceiling),
+        ],
+        _ => ["-", "-", "-"].map(str::to_owned),
+    };
+    let mut line = |name: &str, seconds: f64, bytes: Option<f64>, operations: Option<f64>| {
         let mut cells = vec![
             name.to_owned(),
             format!("{seconds:.4}"),
             if total > 0.0 { format!("{:.1}", 100.0 * seconds / total) } else { "-".into() },
             format!("{:.3}", 1e9 * per(seconds)),
         ];
-        match bytes {
-            Some(bytes) if seconds > 0.0 => cells.extend([
-                format!("{:.0}", per(bytes)),
-                format!("{:.2}", 1e-9 * bytes / seconds),
-                format!("{:.1} %", 100.0 * bytes / seconds / ceilings.copy),
-            ]),
-            _ => cells.extend(["-".to_owned(), "-".to_owned(), "-".to_owned()]),
-        }
+        cells.extend(rates(bytes, seconds, ceilings.copy, 1));
+        cells.extend(rates(operations, seconds, ceilings.arithmetic, 0));
         rows.push(cells);
     };
-    for (name, seconds, _) in &phases.rows {
-        let bytes = traffic::bytes(name, measured.method, work);
-        all += bytes.unwrap_or(0.0);
-        line(name, *seconds, bytes);
+    let (mut bytes, mut operations) = (0.0, 0.0);
+    for cost in &measured.costs {
+        let own = cost.operations.map(Operations::all);
+        bytes += cost.bytes.unwrap_or(0.0);
+        operations += own.unwrap_or(0.0);
+        line(&cost.phase, cost.seconds, cost.bytes, own);
     }
-    line("all", total, Some(all));
+    line("all", total, Some(bytes), Some(operations));
     aligned(&rows)
 }
 
@@ -71,6 +84,11 @@ pub fn summary(all: &[Measured], device: &Device) -> String {
     aligned(&rows)
 }
 
+/// What a run took of the host's processor.
+pub fn host_line(measured: &Measured, device: &Device) -> String {
+    measured.host.told(device.adapter().is_cpu())
+}
+
 /// The line of a run: what it was, how fast, and over its target.
 pub fn line(measured: &Measured, device: &Device) -> String {
     let target = measured.target(device);
@@ -88,11 +106,12 @@ pub fn line(measured: &Measured, device: &Device) -> String {
         cells => format!(" and {:.1} per cell", measured.buffers[1] as f64 / cells as f64),
     };
     format!(
-        "{}, {}{parameters}, {} particles, {} steps: {:.3} M particle-steps/s{aim}; {:.0} bytes of buffers per particle{of_cells}",
+        "{}, {}{parameters}, {} particles, {} steps after {}: {:.3} M particle-steps/s{aim}; {:.0} bytes of buffers per particle{of_cells}",
         measured.scene,
         measured.method.name(),
         measured.present,
         measured.steps,
+        measured.warm_steps,
         1e-6 * measured.rate(),
         measured.buffers[0] as f64 / measured.present.max(1) as f64,
     )
@@ -101,12 +120,20 @@ pub fn line(measured: &Measured, device: &Device) -> String {
 /// All of it; `missing`: runs that could not be measured, and why.
 pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings, device: &Device) -> Value {
     let runs = all.iter().map(|measured| {
-        let phases = measured.phases.rows.iter().map(|(name, seconds, dispatches)| {
+        let phases = measured.costs.iter().map(|cost| {
+            let rate = |amount: Option<f64>| amount.filter(|_| cost.seconds > 0.0).map(|amount| amount / cost.seconds);
+            let operations = cost.operations.map(Operations::all);
             json!({
-                "phase": name,
-                "device_seconds": seconds,
-                "dispatches": dispatches,
-                "bytes": traffic::bytes(name, measured.method, &measured.work),
+                "phase": cost.phase,
+                "device_seconds": cost.seconds,
+                "dispatches": cost.dispatches,
+                "bytes": cost.bytes,
+                "bytes_per_second": rate(cost.bytes),
+                "share_of_copy": rate(cost.bytes).map(|rate| rate / ceilings.copy),
+                "floating_operations": cost.operations.map(|operations| operations.floating),
+                "integer_operations": cost.operations.map(|operations| operations.integer),
+                "operations_per_second": rate(operations),
+                "share_of_arithmetic": rate(operations).map(|rate| rate / ceilings.arithmetic),
             })
         });
         json!({
@@ -117,13 +144,18 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
             "step_over_tau": if measured.step > 0.0 { Some(measured.step) } else { None },
             "rounds": if measured.method.has_rounds() { Some(ROUNDS) } else { None },
             "steps": measured.steps,
+            "steps_before": measured.warm_steps,
             "particle_steps": measured.particle_steps,
             "wall_seconds": measured.seconds,
             "particle_steps_per_second": measured.rate(),
             "target": measured.target(device),
             "collisions": measured.work.collisions,
             "candidates": measured.work.candidates,
+            "choosers": measured.work.choosers,
+            "near_walls": measured.work.near_walls,
             "bounces": measured.work.bounces,
+            "host_cores": measured.host.process,
+            "host_thread_cores": measured.host.thread,
             "particle_buffer_bytes": measured.buffers[0],
             "cell_buffer_bytes": measured.buffers[1],
             "cells": measured.cells,
@@ -131,16 +163,20 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
         })
     });
     let info = &device.adapter().info;
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
+    let mut record = host::record();
+    let own = json!({
         "adapter": info.name,
         "driver": format!("{} {}", info.driver, info.driver_info).trim(),
-        "software_threads": if device.adapter().is_cpu() { Some(super::threads()) } else { None },
+        "software_threads": if device.adapter().is_cpu() { Some(host::threads()) } else { None },
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,
         "cached_loads_per_second": ceilings.loads,
         "flights_per_second": ceilings.flights,
         "runs": runs.collect::<Vec<_>>(),
         "not_measured": missing.iter().map(|(run, why)| json!({ "run": run, "why": why })).collect::<Vec<_>>(),
-    })
+    });
+    if let (Value::Object(record), Value::Object(own)) = (&mut record, own) {
+        record.extend(own);
+    }
+    record
 }

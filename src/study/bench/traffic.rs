@@ -1,71 +1,75 @@
 //! The bytes that the phases of a step must move, counted from their buffers.
 //!
-//! Each element that a phase reads or writes counts once, however often its threads come back to it: what a cache that
-//! forgets nothing within a phase would leave. An element is a whole struct, also where only some of its fields are
+//! Each element that the kernels of a phase read counts once, and each that they write once, however often their threads come back to
+//! it, and also where one kernel reads what another of the phase has written: what a cache that forgets nothing within a phase would
+//! leave. (What chooses and settles is so in each round.) An element is a whole struct, also where only some of its fields are
 //! wanted: memory moves lines. So bytes over time are no more than what really moves, and their share of the
-//! copy's rate says how far a phase is from being bound by memory. Walls (some kilobytes) and tallies are left out.
+//! copy's rate says how far a phase is from being bound by memory. Walls, classes of cells, lists of rare work and tallies are left out.
 
 use crate::scene::Method;
 use crate::subdomain::{GpuFlight, GpuNewborn, GpuParticle};
+
+use super::work::{CHUNK, Work};
 
 const PARTICLE: f64 = size_of::<GpuParticle>() as f64;
 const FLIGHT: f64 = size_of::<GpuFlight>() as f64;
 const NEWBORN: f64 = size_of::<GpuNewborn>() as f64;
 const WORD: f64 = 4.0;
 
-/// What a run did in its steps, summed over them.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Work {
-    pub steps: f64,
-    pub particle_steps: f64,
-    /// Cells times steps.
-    pub cell_steps: f64,
-    /// Entries of the neighbour lists.
-    pub candidates: f64,
-    pub newborns: f64,
-    pub collisions: f64,
-    pub bounces: f64,
-    /// Steps that were tallied, and zones that were.
-    pub tallies: f64,
-    pub zones: f64,
-    /// Intervals.
-    pub intervals: f64,
-}
-
 /// Bytes of a phase over the run; `None` of one that is not counted.
 pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
-    let Work { particle_steps: n, cell_steps: cells, candidates, collisions, .. } = *work;
+    let Work { particle_steps: n, cell_steps: cells, filled, candidates, collisions, .. } = *work;
     let rounds = method.has_rounds();
-    // With a particle: at most so many.
-    let filled = cells.min(n);
+    let present = n / work.steps.max(1.0);
+    let entries = candidates / n.max(1.0);
+    // Its entry among those that choose, the length of its list and its entries, state and flight in; its choice out. (Whom it
+    // looks at is not counted: most of these choose too, or are next to such.)
+    let choice = (2.0 + entries) * WORD + PARTICLE + FLIGHT + 2.0 * WORD;
+    // Its entry and its choice in.
+    let matched = 3.0 * WORD;
     Some(match phase {
         "inject" => work.newborns * (NEWBORN + PARTICLE),
-        // State in; cell and place in the cell out; the cells' counters.
+        // State in; cell and place in the cell out; the cells' counters in and out.
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
-        // Counters in, and the starts out in their place; where there are particles the counters again. (They are cleared outside of
-        // the phases.)
-        "scan" => cells * 2.0 * WORD,
-        // scatter: bins and id in, slots out; order: cell and slots in, state in and out.
+        // Counters in, and the starts out in their place; sums of stretches of cells out. (The counters are cleared outside of the phases.)
+        "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
+        // State, cell and place in it, and where the cell starts in; slot and state out.
         "sort" => {
-            let order = n * (2.0 * WORD + 2.0 * PARTICLE) + filled * WORD;
             // Cell, layer, flight, middle, mark of the rounds and length of the list.
-            let of_rounds = if rounds { n * (FLIGHT + 5.0 * WORD) } else { 0.0 };
-            n * 4.0 * WORD + filled * WORD + order + of_rounds
+            let of_rounds = if rounds { FLIGHT + 5.0 * WORD } else { 0.0 };
+            n * (PARTICLE + 2.0 * WORD + WORD + PARTICLE + of_rounds) + filled * WORD
         }
-        // Middle, cell, layer and state in; lengths of the lists in and out; the lists, and that nobody has chosen, out. (The few lists
-        // that are longer than eight are sought twice.)
-        "neighbours" => n * (7.0 * WORD + PARTICLE) + filled * WORD + candidates * WORD,
-        // States and flights in and choices out, of those alone that do collide: how many more may is not counted.
-        "choose" => collisions * 2.0 * (3.0 * WORD + PARTICLE + FLIGHT),
-        // Choices in, pairs out; states and flights of those that collide in and out.
-        "settle" => collisions * (6.0 * WORD + 4.0 * (PARTICLE + FLIGHT)),
-        // States of the cell in, those that collide out.
-        "collide" => n * PARTICLE + cells * WORD + collisions * 2.0 * PARTICLE,
+        // Middle and cell in, where the cells start, that nobody has chosen out; of those with neighbours the state in and the length of
+        // the list in and out; the lists out; of those that may collide their mark in and out, and their entry.
+        "neighbours" => {
+            let share = if work.capped { FLIGHT } else { 0.0 };
+            let of_listed = PARTICLE + 2.0 * WORD;
+            n * (4.0 * WORD + share)
+                + filled * WORD
+                + work.listed * of_listed
+                + candidates * WORD
+                + work.first_choosers * 3.0 * WORD
+        }
+        "choose" => work.choosers * choice,
+        // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
+        "settle" => {
+            work.choosers * matched
+                + collisions * (2.0 * WORD + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD)
+        }
+        "lost" => work.lost_choosers * (choice + matched),
+        // Where the cells start; of cells with two or more their volume and their states in; those that collide out.
+        "collide" => {
+            cells * WORD
+                + work.shared * WORD
+                + work.gathered * PARTICLE
+                + (2.0 * collisions).min(work.gathered) * PARTICLE
+        }
         // State in and out; flight where there is one.
-        "advect" => n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 }) + work.bounces * 2.0 * PARTICLE,
-        // Every zone of a tallied step, and the blocks of each interval, read all states.
-        "tally" => n / work.steps.max(1.0) * PARTICLE * work.tallies * work.zones,
-        "blocks" => n / work.steps.max(1.0) * PARTICLE * work.intervals,
+        "advect" => n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 }),
+        // The states, once for all zones.
+        "tally" => present * PARTICLE * work.tallies,
+        "blocks" => present * PARTICLE * work.intervals,
+        "remember" => present * 2.0 * PARTICLE * work.intervals,
         _ => return None,
     })
 }
@@ -77,20 +81,60 @@ mod tests {
     /// Free flight reads and writes each state once: the 64 bytes of the specification, section 7.
     #[test]
     fn free_flight_moves_each_state_in_and_out() {
-        let work = Work { steps: 10.0, particle_steps: 1000.0, ..Work::default() };
+        let work = Work { steps: 10.0, particle_steps: 1000.0, bounces: 7.0, ..Work::default() };
         assert_eq!(bytes("advect", Method::None, &work), Some(64_000.0));
         assert_eq!(bytes("exchange", Method::None, &work), None);
     }
 
-    /// More candidates are more bytes where they are listed, and nowhere else.
+    /// Entries are bytes where lists are written and read, and nowhere else.
     #[test]
     fn candidates_count_where_they_are_listed() {
-        let few = Work { steps: 1.0, particle_steps: 100.0, candidates: 500.0, ..Work::default() };
+        let few = Work {
+            steps: 1.0,
+            particle_steps: 100.0,
+            candidates: 500.0,
+            choosers: 20.0,
+            lost_choosers: 2.0,
+            collisions: 5.0,
+            ..Work::default()
+        };
         let more = Work { candidates: 600.0, ..few };
-        for phase in ["bin", "scan", "sort", "neighbours", "choose", "settle", "advect", "tally", "blocks"] {
+        let phases = ["bin", "scan", "sort", "choose", "settle", "lost", "advect", "tally", "blocks", "remember"];
+        for phase in phases {
             let [a, b] = [&few, &more].map(|work| bytes(phase, Method::ClosestApproach, work).unwrap());
-            let listed = phase == "neighbours";
-            assert_eq!(b - a, if listed { 400.0 } else { 0.0 }, "{phase}");
+            // One more for each particle.
+            let read = match phase {
+                "choose" => 20.0,
+                "settle" => 2.0 * 5.0,
+                "lost" => 2.0,
+                _ => 0.0,
+            };
+            assert_eq!(b - a, 4.0 * read, "{phase}");
         }
+        let [a, b] = [&few, &more].map(|work| bytes("neighbours", Method::ClosestApproach, work).unwrap());
+        assert_eq!(b - a, 400.0);
+    }
+
+    /// What each particle costs, as `docs/performance.md` has it.
+    #[test]
+    fn the_floor_is_that_of_the_documents() {
+        let work =
+            Work { steps: 1.0, particle_steps: 1.0, tallies: 1.0, zones: 3.0, intervals: 1.0, ..Work::default() };
+        let floor = |phase, method| bytes(phase, method, &work).unwrap();
+        let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
+        assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
+        assert_eq!([floor("sort", rounds), floor("sort", cell)], [112.0, 76.0]);
+        assert_eq!(floor("neighbours", rounds), 16.0);
+        assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
+        assert_eq!(["tally", "blocks", "remember"].map(|phase| floor(phase, cell)), [32.0, 32.0, 64.0]);
+        let cells = Work { cell_steps: 64.0, ..Work::default() };
+        assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
+        let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };
+        assert_eq!(
+            ["choose", "settle", "lost"].map(|phase| bytes(phase, rounds, &chosen)),
+            [64.0, 12.0, 76.0].map(Some)
+        );
+        let collided = Work { particle_steps: 1.0, collisions: 1.0, ..Work::default() };
+        assert_eq!(bytes("settle", rounds, &collided), Some(8.0 + 192.0 + 16.0));
     }
 }

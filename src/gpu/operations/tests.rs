@@ -1,0 +1,85 @@
+use super::*;
+use crate::gpu::KERNELS;
+
+const fn kernel(source: &'static str) -> KernelSource {
+    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source }
+}
+
+const PROBE: KernelSource = kernel(
+    "override FAST: bool = true;
+override FACTOR: f32 = 2.0;
+@group(0) @binding(0) var<storage, read_write> values: array<vec3<f32>>;
+fn twice(x: f32) -> f32 {
+return x + x;
+}
+@compute @workgroup_size(1)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+let k = id.x + 1u;
+if (k > 7u) {
+    return;
+}
+let v = values[k] * (FACTOR * 3.0);
+var sum = 0.0;
+for (var i = 0u; i < 4u; i++) {
+    sum += v.x;
+}
+for (var i = 0u; i < k; i++) {
+    if (v.y > sum) {
+        continue;
+    }
+    sum -= dot(v, v);
+}
+if (FAST) {
+    values[k] = v / twice(sum);
+} else {
+    values[k] = normalize(v) * f32(k);
+}
+}",
+);
+
+#[test]
+fn operations_are_those_of_the_source() {
+    let fast = Stretch::of_kernel(&PROBE, &[]).unwrap();
+    // k and its test; four turns of comparison and count.
+    let integer = 2.0 + 4.0 * 2.0;
+    // v, four sums, twice the sum, three quotients.
+    assert_eq!(fast.straight(), Operations { floating: 3.0 + 4.0 + 1.0 + 3.0, integer });
+    // Three components, their length and quotients, a conversion and three products.
+    let slow = Stretch::of_kernel(&PROBE, &[("FAST", 0.0)]).unwrap();
+    assert_eq!(slow.straight(), Operations { floating: 3.0 + 4.0 + 9.0 + 1.0 + 3.0, integer });
+    let turn = fast.inner("for (var i = 0u; i < k").unwrap();
+    assert_eq!(turn.straight(), Operations { floating: 1.0 + 5.0 + 1.0, integer: 2.0 });
+    let [before, after] = turn.around("if (v.y > sum)").unwrap();
+    assert_eq!(before, Operations { floating: 1.0, integer: 1.0 });
+    assert_eq!(before + after, turn.straight());
+    assert_eq!(fast.around("if (k > 7u)").unwrap()[0], Operations { floating: 0.0, integer: 2.0 });
+    assert!(fast.inner("while").is_none() && fast.around("while").is_none());
+}
+
+/// The ceiling's own count, by which its rate is formed: of its loop 32 operations of floating point.
+#[test]
+fn the_ceilings_loop_has_the_operations_that_it_is_said_to_have() {
+    let arithmetic = KERNELS.iter().find(|kernel| kernel.name == "ceiling_arithmetic").unwrap();
+    let counted = Stretch::of_kernel(arithmetic, &[]).unwrap();
+    assert_eq!(counted.inner("for (").unwrap().straight().floating, 32.0);
+}
+
+#[test]
+fn both_sides_of_a_logical_operator_count() {
+    let source = "@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+@compute @workgroup_size(1)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+values[id.x] = select(0u, 1u, id.x > 1u && (id.y > 2u || id.z > 3u));
+}";
+    let counted = Stretch::of_kernel(&kernel(source), &[]).unwrap();
+    assert_eq!(counted, Stretch(vec![Item::Counted(counted.straight())]), "no branch");
+    assert!(counted.straight().integer >= 4.0 && counted.straight().integer <= 6.0, "{counted:?}");
+}
+
+#[test]
+fn every_kernel_of_a_step_can_be_counted() {
+    for kernel in KERNELS {
+        let counted = Stretch::of_kernel(kernel, &[]).unwrap();
+        assert!(counted.straight().all() > 0.0, "{}", kernel.name);
+    }
+}

@@ -1,0 +1,288 @@
+//! The operations that the phases of a step do, counted from their kernels ([`Stretch`]) as they are specialised to the scene, times how
+//! often they run.
+//!
+//! Of each phase its kernels count once for each of what they have a thread for (particles, cells, those that choose, pairs), and
+//! their loops as often as the run knows:
+//!
+//! | loop | turns |
+//! |---|---|
+//! | slots of a cell, in the sort | one for each particle |
+//! | candidates of the search | four for each particle, or as many as were found where those are more |
+//! | pairs found | half of the entries of the lists |
+//! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
+//! | walls, for a flight near them and at each hit | one cell, one triangle up to the side it shows |
+//! | members of a cell, twice; candidates in it | all; those that collided |
+//! | particles in the tally | all up to the test of the zone for each zone and two gases, once the rest |
+//!
+//! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
+//! operations over time are less than what is really done.
+
+use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
+use crate::scene::Method;
+
+use super::work::{CHUNK, Work};
+
+/// The kernels of a step of a device alone, but for those of rare work.
+const COUNTED: [&str; 19] = [
+    "inject",
+    "bin",
+    "scan_sums",
+    "scan_chunks",
+    "scan_cells",
+    "scatter",
+    "order",
+    "wall_times",
+    "neighbours",
+    "collide",
+    "choose",
+    "match_pairs",
+    "settle",
+    "lost",
+    "advect",
+    "bounce",
+    "tally",
+    "blocks",
+    "remember",
+];
+
+/// The turns that each search takes at least, as in `shaders/neighbours.wgsl`.
+const FEWEST_TURNS: f64 = 4.0;
+
+// Beginnings of lines of the kernels, by which their branches and loops are found.
+const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
+const MUTUAL: &str = "if (other == NOBODY";
+const LISTED: &str = "for (var k = 0u; k < listed";
+const MEMBERS: &str = "else if (end > begin + 1u)";
+const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
+const MAY_HIT: &str = "if (around == CLASS_SOLID";
+
+/// The kernels of a scene, counted.
+pub struct Counted(Vec<(&'static str, Stretch)>);
+
+impl Counted {
+    /// # Errors
+    /// If a kernel cannot be read.
+    pub fn new(constants: &Constants) -> Result<Counted, GpuError> {
+        let counted = KERNELS.iter().filter(|kernel| COUNTED.contains(&kernel.name));
+        let counted = counted.map(|kernel| Ok((kernel.name, Stretch::of_kernel(kernel, constants)?)));
+        Ok(Counted(counted.collect::<Result<_, GpuError>>()?))
+    }
+
+    fn of(&self, kernel: &str) -> Option<&Stretch> {
+        self.0.iter().find(|(name, _)| *name == kernel).map(|(_, stretch)| stretch)
+    }
+
+    fn straight(&self, kernel: &str) -> Option<Operations> {
+        Some(self.of(kernel)?.straight())
+    }
+
+    /// A turn of a loop.
+    fn turn(&self, kernel: &str, text: &str) -> Option<Operations> {
+        Some(self.of(kernel)?.inner(text)?.straight())
+    }
+
+    /// The flight's way along the walls of one cell, up to which side the first shows.
+    fn walls(&self, kernel: &str) -> Option<Operations> {
+        let kernel = self.of(kernel)?;
+        let rows = ["for (var z = ", "for (var y = "];
+        let rows = rows.iter().map(|text| Some(kernel.inner(text)?.straight())).sum::<Option<Operations>>()?;
+        Some(rows + kernel.inner("for (var k = list.x")?.around("if (approach <= 0.0)")?[0])
+    }
+
+    /// An entry of the list of one that chooses, up to the first test that most fail, and the rest.
+    fn entry(&self) -> Option<[Operations; 2]> {
+        let entry = self.of("choose")?.inner(LISTED)?;
+        // Rigid spheres are not asked for the time first.
+        entry.around(IN_TIME).or_else(|| entry.around("if (miss2 >="))
+    }
+
+    /// Those that choose: themselves, and so many entries of their lists.
+    fn choices(&self, choosers: f64, entries: f64) -> Option<Operations> {
+        Some(self.straight("choose")? * choosers + self.entry()?[0] * (choosers * entries))
+    }
+
+    /// Of particles that may meet a wall: but for those near walls, who are few, all up to the class of their cell.
+    fn away_from_walls(&self, kernel: &str) -> Option<Operations> {
+        let kernel = self.of(kernel)?;
+        Some(kernel.around(FAR)?[0] + kernel.around(MAY_HIT)?[1])
+    }
+}
+
+/// Operations of a phase over the run; `None` of one that is not counted.
+pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -> Option<Operations> {
+    let Work { particle_steps: n, cell_steps: cells, candidates, collisions, choosers, .. } = *work;
+    let rounds = method.has_rounds();
+    let present = n / work.steps.max(1.0);
+    let entries = candidates / n.max(1.0);
+    Some(match phase {
+        "inject" => counted.straight("inject")? * work.newborns,
+        "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
+        "scan" => {
+            let (stretches, fours) = (cells / CHUNK as f64, cells / 4.0);
+            let filled = work.chunks * CHUNK as f64 / 4.0;
+            let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
+            // The loops of the middle part, before and after its barriers.
+            let sum = counted.turn("scan_chunks", "for (var k = begin")? * 2.0;
+            (own + sum) * stretches
+                + counted.turn("scan_sums", "for (")? * fours
+                + counted.turn("scan_cells", "for (; four < filled")? * filled
+                + counted.turn("scan_cells", "for (; four < end")? * (fours - filled).max(0.0)
+        }
+        "sort" => {
+            let order = if rounds { counted.away_from_walls("order")? } else { counted.straight("order")? };
+            let slots = counted.turn("order", "for (var k = begin >> 2u")?;
+            let walls = (counted.straight("wall_times")? + counted.walls("wall_times")?) * work.near_walls;
+            (counted.straight("scatter")? + order + slots) * n + if rounds { walls } else { Operations::default() }
+        }
+        "neighbours" => {
+            let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
+            counted.straight("neighbours")? * n
+                + counted.turn("neighbours", "for (; k < turns")? * turns
+                + counted.turn("neighbours", "for (var p = ")? * (0.5 * candidates)
+        }
+        "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
+        "settle" => {
+            let [alone, mutual] = counted.of("match_pairs")?.around(MUTUAL)?;
+            let touched = counted.turn("settle", LISTED)? * (2.0 * entries);
+            alone * choosers + (mutual + counted.straight("settle")? + touched) * collisions
+        }
+        "lost" => {
+            let alone = counted.of("match_pairs")?.around(MUTUAL)?[0];
+            counted.choices(work.lost_choosers, entries)? + alone * work.lost_choosers
+        }
+        "collide" => {
+            let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
+            let of_members = counted.of("collide")?.every("for (var k = 0u; k < count");
+            let shared = counted.turn("collide", "if (bin_end > begin + 1u)")? + counted.turn("collide", MEMBERS)?;
+            cell * cells
+                + shared * work.shared
+                + of_members * work.gathered
+                + counted.turn("collide", "while (done.candidates < candidates)")? * collisions
+        }
+        "advect" => {
+            let flight = if rounds { counted.straight("advect")? } else { counted.away_from_walls("advect")? };
+            // Each hit as one of a flight of its own: the way to the wall and the way from it.
+            let turn = counted.of("bounce")?.inner("loop {")?;
+            let last = turn.around("if (hit.triangle == NOBODY)")?[0];
+            let hit = counted.straight("bounce")? + turn.straight() + last + counted.walls("bounce")? * 2.0;
+            flight * n + hit * work.bounces
+        }
+        "tally" => {
+            let particle = counted.of("tally")?.inner("for (var k = 0u; k < CHUNK_LOOPS")?;
+            let seen =
+                particle.around("if (zone.kind == EVERYWHERE)").or_else(|| particle.around("if (!contains("))?[0];
+            let added = particle.around("if (!contains(")?[1];
+            (seen * (work.zones * work.gas_pairs) + added) * (present * work.tallies)
+        }
+        "blocks" => counted.straight("blocks")? * (present * work.intervals),
+        "remember" => counted.straight("remember")? * (present * work.intervals),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a scene of one gas between mirrors at rest has it.
+    fn lean(method: Method) -> Counted {
+        let on = |yes: bool| f64::from(u8::from(yes));
+        let lacks = ["HALO", "MOVING", "COATS", "VENTS", "SURFACES", "ORIFICES", "SPIN", "CURVES", "CAPPED"];
+        let mut constants: Vec<(&str, f64)> = lacks.iter().map(|&name| (name, 0.0)).collect();
+        constants.extend([
+            ("GASES", 1.0),
+            ("CHAMBERS", 1.0),
+            ("RIGID", on(method == Method::HardSphere)),
+            ("COLLISIONS", on(method != Method::None)),
+            ("ROUNDS_OF_PAIRS", on(method.has_rounds())),
+        ]);
+        Counted::new(&constants).unwrap()
+    }
+
+    fn phases(method: Method) -> &'static [&'static str] {
+        match method {
+            Method::None => &["inject", "advect", "tally", "blocks"],
+            Method::Cell => &["inject", "bin", "scan", "sort", "collide", "advect", "tally", "blocks"],
+            _ => &[
+                "inject",
+                "bin",
+                "scan",
+                "sort",
+                "neighbours",
+                "choose",
+                "settle",
+                "lost",
+                "advect",
+                "tally",
+                "blocks",
+                "remember",
+            ],
+        }
+    }
+
+    const METHODS: [Method; 4] = [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
+
+    /// Every line by which a kernel's loops are found is there, and every phase of a step is counted.
+    #[test]
+    fn every_phase_is_counted() {
+        let work = Work {
+            steps: 1.0,
+            particle_steps: 1.0,
+            cell_steps: 1.0,
+            candidates: 1.0,
+            choosers: 1.0,
+            lost_choosers: 1.0,
+            newborns: 1.0,
+            tallies: 1.0,
+            zones: 1.0,
+            gas_pairs: 1.0,
+            intervals: 1.0,
+            ..Work::default()
+        };
+        for method in METHODS {
+            let counted = lean(method);
+            for phase in phases(method) {
+                let own = operations(phase, method, &work, &counted).unwrap_or_else(|| panic!("{method:?} {phase}"));
+                assert!(own.all() > 0.0 && own.floating >= 0.0, "{method:?} {phase}: {own:?}");
+            }
+            assert_eq!(operations("exchange", method, &work, &counted), None);
+        }
+    }
+
+    /// Each amount costs where it is dealt with, and nowhere else.
+    #[test]
+    fn amounts_cost_where_they_are_dealt_with() {
+        let work = Work { steps: 4.0, particle_steps: 400.0, cell_steps: 640.0, chunks: 2.0, ..Work::default() };
+        let more: [(&str, Work, &[&str]); 7] = [
+            ("choosers", Work { choosers: 9.0, ..work }, &["choose", "settle"]),
+            ("lost", Work { lost_choosers: 9.0, ..work }, &["lost"]),
+            ("pairs", Work { candidates: 90.0, ..work }, &["neighbours"]),
+            ("walls", Work { near_walls: 9.0, ..work }, &["sort"]),
+            ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
+            ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
+            ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),
+        ];
+        let method = Method::ClosestApproach;
+        let counted = lean(method);
+        for (name, work_with, dear) in more {
+            for phase in phases(method) {
+                let [without, with] =
+                    [&work, &work_with].map(|work| operations(phase, method, work, &counted).unwrap().all());
+                assert_eq!(with > without, dear.contains(phase), "{name}: {phase}");
+            }
+        }
+    }
+
+    /// A collision of rigid spheres or of `cell` draws random numbers: hundreds of operations of integers; a flight needs none.
+    #[test]
+    fn random_numbers_are_operations_of_integers() {
+        let work = Work { steps: 1.0, particle_steps: 1.0, collisions: 1.0, ..Work::default() };
+        let collided = |method, phase| operations(phase, method, &work, &lean(method)).unwrap();
+        for (method, phase) in [(Method::ClosestApproach, "settle"), (Method::Cell, "collide")] {
+            let own = collided(method, phase);
+            assert!(own.integer > 400.0 && own.floating < own.integer, "{own:?}");
+        }
+        let flight = collided(Method::None, "advect");
+        assert!(flight.all() < 200.0, "{flight:?}");
+    }
+}
