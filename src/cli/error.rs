@@ -162,6 +162,7 @@ impl CliError {
                 | SimulationError::State(_)
                 | SimulationError::Cells(_)
                 | SimulationError::Partition(_)
+                | SimulationError::Checkpoint(_)
                 | SimulationError::Resume(_)
                 | SimulationError::NoChamber { .. }
                 | SimulationError::NoParticles
