@@ -86,6 +86,8 @@ pub enum SimulationError {
     Rank(#[from] RankError),
     #[error("a message of rank {rank} is {found}; {expected} was due")]
     Message { rank: usize, found: String, expected: String },
+    #[error("{found} of the {expected} particles of the start came to the ranks that own them")]
+    Dealt { found: u64, expected: u64 },
     #[error(transparent)]
     #[diagnostic(transparent)]
     Checkpoint(#[from] CheckpointError),

@@ -66,14 +66,14 @@ impl Stock {
     /// What this rank owns, of all ranks' shares. Collective.
     ///
     /// # Errors
-    /// If another rank fails.
+    /// If another rank fails, or a particle gets lost.
     pub fn own(
         &self,
         model: &Model,
         comm: &dyn Communicator,
         share: Cow<'_, [GpuParticle]>,
         owner: impl Fn(&GpuParticle) -> usize,
-    ) -> Result<Vec<GpuParticle>, RankError> {
+    ) -> Result<Vec<GpuParticle>, SimulationError> {
         match self {
             Stock::Listed(all) => Ok(all.iter().filter(|particle| owner(particle) == comm.rank()).copied().collect()),
             _ if comm.size() == 1 => Ok(share.into_owned()),
@@ -149,7 +149,7 @@ fn hand_out(
     number: u64,
     comm: &dyn Communicator,
     owner: impl Fn(&GpuParticle) -> usize,
-) -> Result<Vec<GpuParticle>, RankError> {
+) -> Result<Vec<GpuParticle>, SimulationError> {
     let (rank, ranks) = (comm.rank(), comm.size());
     let mut own = Vec::with_capacity(share.len());
     // As often as the largest share needs, the same on all ranks.
@@ -171,7 +171,8 @@ fn hand_out(
             own.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(&whole(comm.receive(other)?, other)?));
         }
     }
-    Ok(own)
+    let found = comm.sum(vec![own.len() as u64])?[0];
+    if found == number { Ok(own) } else { Err(SimulationError::Dealt { found, expected: number }) }
 }
 
 /// A message of whole particles.
