@@ -148,7 +148,10 @@ impl CliError {
             CliError::Gpu(_)
             | CliError::Rank(_)
             | CliError::Simulation(
-                SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
+                SimulationError::Gpu(_)
+                | SimulationError::Rank(_)
+                | SimulationError::Message { .. }
+                | SimulationError::Dealt { .. },
             ) => DEVICE_TROUBLE,
             CliError::Audit { .. }
             | CliError::RunWarnings { .. }
@@ -162,6 +165,7 @@ impl CliError {
                 | SimulationError::State(_)
                 | SimulationError::Cells(_)
                 | SimulationError::Partition(_)
+                | SimulationError::Checkpoint(_)
                 | SimulationError::Resume(_)
                 | SimulationError::NoChamber { .. }
                 | SimulationError::NoParticles
@@ -213,7 +217,10 @@ fn study_code(error: &StudyError) -> u8 {
             _ => DEVICE_TROUBLE,
         },
         StudyError::Simulation(
-            SimulationError::Gpu(_) | SimulationError::Rank(_) | SimulationError::Message { .. },
+            SimulationError::Gpu(_)
+            | SimulationError::Rank(_)
+            | SimulationError::Message { .. }
+            | SimulationError::Dealt { .. },
         )
         | StudyError::Device(_)
         | StudyError::Rank(_) => DEVICE_TROUBLE,

@@ -11,8 +11,7 @@ use std::time::Instant;
 use crate::output::{Adapter, Checkpoint, CheckpointError, OutputFolder, OutputState, latest, run_folder};
 use crate::ranks::Communicator;
 use crate::scene::parse;
-use crate::simulation::{RunState, particles_of};
-use crate::subdomain::GpuParticle;
+use crate::simulation::RunState;
 
 use super::CliError;
 use super::arguments::ResumeArguments;
@@ -43,7 +42,7 @@ pub fn resume(raw: ResumeArguments, quiet: bool) -> Result<(), CliError> {
 
 /// What a run goes on from.
 pub struct Beginning {
-    checkpoint: Checkpoint,
+    pub checkpoint: Checkpoint,
     pub state: RunState,
     pub output: OutputState,
 }
@@ -61,14 +60,6 @@ impl Beginning {
     /// s.
     pub fn time(&self) -> f64 {
         self.checkpoint.manifest().time
-    }
-
-    /// All of them, by id.
-    ///
-    /// # Errors
-    /// If a file is not as it was written.
-    pub fn particles(&self) -> Result<Vec<GpuParticle>, CheckpointError> {
-        particles_of(&self.checkpoint)
     }
 
     /// Says where the run goes on, and what may make its bits differ from there.

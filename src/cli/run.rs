@@ -105,7 +105,7 @@ pub fn launch(
             if comm.rank() == 0 {
                 from.warn(&Adapter::from(&record(&device)));
             }
-            Setup::with_particles(model, &device, ranks, from.particles()?)?
+            Setup::from_checkpoint(model, &device, ranks, from.checkpoint.clone())?
         }
     };
     if ranks > 1 && !setup.domain.features().halo && comm.rank() == 0 {
@@ -155,6 +155,8 @@ impl Job<'_> {
             batch: execution.batch,
             stop_after_steps: execution.stop_after_steps,
             strict: execution.strict,
+            // Only the last snapshot has them.
+            discard_particles: model.scene.output.snapshots == 0,
             checkpoint_at_stop: execution.checkpoints.every.is_some() || self.from.is_some(),
             halo: execution.sharing.halo,
             balance: execution.sharing.balance,

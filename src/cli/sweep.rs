@@ -12,7 +12,7 @@ use crate::output::{
 };
 use crate::scene::{Method, Scene, to_toml};
 use crate::simulation::{BalanceOptions, Ghosts, HaloOptions, SimulationError};
-use crate::study::launched::{Case, Measured, Program, Start, compare, take_turns, together};
+use crate::study::launched::{Case, Measured, Program, compare, take_turns, together};
 use crate::study::report;
 use crate::study::state::{Moment, weights};
 use crate::study::{Strategy, StudyError};
@@ -134,9 +134,8 @@ impl SweepPlan {
                 cases.push(Case { devices, strategy, scene: self.scene_file(&runs, devices)?, from: None });
             }
             for moment in &self.moments {
-                let start =
-                    Start { checkpoint: moment.checkpoint.clone(), folder: moment.folder.clone(), step: moment.step };
-                cases.push(Case { devices, strategy, scene: moment.from.clone(), from: Some(start) });
+                let (scene, from) = (moment.from.clone(), Some(moment.start.clone()));
+                cases.push(Case { devices, strategy, scene, from });
             }
         }
         let path = std::env::current_exe().map_err(|error| io("find", Path::new("the program"), error))?;

@@ -6,7 +6,10 @@
 //! factors would bring the momentum back), and the spin energy of each gas to its mean. A chamber with a
 //! single particle keeps its momentum: it could not have the energy otherwise.
 //!
-//! Invariants: ids are 0.. in the order chamber, gas, particle; each particle's draws depend on its id only.
+//! Invariants: ids are 0.. in the order chamber, gas, particle; each particle's draws depend on its id only. So any part
+//! of the gas can be drawn without the rest, once what makes each chamber exact is known, and has the same bits.
+
+use std::ops::Range;
 
 use super::{Draws, Particle, Purpose, Species};
 use crate::scene::GAS_CONSTANT;
@@ -38,36 +41,184 @@ pub enum FillError {
     TooMany,
 }
 
-/// All particles of the chambers, SI. `gases` gives the molar masses, `is_gas` whether a point is in the
-/// gas space.
-pub fn fill(
-    chambers: &[Filling],
-    gases: &[Species],
-    is_gas: &dyn Fn([f64; 3]) -> bool,
-    moles_per_particle: f64,
-    seed: u64,
-) -> Result<Vec<Particle>, FillError> {
-    let mut particles: Vec<Particle> = Vec::new();
-    for (index, chamber) in chambers.iter().enumerate() {
-        let first = particles.len();
-        for (gas, (&count, species)) in chamber.counts.iter().zip(gases).enumerate() {
-            let thermal_energy = moles_per_particle * GAS_CONSTANT * chamber.temperature;
-            let thermal_speed = (thermal_energy / (species.molar_mass * moles_per_particle)).sqrt();
-            for _ in 0..count {
-                let id = u32::try_from(particles.len()).map_err(|_| FillError::TooMany)?;
-                let position =
-                    place(chamber, is_gas, seed, id).ok_or(FillError::NoRoom { chamber: index, tries: MOST_TRIES })?;
-                let mut draws = Draws::new(seed, Purpose::InitialState, id);
-                let velocity = [(); 3].map(|()| thermal_speed * draws.normal());
-                let spin_energy = species.draw_spin(thermal_energy, chamber.temperature, &mut draws);
-                particles.push(Particle { id, gas: gas as u8, position, velocity, spin_energy });
+/// The gas of all chambers, SI.
+pub struct InitialGas<'a> {
+    pub chambers: &'a [Filling<'a>],
+    /// Their molar masses, and how they take up energy.
+    pub gases: &'a [Species],
+    /// Whether a point is in the gas space.
+    pub is_gas: &'a dyn Fn([f64; 3]) -> bool,
+    pub moles_per_particle: f64,
+    pub seed: u64,
+}
+
+/// What makes a chamber exact, the same for all its particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correction {
+    drift: [f64; 3],
+    speed_factor: f64,
+    /// By gas.
+    spin_factors: Vec<f64>,
+}
+
+/// What is drawn of a particle but its place.
+#[derive(Debug, Clone, Copy)]
+struct Motion {
+    gas: u8,
+    velocity: [f64; 3],
+    spin_energy: f64,
+}
+
+/// Particles of one gas in one chamber.
+struct Batch {
+    chamber: usize,
+    gas: u8,
+    ids: Range<u32>,
+}
+
+impl InitialGas<'_> {
+    /// All particles.
+    ///
+    /// # Errors
+    /// If a chamber has no room, or ids do not suffice.
+    pub fn all(&self) -> Result<Vec<Particle>, FillError> {
+        let mut particles: Vec<Particle> = Vec::new();
+        let batches = self.batches()?;
+        for of_chamber in batches.chunk_by(|a, b| a.chamber == b.chamber) {
+            let first = particles.len();
+            for batch in of_chamber {
+                for id in batch.ids.clone() {
+                    particles.push(self.draw(batch, id)?);
+                }
+            }
+            let own = &mut particles[first..];
+            let motion = |p: &Particle| Motion { gas: p.gas, velocity: p.velocity, spin_energy: p.spin_energy };
+            let correction = self.correction(of_chamber[0].chamber, || own.iter().map(motion));
+            own.iter_mut().for_each(|particle| correction.apply(particle));
+        }
+        Ok(particles)
+    }
+
+    /// What makes each chamber exact: draws how all of its particles move, twice, and keeps none.
+    ///
+    /// # Errors
+    /// If ids do not suffice.
+    pub fn corrections(&self) -> Result<Vec<Correction>, FillError> {
+        let batches = self.batches()?;
+        let of_chamber = |chamber: usize| {
+            let own = || batches.iter().filter(move |batch| batch.chamber == chamber);
+            let draw = |batch: &'_ Batch| (batch.gas, batch.ids.clone());
+            let motions = || own().map(draw).flat_map(|(gas, ids)| ids.map(move |id| self.motion(chamber, gas, id)));
+            self.correction(chamber, motions)
+        };
+        Ok((0..self.chambers.len()).map(of_chamber).collect())
+    }
+
+    /// The particles with these ids, by id, one after the other.
+    ///
+    /// # Errors
+    /// As [`InitialGas::all`].
+    pub fn part(
+        &self,
+        corrections: &[Correction],
+        ids: Range<u32>,
+    ) -> Result<impl Iterator<Item = Result<Particle, FillError>>, FillError> {
+        let wanted = move |batch: Batch| {
+            let own = batch.ids.start.max(ids.start)..batch.ids.end.min(ids.end);
+            own.map(move |id| {
+                let mut particle = self.draw(&batch, id)?;
+                corrections[batch.chamber].apply(&mut particle);
+                Ok(particle)
+            })
+        };
+        Ok(self.batches()?.into_iter().flat_map(wanted))
+    }
+
+    /// In the order of ids.
+    fn batches(&self) -> Result<Vec<Batch>, FillError> {
+        let mut batches = Vec::new();
+        let mut next = 0_u32;
+        for (chamber, filling) in self.chambers.iter().enumerate() {
+            for (gas, &count) in filling.counts.iter().take(self.gases.len()).enumerate() {
+                let end = u32::try_from(count).ok().and_then(|count| next.checked_add(count));
+                let end = end.ok_or(FillError::TooMany)?;
+                batches.push(Batch { chamber, gas: gas as u8, ids: next..end });
+                next = end;
             }
         }
-        let own = &mut particles[first..];
-        stop_drift(own, gases);
-        make_energy_exact(own, gases, moles_per_particle, chamber.temperature);
+        Ok(batches)
     }
-    Ok(particles)
+
+    /// A particle of a chamber that is not exact yet.
+    fn draw(&self, batch: &Batch, id: u32) -> Result<Particle, FillError> {
+        let chamber = batch.chamber;
+        let place = place(&self.chambers[chamber], self.is_gas, self.seed, id);
+        let position = place.ok_or(FillError::NoRoom { chamber, tries: MOST_TRIES })?;
+        let Motion { gas, velocity, spin_energy } = self.motion(chamber, batch.gas, id);
+        Ok(Particle { id, gas, position, velocity, spin_energy })
+    }
+
+    fn motion(&self, chamber: usize, gas: u8, id: u32) -> Motion {
+        let (species, temperature) = (&self.gases[usize::from(gas)], self.chambers[chamber].temperature);
+        let thermal_energy = self.moles_per_particle * GAS_CONSTANT * temperature;
+        let thermal_speed = (thermal_energy / (species.molar_mass * self.moles_per_particle)).sqrt();
+        let mut draws = Draws::new(self.seed, Purpose::InitialState, id);
+        let velocity = [(); 3].map(|()| thermal_speed * draws.normal());
+        let spin_energy = species.draw_spin(thermal_energy, temperature, &mut draws);
+        Motion { gas, velocity, spin_energy }
+    }
+
+    /// From the motions of all of a chamber, by id: sums depend on the order.
+    fn correction<I: Iterator<Item = Motion>>(&self, chamber: usize, motions: impl Fn() -> I) -> Correction {
+        let drift = self.drift(motions());
+        let temperature = self.chambers[chamber].temperature;
+        let thermal_energy = self.moles_per_particle * GAS_CONSTANT * temperature;
+        let mut translational = 0.0;
+        let mut spin = vec![0.0; self.gases.len()];
+        let mut count = vec![0_u64; self.gases.len()];
+        for motion in motions() {
+            let gas = usize::from(motion.gas);
+            let mass = self.gases[gas].molar_mass * self.moles_per_particle;
+            let speeds: [f64; 3] = std::array::from_fn(|axis| motion.velocity[axis] - drift[axis]);
+            translational += 0.5 * mass * speeds.iter().map(|v| v * v).sum::<f64>();
+            spin[gas] += motion.spin_energy;
+            count[gas] += 1;
+        }
+        let ratio = |wanted: f64, found: f64| if found > 0.0 { wanted / found } else { 0.0 };
+        let spin_factor = |(gas, species): (usize, &Species)| {
+            let wanted = 0.5 * species.spin_energy_dof(temperature) * count[gas] as f64 * thermal_energy;
+            ratio(wanted, spin[gas])
+        };
+        let number = count.iter().sum::<u64>() as f64;
+        Correction {
+            drift,
+            speed_factor: ratio(1.5 * number * thermal_energy, translational).sqrt(),
+            spin_factors: self.gases.iter().enumerate().map(spin_factor).collect(),
+        }
+    }
+
+    /// The velocity of the centre of mass; none of a particle alone.
+    fn drift(&self, motions: impl Iterator<Item = Motion>) -> [f64; 3] {
+        let (mut number, mut mass, mut momentum) = (0_u64, 0.0, [0.0; 3]);
+        for motion in motions {
+            let own = self.gases[usize::from(motion.gas)].molar_mass;
+            number += 1;
+            mass += own;
+            for (sum, speed) in momentum.iter_mut().zip(motion.velocity) {
+                *sum += own * speed;
+            }
+        }
+        if number < 2 { [0.0; 3] } else { momentum.map(|sum| sum / mass) }
+    }
+}
+
+impl Correction {
+    fn apply(&self, particle: &mut Particle) {
+        for (speed, drift) in particle.velocity.iter_mut().zip(self.drift) {
+            *speed = (*speed - drift) * self.speed_factor;
+        }
+        particle.spin_energy *= self.spin_factors[usize::from(particle.gas)];
+    }
 }
 
 /// A uniform point of the chamber's gas.
@@ -81,49 +232,6 @@ fn place(chamber: &Filling, is_gas: &dyn Fn([f64; 3]) -> bool, seed: u64, id: u3
         }
     }
     None
-}
-
-/// Subtracts the velocity of the centre of mass.
-fn stop_drift(particles: &mut [Particle], gases: &[Species]) {
-    if particles.len() < 2 {
-        return;
-    }
-    let mut mass = 0.0;
-    let mut momentum = [0.0; 3];
-    for particle in &*particles {
-        let own = gases[usize::from(particle.gas)].molar_mass;
-        mass += own;
-        for (sum, speed) in momentum.iter_mut().zip(particle.velocity) {
-            *sum += own * speed;
-        }
-    }
-    for particle in particles {
-        for (speed, sum) in particle.velocity.iter_mut().zip(momentum) {
-            *speed -= sum / mass;
-        }
-    }
-}
-
-fn make_energy_exact(particles: &mut [Particle], gases: &[Species], moles_per_particle: f64, temperature: f64) {
-    let thermal_energy = moles_per_particle * GAS_CONSTANT * temperature;
-    let mut translational = 0.0;
-    let mut spin = vec![0.0; gases.len()];
-    let mut count = vec![0u64; gases.len()];
-    for particle in &*particles {
-        let gas = usize::from(particle.gas);
-        let mass = gases[gas].molar_mass * moles_per_particle;
-        translational += 0.5 * mass * particle.velocity.iter().map(|v| v * v).sum::<f64>();
-        spin[gas] += particle.spin_energy;
-        count[gas] += 1;
-    }
-    let ratio = |wanted: f64, found: f64| if found > 0.0 { wanted / found } else { 0.0 };
-    let speed_factor = ratio(1.5 * particles.len() as f64 * thermal_energy, translational).sqrt();
-    for particle in particles {
-        let gas = usize::from(particle.gas);
-        particle.velocity = particle.velocity.map(|v| v * speed_factor);
-        let wanted = 0.5 * gases[gas].spin_energy_dof(temperature) * count[gas] as f64 * thermal_energy;
-        particle.spin_energy *= ratio(wanted, spin[gas]);
-    }
 }
 
 #[cfg(test)]
@@ -152,7 +260,44 @@ mod tests {
             in_chamber,
         };
         let chambers = [chamber(counts[0], 300.0, &left as _), chamber(counts[1], 600.0, &right as _)];
-        fill(&chambers, &gases(), &|p| p[2] > 1.0, 1e-6, 3)
+        gas(&chambers, &gases(), &|p| p[2] > 1.0).all()
+    }
+
+    fn gas<'a>(
+        chambers: &'a [Filling<'a>],
+        gases: &'a [Species],
+        is_gas: &'a dyn Fn([f64; 3]) -> bool,
+    ) -> InitialGas<'a> {
+        InitialGas { chambers, gases, is_gas, moles_per_particle: 1e-6, seed: 3 }
+    }
+
+    /// Whatever the parts, they are those of the whole to the last bit; without what makes it exact they are not.
+    #[test]
+    fn any_part_is_as_it_is_in_the_whole() {
+        let chamber = |counts, temperature, in_chamber| Filling {
+            counts,
+            temperature,
+            min: [0.0; 3],
+            max: [1.0, 1.0, 2.0],
+            in_chamber,
+        };
+        let counts: [&[u64]; 3] = [&[300, 50], &[0, 1], &[0, 70]];
+        let chambers = [
+            chamber(counts[0], 300.0, &left as _),
+            chamber(counts[1], 450.0, &left as _),
+            chamber(counts[2], 600.0, &right as _),
+        ];
+        let (gases, anywhere) = (gases(), |_: [f64; 3]| true);
+        let gas = gas(&chambers, &gases, &anywhere);
+        let (all, corrections) = (gas.all().unwrap(), gas.corrections().unwrap());
+        for size in [1, 7, 50, 1000] {
+            let starts = (0..all.len() as u32).step_by(size);
+            let parts = starts.flat_map(|start| gas.part(&corrections, start..start + size as u32).unwrap());
+            assert!(parts.collect::<Result<Vec<_>, _>>().unwrap() == all, "parts of {size}");
+        }
+        let inexact = vec![Correction { drift: [0.0; 3], speed_factor: 1.0, spin_factors: vec![1.0; 2] }; 3];
+        let parts = gas.part(&inexact, 0..u32::MAX).unwrap();
+        assert!(parts.collect::<Result<Vec<_>, _>>().unwrap() != all);
     }
 
     /// (momentum per particle over m c0, translational energy over 3/2 N kT, spin over zeta/2 N kT).
@@ -215,7 +360,8 @@ mod tests {
         let nowhere = |_: [f64; 3]| false;
         let chamber =
             Filling { counts: &[1, 0], temperature: 300.0, min: [0.0; 3], max: [1.0; 3], in_chamber: &nowhere };
-        let found = fill(&[chamber], &gases(), &|_| true, 1e-6, 3);
-        assert_eq!(found, Err(FillError::NoRoom { chamber: 0, tries: MOST_TRIES }));
+        let (chambers, gases) = ([chamber], gases());
+        let gas = gas(&chambers, &gases, &|_| true);
+        assert_eq!(gas.all(), Err(FillError::NoRoom { chamber: 0, tries: MOST_TRIES }));
     }
 }

@@ -28,7 +28,7 @@ pub use curve::{
 };
 pub use discharge::{CONTINUUM_COEFFICIENT, Side, exchange, isentropic};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn, jet_mach, jet_state};
-pub use initial::{FillError, Filling, fill};
+pub use initial::{Correction, FillError, Filling, InitialGas};
 pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};

@@ -1,4 +1,4 @@
-//! Bisection on one host, from cells and their weights: for tests, first decompositions and emulation.
+//! Bisection on hosts, from cells and their weights: for the first cuts of a run, tests and emulation.
 //!
 //! A level is one pass over the points, by several threads: each point goes on from its box of the last level to that
 //! of this one and adds to the histogram there. No point is moved, no grid is stored.
@@ -22,6 +22,20 @@ pub fn bisect(
     Ok(decompose(root, shares, previous, points.len(), |at| points[at])?.0)
 }
 
+/// The same of points that are spread over ranks: all find the tree of all points. `sum` adds up histograms over the
+/// ranks, and is called by all of them equally often.
+///
+/// # Errors
+/// As [`bisect`], or what `sum` fails with.
+pub fn bisect_shared<E: From<PartitionError>>(
+    root: CellBox,
+    shares: &[f64],
+    own: &[[u32; 3]],
+    sum: impl FnMut(Vec<u64>) -> Result<Vec<u64>, E>,
+) -> Result<Tree, E> {
+    Ok(levels(root, shares, None, own.len(), |at| (own[at], 1), sum)?.0)
+}
+
 /// The tree for the weights of points 0..count, and the part of each. `point` gives the cell and the weight of one.
 pub fn decompose(
     root: CellBox,
@@ -30,6 +44,17 @@ pub fn decompose(
     count: usize,
     point: impl Fn(usize) -> ([u32; 3], u64) + Sync,
 ) -> Result<(Tree, Vec<u32>), PartitionError> {
+    levels(root, shares, previous, count, point, Ok)
+}
+
+fn levels<E: From<PartitionError>>(
+    root: CellBox,
+    shares: &[f64],
+    previous: Option<&Tree>,
+    count: usize,
+    point: impl Fn(usize) -> ([u32; 3], u64) + Sync,
+    mut sum: impl FnMut(Vec<u64>) -> Result<Vec<u64>, E>,
+) -> Result<(Tree, Vec<u32>), E> {
     let mut bisection = Bisection::new(root, shares, previous, TOLERANCE)?;
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     let size = count.div_ceil(threads).max(POINTS_PER_THREAD);
@@ -42,7 +67,7 @@ pub fn decompose(
             return Ok((bisection.finish()?, places));
         }
         let before = bisection.wanted().to_vec();
-        bisection.cut(&histogram)?;
+        bisection.cut(&sum(histogram)?)?;
         level = Level::next(&bisection, before.iter().map(|slice| slice.node));
     }
 }

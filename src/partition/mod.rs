@@ -2,7 +2,7 @@
 //! costs where, and when it pays to cut anew.
 //!
 //! - [`Bisection`] finds a [`Tree`] of cuts from histograms of the work per plane of cells, level by level; who sums
-//!   the histograms (devices and ranks, or [`bisect`] on one host) is not its concern. No particle is gathered.
+//!   the histograms (devices and ranks, [`bisect_shared`], or [`bisect`] on one host) is not its concern. No particle is gathered.
 //! - [`CostModel`] turns measured device seconds into weights of the work and into the devices' shares.
 //! - [`Trigger`] decides whether a rebalance pays.
 //!
@@ -22,7 +22,7 @@ mod trigger;
 pub use bisection::{Bisection, Slice};
 pub use cell_box::CellBox;
 pub use cost::{By, CostModel, IntegerWeights, Measurement, Work};
-pub use host::{bisect, decompose, moved};
+pub use host::{bisect, bisect_shared, decompose, moved};
 pub use tree::{Node, Tree};
 pub use trigger::{Decision, Trigger};
 

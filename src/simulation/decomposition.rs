@@ -5,7 +5,7 @@
 
 use crate::geometry::Grid;
 use crate::gpu::Device;
-use crate::partition::{Bisection, CellBox, Node, PartitionError, TOLERANCE, Tree, bisect};
+use crate::partition::{Bisection, CellBox, Node, TOLERANCE, Tree, bisect, bisect_shared};
 use crate::plan::Plan;
 use crate::ranks::Communicator;
 use crate::subdomain::{Cells, GpuParticle, Place, Subdomain};
@@ -29,31 +29,32 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Equal boxes, or boxes of equal weight of `particles`.
+    /// Equal boxes, or boxes of equal weight of particles, of which each rank gives a part. Collective: the histograms
+    /// are summed over the ranks.
     ///
     /// # Errors
-    /// If there are more ranks than cells.
+    /// If there are more ranks than cells, or another rank fails.
     pub fn new(
         plan: &Plan,
         comm: &dyn Communicator,
         halo: Halo,
         particles: Option<&[GpuParticle]>,
-    ) -> Result<Decomposition, PartitionError> {
-        let root = root(plan);
-        let shares = vec![1.0; comm.size()];
-        let cells = particles.unwrap_or_default().iter().map(|particle| (cell_of(plan, particle), 1));
-        let tree = bisect(root, &shares, None, cells)?;
+    ) -> Result<Decomposition, SimulationError> {
+        let (root, shares) = (root(plan), vec![1.0; comm.size()]);
+        let tree = match particles {
+            None => bisect(root, &shares, None, std::iter::empty())?,
+            Some(part) => {
+                let cells: Vec<[u32; 3]> = part.iter().map(|particle| cell_of(plan, particle)).collect();
+                bisect_shared(root, &shares, &cells, |own| Ok::<_, SimulationError>(comm.sum(own)?))?
+            }
+        };
         Ok(Decomposition { tree, rank: comm.rank(), halo, wide: false, scattered: true })
     }
 
-    /// The particles that a rank starts with: those whose cells it owns. (The first exchange decides by the cells
-    /// of their mid-step positions.)
-    pub fn own<'a>(
-        &'a self,
-        plan: &'a Plan,
-        particles: impl Iterator<Item = GpuParticle> + 'a,
-    ) -> impl Iterator<Item = GpuParticle> + 'a {
-        particles.filter(move |particle| self.tree.part_of(cell_of(plan, particle)) == self.rank)
+    /// The rank that starts with a particle: the owner of its cell. (The first exchange decides by the cell of its
+    /// mid-step position.)
+    pub fn owner(&self, plan: &Plan, particle: &GpuParticle) -> usize {
+        self.tree.part_of(cell_of(plan, particle))
     }
 
     /// The ranks that this one exchanges particles with, those that share ghosts with it first, and its place

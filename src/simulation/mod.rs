@@ -28,6 +28,7 @@ mod run_state;
 mod schedule;
 mod setup;
 mod step;
+mod stock;
 mod switch;
 mod tuning;
 mod uniform;
@@ -51,8 +52,9 @@ pub use run::Simulation;
 pub use run::meter::{Done, Lists};
 pub use run_state::{Asked, RunState, StateError as RunStateError, particles_of};
 pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
-pub use setup::{Setup, Shuffle, initial_particles};
+pub use setup::{Setup, Shuffle};
 pub use step::Sampling;
+pub use stock::{Initial, Stock, initial_particles};
 pub use switch::{Decided, Deviations, SwitchState};
 pub use tuning::HaloOptions;
 pub use uniform::run_uniform;
@@ -60,6 +62,7 @@ pub use uniform::run_uniform;
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
 use crate::gpu::GpuError;
+use crate::output::CheckpointError;
 use crate::partition::PartitionError;
 use crate::ranks::RankError;
 use crate::subdomain::{StateError, TooManyParts};
@@ -84,6 +87,11 @@ pub enum SimulationError {
     Rank(#[from] RankError),
     #[error("a message of rank {rank} is {found}; {expected} was due")]
     Message { rank: usize, found: String, expected: String },
+    #[error("{found} of the {expected} particles of the start came to the ranks that own them")]
+    Dealt { found: u64, expected: u64 },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
     #[error(transparent)]
     Resume(#[from] RunStateError),
     #[error("{what}, ({:.4}, {:.4}, {:.4}) m, is in no chamber: a control volume knows nothing there", point[0], point[1], point[2])]

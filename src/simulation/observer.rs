@@ -25,6 +25,8 @@ pub struct Options<'a> {
     pub stop_after_steps: Option<u64>,
     /// Where the run stops before the end of the scene because of `stop_after_steps`, it is continuable from there.
     pub checkpoint_at_stop: bool,
+    /// Nobody asks for the particles at the end: the outcome has none.
+    pub discard_particles: bool,
     /// The first warning stops the run.
     pub strict: bool,
     /// The step stays the plan's, whatever the state asks for: for studies of steps that are too long.
@@ -117,7 +119,7 @@ pub struct Continued {
 
 /// What a run leaves.
 pub struct Outcome {
-    /// By id; on rank 0.
+    /// By id; on rank 0, and where they are not discarded.
     pub particles: Vec<GpuParticle>,
     /// The rank that owned each of them.
     pub owners: Vec<u32>,

@@ -116,7 +116,7 @@ impl<'a> Simulation<'a> {
     /// their number.
     ///
     /// # Errors
-    /// As [`Simulation::new`], or if there are more ranks than cells.
+    /// As [`Simulation::new`], or if there are more ranks than cells, or a file of particles is not as it was written.
     pub fn among(
         model: &'a Model,
         device: &'a Device,
@@ -136,17 +136,18 @@ impl<'a> Simulation<'a> {
     ) -> Result<Simulation<'a>, SimulationError> {
         let comm = ranks.comm();
         let plan = &model.plan;
-        let initial = setup.particles.iter().copied();
-        let (size, rank) = (comm.size() as u32, comm.rank() as u32);
+        let share = setup.particles.share(model, comm)?;
         let mut decomposition = None;
         let own: Vec<GpuParticle> = if setup.domain.features().halo {
             let halo = Tuner::new(plan.rounds, options.halo).first();
-            let cut_by = setup.cut_by.as_ref().unwrap_or(&setup.particles);
-            let weighed = options.balance.at_start().then(|| cut_by.as_slice());
-            let cut = Decomposition::new(plan, comm, halo, weighed)?;
-            decomposition.insert(cut).own(plan, initial).collect()
+            let cut_by = setup.cut_by.as_ref().filter(|_| options.balance.at_start());
+            let cut_by = cut_by.map(|stock| stock.share(model, comm)).transpose()?;
+            let weighed = options.balance.at_start().then_some(cut_by.as_deref().unwrap_or(&share));
+            let cut = decomposition.insert(Decomposition::new(plan, comm, halo, weighed)?);
+            setup.particles.own(model, comm, share, |particle| cut.owner(plan, particle))?
         } else {
-            initial.filter(|particle| particle.id() % size == rank).collect()
+            let ranks = comm.size();
+            setup.particles.own(model, comm, share, |particle| particle.id() as usize % ranks)?
         };
         let place = decomposition.as_ref().map_or_else(|| Place::alone(plan), |cut| cut.place().1);
         let subdomain = Subdomain::new(device, setup.domain.clone(), place, &own)?;
@@ -337,7 +338,8 @@ impl<'a> Simulation<'a> {
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
         let continued = self.go_on_without_particles(&at_end, &audit, last.as_ref(), observer)?;
-        let (particles, owners) = self.gather(own)?.unwrap_or_default();
+        let left = if self.options.discard_particles { None } else { self.gather(own)? };
+        let (particles, owners) = left.unwrap_or_default();
         Ok(Outcome {
             particles,
             owners,

@@ -1,16 +1,17 @@
-//! What a model becomes on a device: walls, zones, patches and the initial particles.
+//! What a model becomes on a device: walls, zones and patches; and where its particles come from.
 
 use std::sync::Arc;
 
-use crate::gas::{Filling, fill};
-use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, region_bounds, region_contains, still_points};
+use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
 use crate::gpu::Device;
-use crate::scene::{Face, Method, Region};
-use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Scales, Walls, zone_of};
+use crate::output::Checkpoint;
+use crate::scene::{Face, Method};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
 use super::model::Model;
+use super::stock::{Initial, Stock, initial_particles};
 
 /// What the ranks that share a device have in common; made once for all of them.
 #[derive(Clone)]
@@ -21,9 +22,8 @@ pub struct Setup {
     /// Gas volume of each coarse block, m3.
     pub volumes: Arc<Vec<f64>>,
     /// What the space is cut by at the start, if not by the particles.
-    pub cut_by: Option<Arc<Vec<GpuParticle>>>,
-    /// All of them, by id (or as they were shuffled).
-    pub particles: Arc<Vec<GpuParticle>>,
+    pub cut_by: Option<Stock>,
+    pub particles: Stock,
 }
 
 /// The order in which the initial particles are handed to the device; results must not depend on it.
@@ -33,17 +33,18 @@ impl Setup {
     /// `ranks`: how many the particles will be shared among.
     ///
     /// # Errors
-    /// If the scene does not fit the device, or its gas does not fit its walls.
+    /// If the scene does not fit the device.
     pub fn new(
         model: &Model,
         device: &Device,
         ranks: usize,
         shuffle: Option<&Shuffle>,
     ) -> Result<Setup, SimulationError> {
+        let Some(shuffle) = shuffle else {
+            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), false);
+        };
         let mut particles = initial_particles(model)?;
-        if let Some(shuffle) = shuffle {
-            shuffle(&mut particles);
-        }
+        shuffle(&mut particles);
         Setup::with_particles(model, device, ranks, particles)
     }
 
@@ -52,7 +53,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, initial_particles(model)?, true)
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), true)
     }
 
     /// For a run that goes on: all particles of that moment instead of the initial ones.
@@ -65,14 +66,27 @@ impl Setup {
         ranks: usize,
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, particles, false)
+        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), false)
+    }
+
+    /// For a run that goes on from a checkpoint.
+    ///
+    /// # Errors
+    /// If the scene does not fit the device.
+    pub fn from_checkpoint(
+        model: &Model,
+        device: &Device,
+        ranks: usize,
+        checkpoint: Checkpoint,
+    ) -> Result<Setup, SimulationError> {
+        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), false)
     }
 
     fn build(
         model: &Model,
         device: &Device,
         ranks: usize,
-        particles: Vec<GpuParticle>,
+        particles: Stock,
         whole: bool,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
@@ -117,7 +131,7 @@ impl Setup {
             patches: patches.len(),
             volumes: Arc::new(volumes_of_blocks(model, &still)?),
             cut_by: None,
-            particles: Arc::new(particles),
+            particles,
         })
     }
 }
@@ -217,32 +231,4 @@ fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
         chambers: scene.chambers.len(),
         surfaces: surfaces.collect(),
     }
-}
-
-/// The initial gas, by id.
-pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationError> {
-    let Model { scene, vessel, plan, .. } = model;
-    let holds = |region: &Option<Region>, point| region.as_ref().is_none_or(|region| region_contains(region, point));
-    let in_chamber: Vec<Box<dyn Fn([f64; 3]) -> bool>> = (0..scene.chambers.len())
-        .map(|index| -> Box<dyn Fn([f64; 3]) -> bool> {
-            Box::new(move |point| {
-                scene.chambers.iter().position(|chamber| holds(&chamber.region, point)) == Some(index)
-            })
-        })
-        .collect();
-    let fillings: Vec<Filling<'_>> = scene
-        .chambers
-        .iter()
-        .zip(&plan.chambers)
-        .zip(&in_chamber)
-        .map(|((asked, planned), inside)| {
-            let (min, max) = asked.region.as_ref().map_or(vessel.bounds, region_bounds);
-            Filling { counts: &planned.particles, temperature: asked.temperature, min, max, in_chamber: inside }
-        })
-        .collect();
-    let is_gas = |point| vessel.is_gas(point);
-    let particles = fill(&fillings, &plan.species(), &is_gas, plan.moles_per_particle, plan.seed)?;
-    let scales = Scales::new(plan);
-    let on_device = particles.iter().map(|particle| GpuParticle::from_host(particle, &plan.grid, &scales));
-    Ok(on_device.collect::<Result<_, _>>()?)
 }

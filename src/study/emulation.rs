@@ -89,7 +89,7 @@ pub fn emulate(
         Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
     };
     let balance = BalanceOptions { mode, by: effort.by, ..BalanceOptions::default() };
-    let options = Options { balance, halo: effort.halo, ..Options::default() };
+    let options = Options { balance, halo: effort.halo, discard_particles: true, ..Options::default() };
     let intervals = settling + effort.intervals;
     let mut ranks = Vec::new();
     for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {

@@ -8,20 +8,17 @@ use crate::simulation::{Clock, Model, ModelError, RunState, particles_of};
 use crate::subdomain::GpuParticle;
 
 use super::StudyError;
+use super::launched::Start;
 
 /// A moment of a run, read from a checkpoint.
 pub struct Moment {
     /// The folder or checkpoint that was named.
     pub from: PathBuf,
-    /// The checkpoint, and the folder of its run.
-    pub checkpoint: PathBuf,
-    pub folder: PathBuf,
+    pub start: Start,
     pub model: Model,
     pub run: RunState,
     /// All of them, by id.
     pub particles: Vec<GpuParticle>,
-    /// Steps done.
-    pub step: u64,
     /// s.
     pub time: f64,
 }
@@ -41,7 +38,8 @@ impl Moment {
         let (_, run) = checkpoint.state()?;
         let particles = particles_of(&checkpoint)?;
         let (step, time) = (checkpoint.manifest().step, checkpoint.manifest().time);
-        Ok(Moment { from: from.to_path_buf(), checkpoint: path, folder, model, run, particles, step, time })
+        let start = Start { checkpoint: path, folder, step };
+        Ok(Moment { from: from.to_path_buf(), start, model, run, particles, time })
     }
 
     pub fn name(&self) -> String {

@@ -7,7 +7,7 @@ use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
     BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model, Options, Outcome, Setup, Shuffle, Simulation,
-    SimulationError,
+    SimulationError, Stock, initial_particles,
 };
 
 use crate::whole_run::{Run, Witness, device};
@@ -94,9 +94,9 @@ impl<'a> World<'a> {
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
         let mut setup = if way.ranks == 1 { self.one.clone() } else { self.several.clone() };
         if let Some(order) = way.order {
-            let mut particles = setup.particles.to_vec();
+            let mut particles = initial_particles(self.model).expect("the gas of the start");
             order(&mut particles);
-            setup.particles = Arc::new(particles);
+            setup.particles = Stock::Listed(Arc::new(particles));
         }
         let of_rank = |comm: &dyn Communicator| -> Result<(Witness, Outcome), SimulationError> {
             let wrapped = wrap.map(|wrap| wrap(comm));

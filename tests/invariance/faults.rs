@@ -16,6 +16,8 @@ use crate::whole_run::run;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
+    /// Of what it hands out at the start a particle is missing.
+    LoseStart,
     /// All updates of ghosts are missing: one alone may well concern nobody.
     LoseUpdates,
     /// All updates tell velocities that differ in the last bit.
@@ -51,10 +53,18 @@ const SPOILT: std::ops::Range<u32> = 50..250;
 impl Faulty<'_> {
     /// The message as it arrives; `None` if it does not.
     fn spoilt(&self, mut message: Vec<u8>) -> Option<Vec<u8>> {
+        let at_start = self.sent.get() == 0;
         self.sent.set(self.sent.get() + 1);
+        if at_start {
+            // One has what the other owns of the initial gas.
+            if self.fault == Fault::LoseStart && self.inner.rank() == 1 {
+                message.truncate(message.len() - size_of::<GpuParticle>());
+            }
+            return Some(message);
+        }
         // In the way below a step sends particles, then updates before each round but the first; the first step
         // sends updates once more, to count lost collisions.
-        let updates = self.sent.get() % 8 != 2;
+        let updates = (self.sent.get() - 1) % 8 != 2;
         // What lies in places without a particle may ask for longer lists: then the interval runs again, in other messages.
         let spoils = match self.fault {
             Fault::EmptyParticles => self.sent.get() >= SPOILT.start,
@@ -64,7 +74,7 @@ impl Faulty<'_> {
             return Some(message);
         }
         let fits = match self.fault {
-            Fault::None => false,
+            Fault::None | Fault::LoseStart => false,
             Fault::LoseMessage => true,
             Fault::LoseParticles | Fault::EmptyParticles | Fault::AlterParticles => !updates,
             _ => updates,
@@ -89,7 +99,7 @@ impl Faulty<'_> {
                 particles.for_each(|particle| particle[VELOCITY + 2] ^= 0x20);
             }
             Fault::AlterId => message[TAG] ^= 1,
-            Fault::None => {}
+            Fault::None | Fault::LoseStart => {}
         }
         Some(message)
     }
@@ -174,6 +184,8 @@ fn a_spoilt_message_is_seen() {
         let found = outcome(fault);
         assert!(matches!(&found, Ok(Some(_)) | Err(_)), "{fault:?}: {found:?}");
     }
+    let fewer = outcome(Fault::LoseStart);
+    assert!(fewer.as_ref().is_err_and(|error| error.contains("came to the ranks that own them")), "{fewer:?}");
     // So many are missing that no run goes on.
     let fewer = outcome(Fault::EmptyParticles);
     let missed = ["updates of ghosts", "particles are there"];

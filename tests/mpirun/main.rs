@@ -37,7 +37,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 const SCENES: [&str; 5] = ["tank", "box", "effusion", "tank-midway", "effusion-midway"];
 const MODES: [&str; 4] = ["off", "initial", "dynamic", "forced"];
 /// Scene, mode, ranks: each of them once at least.
-const SOME: [(&str, &str, usize); 8] = [
+const SOME: [(&str, &str, usize); 10] = [
     ("tank", "dynamic", 2),
     ("tank", "initial", 4),
     ("tank", "forced", 3),
@@ -45,6 +45,8 @@ const SOME: [(&str, &str, usize); 8] = [
     ("effusion", "dynamic", 3),
     ("box", "dynamic", 1),
     ("tank-midway", "dynamic", 3),
+    ("tank-midway", "initial", 2),
+    ("tank-midway", "off", 2),
     ("effusion-midway", "off", 2),
 ];
 

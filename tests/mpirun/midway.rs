@@ -1,6 +1,11 @@
 //! Runs from a state in the middle of a run: each process comes to it alone, and goes on from it among the others.
 
+use std::path::Path;
+
 use corpuscle::gpu::Device;
+use corpuscle::output::{
+    Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment as Written, Origin, OutputState,
+};
 use corpuscle::ranks::{Communicator, Solo};
 use corpuscle::simulation::{Model, Moment, Observer, Options, Request, RunState, Setup, Simulation, SimulationError};
 use corpuscle::subdomain::GpuParticle;
@@ -24,6 +29,21 @@ impl Observer for Cutter {
     }
 }
 
+/// As two ranks would have written it.
+fn saved(parent: &Path, model: &Model, state: &RunState, particles: &[GpuParticle]) -> Checkpoint {
+    let writer = CheckpointWriter::new(parent, 1);
+    let parts = [&particles[..particles.len() / 3], &particles[particles.len() / 3..]];
+    let write = |(rank, part)| writer.particles(rank, bytemuck::cast_slice(part));
+    let files = parts.into_iter().enumerate().map(write).collect::<Result<_, _>>().expect("files");
+    let moment = Written { step: 1, time: 0.0, particles: particles.len() as u64, ids: u64::from(u32::MAX) };
+    let plan = model.plan.to_toml().expect("a plan");
+    let origin = Origin::new(&model.scene, plan, Adapter::default()).expect("an origin");
+    let file = AppendedState { bytes: 0, crc32: 0 };
+    let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
+    let path = writer.commit(files, &moment, &origin, state, &output).expect("a checkpoint");
+    Checkpoint::open(&path).expect("a checkpoint")
+}
+
 /// What is left of a run after so many steps, on these ranks.
 pub fn go_on(
     model: &Model,
@@ -35,7 +55,12 @@ pub fn go_on(
     let mut cutter = Cutter { after, state: None };
     Simulation::new(model, device, Options::default())?.run(&mut cutter)?;
     let (state, particles) = cutter.state.expect("a state");
-    let setup = Setup::with_particles(model, device, comm.size(), particles)?;
+    let folder = tempfile::tempdir().expect("a folder");
+    let setup = match comm.size() {
+        1 => Setup::with_particles(model, device, 1, particles)?,
+        // Each reads its share of files that are the same for all.
+        ranks => Setup::from_checkpoint(model, device, ranks, saved(folder.path(), model, &state, &particles))?,
+    };
     let mut witness = Witness::default();
     let outcome = Simulation::resume(model, device, &setup, comm, options, &state)?.run(&mut witness)?;
     Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })

@@ -1,7 +1,7 @@
 //! States to be refined, each from a short run, made once; and runs that go on from a state.
 
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use corpuscle::gpu::Device;
 use corpuscle::output::{
@@ -195,8 +195,7 @@ impl Observer for Rows {
 /// Goes on from a state up to so many steps since the start of the run.
 pub fn go_on(model: &Model, particles: &[GpuParticle], state: &RunState, steps: u64) -> Continued {
     let device = Device::open(None).unwrap();
-    let setup = Setup::new(model, &device, 1, None).unwrap();
-    let setup = Setup { particles: Arc::new(particles.to_vec()), ..setup };
+    let setup = Setup::with_particles(model, &device, 1, particles.to_vec()).unwrap();
     let solo = Solo::new();
     let options = Options { stop_after_steps: Some(steps), ..Options::default() };
     let mut rows = Rows::default();

@@ -1,10 +1,8 @@
 //! The counts of a sweep that are emulated.
 
-use std::sync::Arc;
-
 use crate::gpu::Device;
 use crate::partition::By;
-use crate::simulation::{Ghosts, HaloOptions, Model, Setup, initial_particles};
+use crate::simulation::{Ghosts, HaloOptions, Initial, Model, Setup, Stock};
 use crate::study::Strategy;
 use crate::study::emulation::{Effort, Emulated, State, emulate};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
@@ -98,7 +96,7 @@ impl SweepPlan {
             let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
             let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
             // Cuts of the start of the run are made by the gas of then.
-            Ok(Setup { cut_by: Some(Arc::new(initial_particles(model)?)), ..setup })
+            Ok(Setup { cut_by: Some(Stock::Initial(Initial::default())), ..setup })
         };
         let several = pairs.iter().any(|&(devices, _)| devices > 1);
         let shared = several.then(|| set_up(&among, 2)).transpose()?;

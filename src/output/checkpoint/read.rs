@@ -1,7 +1,8 @@
 //! Reading a checkpoint: nothing is believed before its checksum.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -15,6 +16,8 @@ use super::{ID_MASK, ID_OFFSET, MANIFEST, OutputState, PLAN, RECORD_BYTES, SCENE
 const MOST_STATE_BYTES: u64 = 1 << 30;
 /// What is taken at once for a length that a file claims; more as data come.
 const FIRST_ALLOCATION: u64 = 64 << 20;
+/// Records that are read at once.
+pub(super) const PIECE: usize = 1 << 12;
 
 /// A checkpoint whose manifest is sound, with the rest checked as [`Checkpoint::open`] or the accessors say.
 #[derive(Debug, Clone)]
@@ -146,14 +149,63 @@ impl Checkpoint {
         let Some(record) = self.manifest.particle_files().nth(index) else {
             return Err(CheckpointError::Missing { path: self.path.join(super::particle_file(index)) });
         };
-        let (path, bytes) = self.checked(record)?;
-        let content = |problem: String| CheckpointError::Content { path: path.clone(), problem };
-        let expected = record.particles * RECORD_BYTES as u64;
-        let records = decompress(&bytes, expected).map_err(content)?;
-        if records.len() as u64 != expected {
-            return Err(content(format!("it has {} bytes of particles, {expected} were written", records.len())));
-        }
+        let mut records = Vec::new();
+        self.pieces(record, 0..record.particles, &mut |piece| records.extend_from_slice(piece))?;
         Ok(records)
+    }
+
+    /// The records `wanted` of all, counted through the files in their order, to `take` in pieces of at most
+    /// [`PIECE`]: no more than a piece is held.
+    ///
+    /// # Errors
+    /// If a file is not as it was written.
+    pub fn records(&self, wanted: Range<u64>, take: &mut dyn FnMut(&[u8])) -> Result<(), CheckpointError> {
+        let mut first = 0;
+        for record in self.manifest.particle_files() {
+            let own = wanted.start.max(first) - first..wanted.end.clamp(first, first + record.particles) - first;
+            if own.start < own.end {
+                self.pieces(record, own, take)?;
+            }
+            first += record.particles;
+        }
+        Ok(())
+    }
+
+    /// Records of one file, whose checksum is that of the bytes before any of them is taken.
+    fn pieces(
+        &self,
+        record: &FileRecord,
+        wanted: Range<u64>,
+        take: &mut dyn FnMut(&[u8]),
+    ) -> Result<(), CheckpointError> {
+        let path = self.path.join(&record.name);
+        let reading = || CheckpointError::reading(&path);
+        let mut file = File::open(&path).map_err(reading())?;
+        compare(&path, record, length_and_crc(&mut file).map_err(reading())?)?;
+        file.rewind().map_err(reading())?;
+        let content = |problem: String| CheckpointError::Content { path: path.clone(), problem };
+        let mut decoder = zstd::Decoder::new(file).map_err(|error| content(error.to_string()))?;
+        let mut piece = vec![0; PIECE * RECORD_BYTES];
+        let mut done = 0;
+        while done < wanted.end {
+            let bytes = (PIECE as u64).min(wanted.end - done) as usize * RECORD_BYTES;
+            let found = fill(&mut decoder, &mut piece[..bytes]).map_err(|error| content(error.to_string()))?;
+            if found < bytes {
+                let (found, expected) =
+                    (done * RECORD_BYTES as u64 + found as u64, record.particles * RECORD_BYTES as u64);
+                return Err(content(format!("it has {found} bytes of particles, {expected} were written")));
+            }
+            let skipped = wanted.start.saturating_sub(done).min((bytes / RECORD_BYTES) as u64) as usize;
+            if skipped * RECORD_BYTES < bytes {
+                take(&piece[skipped * RECORD_BYTES..bytes]);
+            }
+            done += (bytes / RECORD_BYTES) as u64;
+        }
+        if done == record.particles && fill(&mut decoder, &mut [0]).map_err(|error| content(error.to_string()))? > 0 {
+            let most = record.particles * RECORD_BYTES as u64;
+            return Err(content(format!("it holds more than {most} bytes")));
+        }
+        Ok(())
     }
 
     fn manifest_of(path: &Path) -> Result<Checkpoint, CheckpointError> {
@@ -175,25 +227,16 @@ impl Checkpoint {
 
     /// Files were found sound one by one; they must also belong together.
     fn check_ids(&self) -> Result<(), CheckpointError> {
-        let Manifest { ids, .. } = self.manifest;
-        let mut seen: Vec<u64> = Vec::new();
-        for (index, record) in self.manifest.particle_files().enumerate() {
+        let mut seen = Seen { ids: self.manifest.ids, bits: Vec::new() };
+        for record in self.manifest.particle_files() {
             let problem = |problem: String| CheckpointError::Content { path: self.path.join(&record.name), problem };
-            for particle in self.particles(index)?.chunks_exact(RECORD_BYTES) {
-                let mut word = [0; 4];
-                word.copy_from_slice(&particle[ID_OFFSET..ID_OFFSET + 4]);
-                let id = u32::from_le_bytes(word) & ID_MASK;
-                if u64::from(id) >= ids {
-                    return Err(problem(format!("it has particle {id}, and only {ids} had entered")));
-                }
-                let (slot, bit) = (id as usize / 64, 1 << (id % 64));
-                if slot >= seen.len() {
-                    seen.resize(slot + 1, 0);
-                }
-                if seen[slot] & bit != 0 {
-                    return Err(problem(format!("particle {id} is in the checkpoint twice, so another is missing")));
-                }
-                seen[slot] |= bit;
+            let mut trouble = None;
+            self.pieces(record, 0..record.particles, &mut |piece| {
+                let mut ids = piece.chunks_exact(RECORD_BYTES).map(id_of);
+                trouble = trouble.take().or_else(|| ids.find_map(|id| seen.trouble(id)));
+            })?;
+            if let Some(trouble) = trouble {
+                return Err(problem(trouble));
             }
         }
         Ok(())
@@ -215,6 +258,51 @@ impl Checkpoint {
         let (path, bytes) = self.checked(self.record(name)?)?;
         String::from_utf8(bytes).map_err(|error| CheckpointError::Content { path, problem: error.to_string() })
     }
+}
+
+/// The ids of particles that were met, a bit each.
+struct Seen {
+    /// All are below.
+    ids: u64,
+    bits: Vec<u64>,
+}
+
+impl Seen {
+    /// What is wrong with one more particle of this id.
+    fn trouble(&mut self, id: u32) -> Option<String> {
+        if u64::from(id) >= self.ids {
+            return Some(format!("it has particle {id}, and only {} had entered", self.ids));
+        }
+        let (slot, bit) = (id as usize / 64, 1 << (id % 64));
+        if slot >= self.bits.len() {
+            self.bits.resize(slot + 1, 0);
+        }
+        if self.bits[slot] & bit != 0 {
+            return Some(format!("particle {id} is in the checkpoint twice, so another is missing"));
+        }
+        self.bits[slot] |= bit;
+        None
+    }
+}
+
+fn id_of(record: &[u8]) -> u32 {
+    let mut word = [0; 4];
+    word.copy_from_slice(&record[ID_OFFSET..ID_OFFSET + 4]);
+    u32::from_le_bytes(word) & ID_MASK
+}
+
+/// As many bytes as there are, and fit.
+fn fill(source: &mut impl Read, into: &mut [u8]) -> std::io::Result<usize> {
+    let mut found = 0;
+    while found < into.len() {
+        match source.read(&mut into[found..]) {
+            Ok(0) => break,
+            Ok(count) => found += count,
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(found)
 }
 
 /// The complete checkpoint before that of `path`.

@@ -84,6 +84,38 @@ fn a_checkpoint_reads_back_as_written_whatever_the_number_of_ranks() {
     }
 }
 
+/// Any part of the particles, across files, comes in order and in pieces of bounded size.
+#[test]
+fn parts_of_the_particles_are_read_piece_by_piece() {
+    let dir = tempfile::tempdir().unwrap();
+    let counts = [9000, 0, 5, 13_000];
+    let number: u32 = counts.iter().sum();
+    let read = Checkpoint::open(&written(dir.path(), 320, &counts)).unwrap();
+    let ends = [0, 1, 4096, 8999, 9000, 9003, 9005, 9006, 20_000, number];
+    for (k, &start) in ends.iter().enumerate() {
+        for &end in &ends[k..] {
+            let (mut found, mut largest) = (Vec::new(), 0);
+            let mut take = |piece: &[u8]| {
+                largest = largest.max(piece.len());
+                found.extend_from_slice(piece);
+            };
+            read.records(start.into()..end.into(), &mut take).unwrap();
+            assert!(found == records(start..end), "particles {start} to {end}");
+            assert!(largest <= read::PIECE * RECORD_BYTES);
+        }
+    }
+    // A file is believed only as a whole, however little of it is wanted.
+    let file = read.path().join("particles-0003.bin");
+    let mut bytes = fs::read(&file).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&file, bytes).unwrap();
+    let mut taken = 0;
+    let error = read.records(9005..9006, &mut |piece| taken += piece.len()).unwrap_err();
+    assert!(text(&error).contains("its checksum is") && taken == 0, "{error}");
+    read.records(0..9005, &mut |piece| taken += piece.len()).unwrap();
+    assert_eq!(taken, 9005 * RECORD_BYTES);
+}
+
 /// Any alteration anywhere is refused with the file's name, and never a panic.
 fn altered(whole: &BTreeMap<String, Vec<u8>>, name: &str, content: Option<&[u8]>) -> String {
     let dir = tempfile::tempdir().unwrap();
@@ -199,6 +231,14 @@ fn particles_that_are_twice_or_beyond_there_are_refused() {
         let path = writer.commit(files, &moment, &origin(), &state(), &output()).unwrap();
         refusal(&path)
     };
+    let miscounted = |claimed: u64| {
+        let dir = tempfile::tempdir().unwrap();
+        let writer = CheckpointWriter::new(dir.path(), 1);
+        let file = FileRecord { particles: claimed, ..writer.particles(0, &records(0..3)).unwrap() };
+        refusal(&writer.commit(vec![file], &moment(1, claimed), &origin(), &state(), &output()).unwrap())
+    };
+    assert!(miscounted(2).contains("it holds more than 64 bytes"), "{}", miscounted(2));
+    assert!(miscounted(4).contains("it has 96 bytes of particles, 128 were written"), "{}", miscounted(4));
     assert!(refused(vec![0, 1, 1], moment(1, 3)).contains("particle 1 is in the checkpoint twice"));
     assert!(refused(vec![0, 1, 3], moment(1, 3)).contains("particle 3, and only 3 had entered"));
     assert!(refused(vec![0, 1], Moment { ids: 1, ..moment(1, 2) }).contains("files hold 2 particles"));
