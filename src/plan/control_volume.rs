@@ -87,7 +87,7 @@ pub fn plan(
         grid: Grid::around(low, high, longest / CELLS)?,
         chambers: chambers.collect(),
         gases: gases.collect(),
-        warnings: warnings(scene, &openings),
+        warnings: warnings(scene, measured, species, &openings),
         openings,
         vents: Vec::new(),
         reasons,
@@ -96,8 +96,9 @@ pub fn plan(
     })
 }
 
-/// Chambers that gas cannot leave, beside others; and what a control volume does not know.
-fn warnings(scene: &Scene, openings: &[OpeningPlan]) -> Vec<String> {
+/// Chambers that gas cannot leave, beside others; what a control volume does not know; and what it cuts, as particles do. (A vent
+/// passes what is asked of it here: there are no hits that could be too few.)
+fn warnings(scene: &Scene, measured: &Measured, species: &[Species], openings: &[OpeningPlan]) -> Vec<String> {
     let alone = |index: usize| openings.iter().all(|opening| !opening.between.contains(&index));
     let several = scene.chambers.len() > 1;
     let chambers = scene.chambers.iter().enumerate().filter(|(index, _)| several && alone(*index));
@@ -114,5 +115,6 @@ fn warnings(scene: &Scene, openings: &[OpeningPlan]) -> Vec<String> {
             wall.name
         )
     });
-    closed.chain(rough).collect()
+    let heat = super::vents::heat(scene, species, Method::ControlVolume, measured);
+    closed.chain(rough).chain(heat).chain(super::motion::covered(scene, measured)).collect()
 }

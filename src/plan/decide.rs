@@ -89,8 +89,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut warnings = warnings(scene, measured, &decided);
     warnings.extend(shortened);
     let vents = vents::planned(scene, &species, measured);
-    warnings.extend(vents::warnings(scene, &species, &vents, measured));
-    warnings.extend(motion::warnings(scene, &species, measured));
+    warnings.extend(vents::warnings(scene, &species, method, &vents, measured));
+    warnings.extend(motion::warnings(scene, &species, method, measured));
     Ok(Plan {
         method,
         particles,

@@ -40,7 +40,7 @@ pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
 pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};
 pub use forecast::{Cause, ColumnForecast, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
-pub use limits::{Bound, LIMITS, Limit, Quantity, Warning, limit, step_limit};
+pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 pub use render::significant;
 pub use resolution::{FASTEST_PAIR, LADDER_TAIL};
 

@@ -1,9 +1,10 @@
 //! Walls that move, before the run: how hot they make the gas.
 
+use super::limits::{Quantity, Warning};
 use super::render::significant;
 use super::{Measured, MeasuredMotion, Reason};
 use crate::gas::Species;
-use crate::scene::{GAS_CONSTANT, Scene};
+use crate::scene::{GAS_CONSTANT, Method, Scene};
 
 /// How many times as hot gas of temperature `hottest`, K, can get: compressed isentropically to the least volume, then by
 /// the shock that the fastest wall drives into it (Rankine and Hugoniot), by the gas in which each does most.
@@ -39,28 +40,26 @@ pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
     });
 }
 
-pub fn warnings(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<String> {
+/// Heat through walls beside moving ones, by all methods.
+pub fn covered(scene: &Scene, measured: &Measured) -> Option<String> {
+    let heated = measured.motion.is_some() && scene.walls.iter().any(|wall| wall.heat.is_some());
+    heated.then(|| {
+        "walls that exchange heat count with their areas as drawn, in the control volume and in heat fluxes, whatever \
+         part of them a moving wall covers"
+            .into()
+    })
+}
+
+pub fn warnings(scene: &Scene, species: &[Species], method: Method, measured: &Measured) -> Vec<String> {
     let Some(motion) = &measured.motion else { return Vec::new() };
-    let mut warnings = Vec::new();
-    if scene.walls.iter().any(|wall| wall.heat.is_some()) {
-        warnings.push(
-            "walls that exchange heat count with their areas as drawn, in the control volume and in heat fluxes, whatever \
-             part of them a moving wall covers"
-                .into(),
-        );
-    }
+    let mut warnings: Vec<String> = covered(scene, measured).into_iter().collect();
     let coldest = scene.chambers.iter().map(|chamber| chamber.temperature).fold(f64::INFINITY, f64::min);
     let heaviest = species.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
     let thermal = (GAS_CONSTANT * coldest / heaviest).sqrt();
-    if motion.fastest > FASTEST * thermal {
-        warnings.push(format!(
-            "a wall moves with {} m/s, {} times sqrt(kT/m) of the coldest gas: the shock before it is thinner than a cell",
-            significant(motion.fastest),
-            significant(motion.fastest / thermal)
-        ));
-    }
+    let subject = format!("a wall that moves with {} m/s", significant(motion.fastest));
+    let times = motion.fastest / thermal;
+    let remedy = "a slower wall";
+    warnings
+        .extend(Warning::by_table(Quantity::WallSpeed, method, &subject, times, remedy).map(|warning| warning.text));
     warnings
 }
-
-/// Times sqrt(kT/m).
-const FASTEST: f64 = 4.0;

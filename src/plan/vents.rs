@@ -1,15 +1,12 @@
 //! Vents and walls that exchange heat, before the run: how much flows at the start, and whether a probability of
 //! passing can give it (specification, section 4 "Modelled vent, porosity, leak").
 
-use super::render::significant;
+use super::limits::{Quantity, Warning};
 use super::{Measured, MeasuredVent, VentPlan};
-use crate::gas::vent::{LocalGas, UNCLIPPED, flux};
+use crate::gas::vent::{LocalGas, flux};
 use crate::gas::wall_heat::accommodation;
 use crate::gas::{Species, moles_at};
-use crate::scene::{Scene, VentFlow};
-
-/// The most that a probability of one lets out over p / sqrt(R T / M): n cbar m / 4.
-const KINETIC: f64 = 0.398_942_280_4;
+use crate::scene::{Method, Scene, VentFlow};
 
 /// Concentrations of the gas of a chamber at the start, mol/m3.
 fn concentrations(scene: &Scene, chamber: usize) -> Vec<f64> {
@@ -58,35 +55,34 @@ pub fn planned(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<V
     places.map(plan).collect()
 }
 
-pub fn warnings(scene: &Scene, species: &[Species], vents: &[VentPlan], measured: &Measured) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for vent in vents {
-        let what =
-            format!("vent `{}` may have to pass {} p/sqrt(RT) of its place", vent.name, significant(vent.largest_flux));
-        if vent.largest_flux > KINETIC {
-            warnings.push(format!(
-                "{what}, and all that hit it are {}: it cannot; spread its `area` over a larger place, or resolve the hole",
-                significant(KINETIC)
-            ));
-        } else if vent.largest_flux > UNCLIPPED {
-            warnings.push(format!(
-                "{what}; from {UNCLIPPED} on probabilities are clipped, and what leaves takes less than its enthalpy: \
-                 spread its `area` over a larger place"
-            ));
-        }
-    }
-    for &(wall, chamber) in &measured.heated {
-        let Some(heat) = &scene.walls[wall].heat else { continue };
+pub fn warnings(
+    scene: &Scene,
+    species: &[Species],
+    method: Method,
+    vents: &[VentPlan],
+    measured: &Measured,
+) -> Vec<String> {
+    let of_vent = |vent: &VentPlan| {
+        let table = |quantity, remedy: &str| {
+            Warning::by_table(quantity, method, &format!("vent `{}`", vent.name), vent.largest_flux, remedy)
+        };
+        table(Quantity::VentHits, "spread its `area` over a larger place, or resolve the hole")
+            .or_else(|| table(Quantity::VentFlux, "spread its `area` over a larger place"))
+    };
+    vents.iter().filter_map(of_vent).map(|warning| warning.text).chain(heat(scene, species, method, measured)).collect()
+}
+
+/// Walls whose coefficient is cut: by all methods alike.
+pub fn heat(scene: &Scene, species: &[Species], method: Method, measured: &Measured) -> Vec<String> {
+    let of_wall = |&(wall, chamber): &(usize, usize)| {
+        let (wall, chamber) = (&scene.walls[wall], chamber);
         let temperature = scene.chambers[chamber].temperature;
-        let share = accommodation(heat, species, &concentrations(scene, chamber), temperature);
-        if share > 1.0 {
-            warnings.push(format!(
-                "wall `{}`: its heat-transfer coefficient is {} times what all hits can carry at the start in chamber `{}`",
-                scene.walls[wall].name,
-                significant(share),
-                scene.chambers[chamber].name
-            ));
-        }
-    }
-    warnings
+        let share = accommodation(wall.heat.as_ref()?, species, &concentrations(scene, chamber), temperature);
+        let subject = format!("wall `{}` at the start in chamber `{}`", wall.name, scene.chambers[chamber].name);
+        Warning::by_table(Quantity::Heat, method, &subject, share, "a smaller `heat_transfer`, or `accommodation`")
+    };
+    // A place on a wall can stand there beside its rest.
+    let mut found: Vec<String> = measured.heated.iter().filter_map(of_wall).map(|warning| warning.text).collect();
+    found.dedup();
+    found
 }

@@ -68,6 +68,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         found.push(dense(decided));
         found.push(narrow(measured, decided));
         found.extend(thin(scene, decided));
+        found.extend(starved(decided));
     }
     found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
         let count = number_density * volume;
@@ -122,6 +123,21 @@ fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
     let bound = super::limits::limit(Quantity::ThinGas, method).map_or(f64::NAN, |limit| limit.bound.value());
     let remedy = format!("{} times the particles", significant((path / bound).powi(3)));
     Some(Warning::by_table(Quantity::ThinGas, method, &subject, path, &remedy))
+}
+
+/// Of the method `cell`: chambers with few particles in each cell, where gas has no longer free path than that.
+fn starved(decided: &Decided<'_>) -> Vec<Option<Warning>> {
+    let Decided { method, resolution, chambers, .. } = *decided;
+    let of_chamber = |chamber: &ChamberPlan| {
+        let density = chamber.particles.iter().sum::<u64>() as f64 / chamber.volume;
+        if density <= 0.0 || kinetics::mean_free_path(density, resolution.diameter) > resolution.cell {
+            return None;
+        }
+        let subject = format!("chamber `{}` at the start", chamber.name);
+        let remedy = "a smaller `diameter` or `occupancy`, or another `method`";
+        Warning::by_table(Quantity::CellParticles, method, &subject, density * resolution.cell.powi(3), remedy)
+    };
+    chambers.iter().map(of_chamber).collect()
 }
 
 /// Passages that gas collides across as if they were not there.

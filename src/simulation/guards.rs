@@ -116,6 +116,8 @@ impl<'a> Guards<'a> {
             (0, self.dense(&shown.tallies.blocks, shown.shares)),
             (0, self.last_step(shown.step)),
             (0, self.busy_walls(shown)),
+            (0, self.fast(shown)),
+            (0, self.starved(&shown.tallies.blocks)),
             (0, self.table(Quantity::EnergyDrift, "the gas", shown.drift.abs(), "report it with the scene")),
         ];
         for (index, (vent, [left, clipped])) in self.scene.vents.iter().zip(shown.clipped).enumerate() {
@@ -185,10 +187,51 @@ impl<'a> Guards<'a> {
         self.table(Quantity::WallHits, "the time step", hits, "a smaller `time_step`")
     }
 
+    /// By the gas at its end: the step follows what was seen two intervals before.
+    fn fast(&self, shown: &Shown<'_>) -> Option<Warning> {
+        let bound = limit(Quantity::FastParticles, self.plan.method)?.bound;
+        let total: u64 = shown.tallies.blocks.iter().map(|block| block.number).sum();
+        let fast = f64::from(*shown.tallies.fast.get(self.level(shown.step) as usize)?);
+        let share = |number: f64| number / total.max(1) as f64;
+        if bound.holds(share(fast - SURE * fast.sqrt())) {
+            return None;
+        }
+        self.table(Quantity::FastParticles, "the time step", share(fast), "a smaller `time_step`")
+    }
+
+    /// Blocks whose cells surely have too few particles, if more than a few of all are in them. Gas with a longer free path
+    /// than its cells leaves them before it collides again.
+    fn starved(&self, blocks: &[BlockSum]) -> Option<Warning> {
+        let bound = limit(Quantity::CellParticles, self.plan.method)?.bound;
+        let cell = self.plan.grid.cell;
+        let full = self.block_volumes.iter().copied().fold(0.0, f64::max);
+        let (mut total, mut within, mut sum) = (0, 0, 0.0);
+        for (block, &room) in blocks.iter().zip(&self.block_volumes) {
+            total += block.number;
+            let number = block.number as f64;
+            let in_cell = |number: f64| number / room * cell.powi(3);
+            let holds = room <= LEAST_VOLUME * full || bound.holds(in_cell(number + SURE * number.sqrt()));
+            if !holds && kinetics::mean_free_path(number / room, self.plan.diameter) <= cell {
+                within += block.number;
+                sum += number * in_cell(number);
+            }
+        }
+        if within as f64 <= TAIL * total as f64 {
+            return None;
+        }
+        let share = 100.0 * within as f64 / total as f64;
+        let subject = format!("where {share:.0} % of the gas is");
+        let remedy = "a smaller `diameter` or `occupancy`, or another `method`";
+        self.table(Quantity::CellParticles, &subject, sum / within as f64, remedy)
+    }
+
+    fn level(&self, step: f64) -> f64 {
+        (self.plan.time_step / step).log2().round()
+    }
+
     /// How far the step is from the ladder's smallest.
     fn last_step(&self, step: f64) -> Option<Warning> {
-        let level = (self.plan.time_step / step).log2().round();
-        let left = f64::from(self.plan.ladder_levels - 1) - level;
+        let left = f64::from(self.plan.ladder_levels - 1) - self.level(step);
         let remedy = "a smaller `time_step`, a smaller `diameter`, or more `rounds`";
         self.table(Quantity::Halvings, "the time step", left, remedy)
     }
@@ -277,7 +320,19 @@ mod tests {
         let (many, dense) = (tallies(100, 1900, filled(0.29)), tallies(0, 0, filled(0.4)));
         let mut busy = tallies(0, 0, Vec::new());
         busy.counters.bounces = 76;
-        let cases: [Change<'_>; 6] = [
+        let mut fast = tallies(0, 0, filled(0.29));
+        let total = fast.blocks[0].number as f64;
+        // At the limit, but for noise, and beyond that.
+        fast.fast = vec![(1e-3 * total + 2.9 * (1e-3 * total).sqrt()) as u32, 0];
+        assert_eq!(guards.interval(&Shown { step, ..shown(&fast) }), Vec::new());
+        fast.fast[0] = (1e-3 * total + 3.0 * (2e-3 * total + 9.0).sqrt()) as u32 + 9;
+        assert_eq!(
+            guards.interval(&Shown { step: 0.5 * step, ..shown(&fast) }),
+            Vec::new(),
+            "half a step is no flight"
+        );
+        let cases: [Change<'_>; 7] = [
+            (Shown { step, ..shown(&fast) }, Quantity::FastParticles, 1),
             (Shown { step, ..shown(&busy) }, Quantity::WallHits, 1),
             (Shown { step, ..shown(&many) }, Quantity::LostCollisions, 1),
             (Shown { step, ..shown(&dense) }, Quantity::Occupancy, 1),
@@ -302,6 +357,34 @@ mod tests {
         assert_eq!(resumed.interval(&Shown { step: 2.0 * last, ..shown(&calm) }), Vec::new());
         resumed.restore(guards.state());
         assert!(cases.iter().all(|(shown, ..)| resumed.interval(shown).is_empty()));
+    }
+
+    /// Where gas has become thin its cells are starved, unless it is so thin that it collides in none; what noise may be, and
+    /// the last few of the particles, are not told. Other methods have no such cells.
+    #[test]
+    fn starved_cells_are_told() {
+        let text = include_str!("../../scenes/vent.toml").to_string();
+        let mut scene = crate::scene::parse(&text, "vent.toml", Path::new("")).unwrap();
+        scene.model.method = Some(Method::Cell);
+        scene.model.occupancy = Some(0.25);
+        let mut model = Model::new(scene).unwrap();
+        let room = 64.0 * model.plan.grid.cell.powi(3);
+        let step = model.plan.time_step;
+        let told = |model: &Model, in_cell: f64, others: u64| {
+            let block = |number| BlockSum { number, energy: 0 };
+            let tallies = tallies(0, 0, vec![block((64.0 * in_cell) as u64), block(others)]);
+            let mut guards = Guards::new(&model.scene, &model.plan, vec![room; 2]);
+            let found = guards.interval(&Shown { step, ..shown(&tallies) });
+            found.iter().filter(|told| told.warning.quantity == Quantity::CellParticles).count()
+        };
+        // Full cells of it have 6 particles, five free paths: 1.3 of them still one.
+        assert_eq!(told(&model, 1.3, 384), 1);
+        assert_eq!(told(&model, 1.8, 384), 0, "two but for noise");
+        assert_eq!(told(&model, 6.0, 384), 0);
+        assert_eq!(told(&model, 0.5, 384), 0, "half a free path");
+        assert_eq!(told(&model, 1.3, 5000), 0, "2 % of the gas");
+        model.plan.method = Method::ClosestApproach;
+        assert_eq!(told(&model, 1.3, 384), 0);
     }
 
     /// Lost events are judged by thousands, and only where noise cannot have made them.

@@ -6,11 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::block_gas::BlockGas;
 use super::run_state::StateError;
-use crate::plan::{LADDER_TAIL, Plan};
+use crate::plan::{FAST_TAIL, LADDER_TAIL, Plan};
 use crate::subdomain::BlockSum;
 
-/// Share that may cross more than a cell in a step.
-const FAST_TAIL: f64 = 1e-3;
 /// Share of the collisions that may be of pairs faster than the plan's fastest: twice what 6 sqrt(kT/m) leaves in gas at
 /// the highest temperature of the plan, (1 + x) e^-x of the flux of pairs at x = m g^2 / (4 kT) = 9.
 const FAST_PAIRS: f64 = 2.5e-3;

@@ -194,11 +194,42 @@ fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::parse;
+    use crate::scene::{Method, parse};
     use crate::subdomain::{Features, Patches};
 
     fn model(text: &str) -> Model {
         Model::new(parse(text, "test.toml", std::path::Path::new("")).unwrap()).unwrap()
+    }
+
+    /// Vents, heat and fast walls by the one table: a vent of more than hits its place for particles alone, heat that is cut for
+    /// control volumes too.
+    #[test]
+    fn what_hits_cannot_carry_is_warned_of() {
+        let vent = include_str!("../../scenes/vent.toml");
+        let piston = include_str!("../../scenes/piston.toml");
+        let warned = |text: &str, method: Method, change: &dyn Fn(&mut Scene), part: &str| {
+            let mut scene = parse(text, "test.toml", std::path::Path::new("")).unwrap();
+            change(&mut scene);
+            scene.model = crate::scene::ModelRequest { method: Some(method), ..Default::default() };
+            let plan = Model::new(scene).unwrap().plan;
+            plan.warnings.iter().filter(|text| text.contains(part)).count()
+        };
+        let hot = |scene: &mut Scene| {
+            let heat = scene.walls.iter_mut().find_map(|wall| wall.heat.as_mut()).unwrap();
+            heat.transfer = crate::scene::HeatTransfer::Coefficient(1e7);
+        };
+        let [particles, volume] = [Method::ClosestApproach, Method::ControlVolume];
+        for method in [particles, volume] {
+            assert_eq!(warned(vent, method, &|_| (), "all hits can carry"), 0);
+            assert_eq!(warned(vent, method, &hot, "all hits can carry"), 1);
+        }
+        let wide = |scene: &mut Scene| scene.vents.iter_mut().for_each(|vent| vent.area = Some(1.0));
+        assert_eq!(warned(vent, particles, &|_| (), "largest flux"), 0);
+        assert!(warned(vent, particles, &wide, "of all hits on it") > 0);
+        assert_eq!(warned(vent, volume, &wide, "largest flux"), 0);
+        let cold = |scene: &mut Scene| scene.chambers.iter_mut().for_each(|chamber| chamber.temperature = 0.005);
+        assert_eq!(warned(piston, particles, &|_| (), "of the coldest gas"), 0);
+        assert_eq!(warned(piston, particles, &cold, "of the coldest gas"), 1);
     }
 
     /// What the plan says is left out is what the kernels are compiled without, scene by scene.

@@ -19,6 +19,7 @@ mod orifice;
 mod piston;
 mod planner;
 mod reference_cases;
+mod starved;
 mod statistics;
 mod switch;
 mod two_chambers;

@@ -1,8 +1,9 @@
 //! The cases of `corpuscle verify` that no other test here runs, as `--quick` runs them: every row passes. And that such
 //! rows can fail: gas without collisions is no continuum, and does not pass as one.
 
-use corpuscle::scene::Method;
-use corpuscle::study::verify::{CASES, Check, Effort, Verdict, collisions, sod};
+use corpuscle::scene::{GAS_CONSTANT, HeatCapacity, Method, Scene};
+use corpuscle::study::pareto::Setting;
+use corpuscle::study::verify::{CASES, Check, Effort, Verdict, collisions, holes, shear, sod, sound};
 
 use crate::equilibrium_box::EquilibriumBox;
 use crate::whole_run::device;
@@ -44,6 +45,9 @@ fn shock_tubes_are_those_of_the_exact_solution() {
 #[test]
 fn monatomic_shock_tubes_are_those_of_the_exact_solution() {
     passes("sod-monatomic");
+    // Of free flight, as with gamma 7/5.
+    let (checks, _) = sod::against(&device(), 40_000, 5.0 / 3.0, Method::None, 0).expect("a run");
+    checks.iter().for_each(fails);
 }
 
 #[test]
@@ -57,14 +61,33 @@ fn expansion_into_a_vacuum_is_that_of_the_exact_solution() {
 #[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify sound` runs the case too"]
 fn a_standing_wave_has_the_speed_of_sound() {
     passes("sound");
+    // Rigid spheres of f = .1 have sound that is 15 % faster (specification, section 2).
+    let rigid = Setting {
+        method: Some(Method::HardSphere),
+        particles: Some(24_000),
+        occupancy: Some(0.1),
+        ..Setting::default()
+    };
+    fails(&sound::frequency(&device(), &rigid, 0.03).expect("a run"));
 }
 
 #[test]
 fn vortices_decay_with_the_viscosity_of_the_method() {
     passes("viscosity");
+    // At f = .2 it is .54 (specification, section 2), where .65 is allowed a tenth of it.
+    fails(&shear::at_occupancy(&device(), 0.2, 8000, 8).expect("a run"));
 }
 
 #[test]
 fn a_chamber_empties_between_isentropically_and_by_effusion() {
     passes("blow-down");
+    let emptied = |change: &dyn Fn(&mut Scene)| holes::emptied(&device(), 6000, change).expect("a run").checks;
+    // A gas of gamma 5/3 has 1/3 in free flight and 2/3 as a continuum.
+    let monatomic = |scene: &mut Scene| scene.gases[0].heat = HeatCapacity::Constant(1.5 * GAS_CONSTANT);
+    fails(&emptied(&monatomic)[0]);
+    // Free flight leaves more slowly, Cd .58 (its .2 is one of the ends).
+    let free = |scene: &mut Scene| {
+        (scene.model.diameter, scene.model.diameter_cap, scene.model.method) = (None, None, Some(Method::None));
+    };
+    fails(&emptied(&free)[1]);
 }

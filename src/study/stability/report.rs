@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::output::{MapCell, MapRow, OutputError, aligned, map_chart};
-use crate::plan::{LIMITS, significant};
+use crate::plan::{LIMITS, Limit, significant};
 use crate::scene::Method;
 use crate::study::verify::Check;
 
@@ -159,8 +159,7 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
          ([errors](errors.md#warnings)).\n\n## Guards\n\n| quantity | method | limit | beyond it |\n|---|---|---|---|\n"
     );
     for limit in LIMITS {
-        let method = limit.method.map_or("all others", Method::name);
-        let _ = writeln!(page, "| {} | {method} | {} | {} |", limit.quantity.name(), limit.bound.words(), limit.effect);
+        let _ = writeln!(page, "{}", guard(limit));
     }
     page +=
         "\nThat of the time step depends on the rounds: [docs/method.md](method.md#what-the-plan-decides-and-why).\n";
@@ -229,10 +228,24 @@ fn colour_of(point: &Point) -> usize {
     KINDS.iter().position(|kind| worst.starts_with(kind)).unwrap_or(6)
 }
 
+fn guard(limit: &Limit) -> String {
+    let method = limit.method.map_or("all others", Method::name);
+    format!("| {} | {method} | {} | {} |", limit.quantity.name(), limit.bound.words(), limit.effect)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::AXES;
     use super::*;
+
+    /// The page is made once in a while; its table of guards is that of today.
+    #[test]
+    fn the_guards_of_the_page_are_those_of_the_table() {
+        let page = include_str!("../../../docs/limits.md");
+        let table = page.split("\n\n").find(|part| part.starts_with("| quantity")).unwrap();
+        let expected: Vec<String> = LIMITS.iter().map(guard).collect();
+        assert_eq!(table.lines().skip(2).collect::<Vec<_>>(), expected);
+    }
 
     /// The table, the file and the page name what broke, by how much, and the guard.
     #[test]

@@ -6,15 +6,16 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::Grid;
+use crate::geometry::{Grid, GridError};
 use crate::gpu::Device;
+use crate::plan::PlanError;
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::subdomain::GpuParticle;
 
 use super::gas_box::{EDGE, EquilibriumBox};
 use super::statistics::mean_and_error;
-use super::witness::{model_from, scene_of};
+use super::witness::{model_from, scene_of, unsound};
 use super::{Check, Effort, Findings, run};
 
 /// Kinematic viscosity over d c0 of closest approach at f = .1 (specification, section 2), known to 10 %.
@@ -36,6 +37,19 @@ fn form(grid: &Grid, particle: &GpuParticle) -> [f64; 2] {
 /// # Errors
 /// If a run fails.
 pub fn viscosity(device: &Device, gas: EquilibriumBox<'_>, seeds: u64) -> Result<(f64, f64), StudyError> {
+    viscosity_in(device, gas, seeds, None)
+}
+
+/// The same, with cells of this edge, m, in place of the plan's.
+///
+/// # Errors
+/// If a run fails.
+pub fn viscosity_in(
+    device: &Device,
+    gas: EquilibriumBox<'_>,
+    seeds: u64,
+    cell: Option<f64>,
+) -> Result<(f64, f64), StudyError> {
     // Some .65 d c0 (specification, section 2): the time in which the vortices fall to LAST.
     let distance = EDGE / (gas.particles as f64).cbrt();
     let mut gas_box = EquilibriumBox { snapshots: 40, ..gas };
@@ -48,6 +62,10 @@ pub fn viscosity(device: &Device, gas: EquilibriumBox<'_>, seeds: u64) -> Result
         scene.seed = seed;
         let mut model = model_from("shear", scene)?;
         model.plan.collision_limit = 1.0;
+        if let Some(edge) = cell {
+            let wrong = |error: GridError| unsound("shear", PlanError::from(error).into());
+            model.plan.grid = Grid::around([0.0; 3], [EDGE; 3], edge).map_err(wrong)?;
+        }
         let grid = model.plan.grid;
         let stirred = move |particles: &mut [GpuParticle]| {
             for particle in particles {
@@ -86,12 +104,19 @@ fn decay(series: &[(f64, f64)]) -> f64 {
     -(n * tl - t * l) / (n * tt - t * t)
 }
 
-/// [`FLOOR`].
 pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, seeds) = if effort == Effort::Quick { (8000, 8) } else { (32_000, 8) };
-    let gas = EquilibriumBox { particles, step_over_tau: 0.2, ..EquilibriumBox::default() };
+    Ok(vec![at_occupancy(device, 0.1, particles, seeds)?].into())
+}
+
+/// Gas of this occupancy against [`FLOOR`], which is that of .1.
+///
+/// # Errors
+/// If a run fails.
+pub fn at_occupancy(device: &Device, occupancy: f64, particles: u64, seeds: u64) -> Result<Check, StudyError> {
+    let gas = EquilibriumBox { particles, occupancy, step_over_tau: 0.2, ..EquilibriumBox::default() };
     let found = viscosity(device, gas, seeds)?;
-    Ok(vec![Check::of(format!("nu / (d c0), f = .1, N = {particles}"), FLOOR, found, 0.1 * FLOOR)].into())
+    Ok(Check::of(format!("nu / (d c0), f = .1, N = {particles}"), FLOOR, found, 0.1 * FLOOR))
 }
 
 #[cfg(test)]

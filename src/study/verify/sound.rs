@@ -12,15 +12,7 @@ use super::tube::{LENGTH, SOD, Tube};
 use super::{Check, Effort, Findings, run};
 
 /// The frequency of the first mode over pi c / L, and its standard error, from the mean of cos(pi x / L) over the
-/// particles, which follows a damped cosine.
-///
-/// # Errors
-/// If the run fails.
-pub fn standing_wave(device: &Device, particles: u64) -> Result<(f64, f64), StudyError> {
-    wave(device, &Setting { particles: Some(particles), ..Setting::default() }, 1.0)
-}
-
-/// The same of a run with this setting, whose sound is about `faster` times that of the ideal gas.
+/// particles, which follows a damped cosine: of a run with this setting, whose sound is about `faster` times that of the ideal gas.
 ///
 /// # Errors
 /// If the run fails.
@@ -109,8 +101,16 @@ fn solved(mut m: [[f64; 4]; 3]) -> [f64; 3] {
 pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     // One per cent is the specification's, section 8; a third of it takes 200,000 particles, and fewer know less.
     let (particles, tolerance) = if effort == Effort::Quick { (24_000, 0.03) } else { (240_000, 0.01) };
-    let quantity = format!("frequency, N = {particles}");
-    Ok(vec![Check::of(quantity, 1.0, standing_wave(device, particles)?, tolerance)].into())
+    Ok(vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?].into())
+}
+
+/// Of a run with this setting.
+///
+/// # Errors
+/// If the run fails.
+pub fn frequency(device: &Device, setting: &Setting, tolerance: f64) -> Result<Check, StudyError> {
+    let quantity = format!("frequency, N = {}", setting.particles.unwrap_or(SOD.particles));
+    Ok(Check::of(quantity, 1.0, wave(device, setting, 1.0)?, tolerance))
 }
 
 #[cfg(test)]

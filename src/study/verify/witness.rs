@@ -49,8 +49,11 @@ pub(super) fn model_of(case: &str, text: &str) -> Result<Model, StudyError> {
 
 /// `case` stands in the message if its walls or its plan are not sound.
 pub(crate) fn model_from(case: &str, scene: Scene) -> Result<Model, StudyError> {
-    let wrong = |error: ModelError| StudyError::Model { from: case.into(), error: Box::new(error) };
-    Model::new(scene).map_err(wrong)
+    Model::new(scene).map_err(|error| unsound(case, error))
+}
+
+pub(super) fn unsound(case: &str, error: ModelError) -> StudyError {
+    StudyError::Model { from: case.into(), error: Box::new(error) }
 }
 
 /// # Errors
