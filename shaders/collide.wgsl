@@ -162,13 +162,13 @@ fn collide(
             let place = cell_of(bin);
             let cell = cell_index(place);
             let entry = cell_volume[cell];
+            var count = bin_end - begin;
+            crowded = count > MEMBERS;
             if (in_any_motion(place)) {
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;
             } else {
-                var count = bin_end - begin;
-                crowded = count > MEMBERS;
                 if (!crowded) {
                     put_in_order(begin, count);
                 }

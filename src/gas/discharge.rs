@@ -29,7 +29,7 @@ use crate::scene::{GAS_CONSTANT, Mixture};
 pub const CONTINUUM_COEFFICIENT: f64 = 0.84;
 /// Cd of free flight through a hole, and of a thin orifice in the continuum, over choked isentropic flow (specification,
 /// section 4).
-const LIMITS: [f64; 2] = [0.583, CONTINUUM_COEFFICIENT];
+pub const COEFFICIENT_LIMITS: [f64; 2] = [0.583, CONTINUUM_COEFFICIENT];
 /// (Kn, Cd) into vacuum, over choked flow; and at the pressure ratio [`MODERATE_RATIO`], over the isentropic flow there.
 /// The specification, whose figures are good to .02, has none between .3 and 10: those at 3 and 1 are [`published`], which `corpuscle
 /// verify orifice --full` meets within its noise.
@@ -74,7 +74,7 @@ pub fn published(knudsen: f64) -> f64 {
     let [(x0, y0), (x1, y1)] = [ORIFICE[k], ORIFICE[k + 1]];
     let part = (rarefaction / x0).ln() / (x1 / x0).ln();
     let risen = (y0 - 1.0) * ((y1 - 1.0) / (y0 - 1.0)).powf(part) / (ORIFICE[last].1 - 1.0);
-    let [free, continuum] = LIMITS;
+    let [free, continuum] = COEFFICIENT_LIMITS;
     free + (continuum - free) * risen.min(1.0)
 }
 
@@ -215,7 +215,10 @@ mod tests {
             assert_eq!(specified(knudsen), (!BETWEEN.contains(&knudsen)).then_some(cd));
         }
         assert_eq!(specified(0.2), None);
-        assert!((published(1e-3) - LIMITS[1]).abs() < 1e-9 && (published(1e3) - LIMITS[0]).abs() < 1e-3);
+        assert!(
+            (published(1e-3) - COEFFICIENT_LIMITS[1]).abs() < 1e-9
+                && (published(1e3) - COEFFICIENT_LIMITS[0]).abs() < 1e-3
+        );
     }
 
     #[test]

@@ -26,7 +26,9 @@ pub use curve::{
     FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,
     value_held, value_inside, velocity,
 };
-pub use discharge::{BETWEEN, CONTINUUM_COEFFICIENT, Side, exchange, isentropic, published, specified};
+pub use discharge::{
+    BETWEEN, COEFFICIENT_LIMITS, CONTINUUM_COEFFICIENT, Side, exchange, isentropic, published, specified,
+};
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn, jet_mach, jet_state};
 pub use initial::{Correction, FillError, Filling, InitialGas};
 pub use modes::{MOST_MODES, fit};

@@ -12,8 +12,6 @@ const NOISE: f64 = 0.05;
 const WINDOW: f64 = 1e-3;
 /// Wanted Knudsen number of the smallest opening: about 7 % on its flow.
 pub const WANTED_KNUDSEN: f64 = 0.1;
-/// Effective mean free path of the method `cell` over the mean spacing (specification, section 2).
-const CELL_PATH: f64 = 0.9;
 /// The most particles that the plan chooses by itself.
 const MOST_UNASKED: f64 = 1e7;
 
@@ -43,11 +41,8 @@ pub fn wanted(
     let statistics = 5.1 * volume / (speed * area * WINDOW * NOISE * NOISE);
     let noise = format!("{:.0} % noise of the pressure on {} cm2 in 1 ms", 100.0 * NOISE, significant(1e4 * area));
     let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
-    let path = match method {
-        Method::Cell => CELL_PATH,
-        _ => kinetics::effective_mean_free_path_over_spacing(occupancy),
-    };
-    let spacing = WANTED_KNUDSEN * smallest / path;
+    let worse = if method == Method::Cell { kinetics::HOLES_OF_CELLS } else { 1.0 };
+    let spacing = WANTED_KNUDSEN * smallest / (worse * kinetics::effective_mean_free_path_over_spacing(occupancy));
     let resolution = volume / (spacing * spacing * spacing);
     if method == Method::None || resolution <= statistics {
         return give(statistics.min(MOST_UNASKED).ceil() as u64, noise);

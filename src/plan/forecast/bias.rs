@@ -7,7 +7,7 @@ use crate::scene::{Jet, Method, Orifice};
 
 /// f at which the specification's rules of resolution are made (section 6).
 const USUAL_OCCUPANCY: f64 = 0.12;
-/// Effective mean free path of the method `cell` over the mean spacing (specification, section 2).
+/// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (specification, section 2).
 const CELL_PATH: f64 = 0.9;
 /// T_int/T_tr falls by a tenth of the share of lost collisions: .985 where .186 are lost, .946 where .538 are
 /// (specification, section 2).
@@ -27,7 +27,8 @@ const CHOKED_THRUST: f64 = 1.27;
 const SLOW_THRUST: f64 = 2.0;
 const COEFFICIENT: f64 = 0.84;
 
-/// The mean free path (over d) that the viscosity measured for a method says (specification, section 2).
+/// The mean free path (over d) that the viscosity measured for a method says (specification, section 2). Of `cell` that by which fronts go:
+/// by its viscosity it is 1.2 (`corpuscle verify viscosity-floor --full`).
 pub fn effective_path(method: Method, occupancy: f64) -> f64 {
     match method {
         Method::Cell => CELL_PATH,
@@ -36,10 +37,12 @@ pub fn effective_path(method: Method, occupancy: f64) -> f64 {
 }
 
 /// The diameter by which the discharge coefficients of holes follow, m: discharge was measured against the kinetic mean free
-/// path at occupancies about .12, and goes with the effective one at others, and for `cell`.
+/// path at occupancies about .12, and goes with the effective one at others; of `cell` it is that of a gas as much thinner as its
+/// cells make it.
 pub fn diameter_of_holes(method: Method, occupancy: f64, number_density: f64) -> f64 {
     let usual = kinetics::diameter(number_density, USUAL_OCCUPANCY);
-    let ratio = effective_path(method, occupancy) / effective_path(Method::ClosestApproach, USUAL_OCCUPANCY);
+    let paths = [occupancy, USUAL_OCCUPANCY].map(kinetics::effective_mean_free_path_over_spacing);
+    let ratio = if method == Method::Cell { kinetics::HOLES_OF_CELLS } else { 1.0 } * paths[0] / paths[1];
     usual / ratio.sqrt()
 }
 
@@ -151,7 +154,7 @@ mod tests {
         let usual = kinetics::diameter(1e7, 0.12);
         assert!(near(diameter_of_holes(Method::ClosestApproach, 0.12, 1e7), usual, 1e-12));
         let path = |diameter| kinetics::mean_free_path(1e7, diameter);
-        assert!(near(path(diameter_of_holes(Method::Cell, 0.12, 1e7)) / path(usual), 0.9 / 0.79, 1e-9));
+        assert!(near(path(diameter_of_holes(Method::Cell, 0.12, 1e7)) / path(usual), 3.0, 1e-9));
         let dense = path(diameter_of_holes(Method::ClosestApproach, 0.4, 1e7));
         assert!(dense < path(usual) && dense > path(kinetics::diameter(1e7, 0.4)));
     }

@@ -11,7 +11,7 @@
 //! | pairs found | half of the entries of the lists |
 //! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
 //! | walls, for a flight near them and at each hit | one cell, one triangle up to the side it shows |
-//! | members of a cell, twice; candidates in it | all; those that collided |
+//! | members of a cell, twice, and what puts them in order; candidates in it | all; those that collided |
 //! | particles in the tally | all up to the test of the zone for each zone and two gases, once the rest |
 //!
 //! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
@@ -23,9 +23,10 @@ use crate::scene::Method;
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work.
-const COUNTED: [&str; 19] = [
+const COUNTED: [&str; 20] = [
     "inject",
     "bin",
+    "arrange",
     "scan_sums",
     "scan_chunks",
     "scan_cells",
@@ -52,7 +53,8 @@ const FEWEST_TURNS: f64 = 4.0;
 const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
 const MUTUAL: &str = "if (other == NOBODY";
 const LISTED: &str = "for (var k = 0u; k < listed";
-const MEMBERS: &str = "else if (end > begin + 1u)";
+const IN_ORDER: &str = "if (!crowded)";
+const COLLIDING: &str = "if (count > 1u)";
 const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
 const MAY_HIT: &str = "if (around == CLASS_SOLID";
 
@@ -128,12 +130,12 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("scan_cells", "for (; four < filled")? * filled
                 + counted.turn("scan_cells", "for (; four < end")? * (fours - filled).max(0.0)
         }
-        "sort" => {
-            let order = if rounds { counted.away_from_walls("order")? } else { counted.straight("order")? };
-            let slots = counted.turn("order", "for (var k = begin >> 2u")?;
+        "sort" if rounds => {
+            let order = counted.away_from_walls("order")? + counted.turn("order", "for (var k = begin >> 2u")?;
             let walls = (counted.straight("wall_times")? + counted.walls("wall_times")?) * work.near_walls;
-            (counted.straight("scatter")? + order + slots) * n + if rounds { walls } else { Operations::default() }
+            (counted.straight("scatter")? + order) * n + walls
         }
+        "sort" => counted.straight("arrange")? * n,
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
             counted.straight("neighbours")? * n
@@ -153,7 +155,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "collide" => {
             let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
             let of_members = counted.of("collide")?.every("for (var k = 0u; k < count");
-            let shared = counted.turn("collide", "if (bin_end > begin + 1u)")? + counted.turn("collide", MEMBERS)?;
+            let parts = ["if (bin_end > begin + 1u)", IN_ORDER, COLLIDING];
+            let shared = parts.iter().map(|text| counted.turn("collide", text)).sum::<Option<Operations>>()?;
             cell * cells
                 + shared * work.shared
                 + of_members * work.gathered

@@ -33,11 +33,11 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
         // Counters in, and the starts out in their place; sums of stretches of cells out. (The counters are cleared outside of the phases.)
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
-        // State, cell and place in it, and where the cell starts in; slot and state out.
+        // State, cell and place in it, and where the cell starts in; state out.
         "sort" => {
-            // Cell, layer, flight, middle, mark of the rounds and length of the list.
-            let of_rounds = if rounds { FLIGHT + 5.0 * WORD } else { 0.0 };
-            n * (PARTICLE + 2.0 * WORD + WORD + PARTICLE + of_rounds) + filled * WORD
+            // Slot, cell, layer, flight, middle, mark of the rounds and length of the list.
+            let of_rounds = if rounds { FLIGHT + 6.0 * WORD } else { 0.0 };
+            n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds) + filled * WORD
         }
         // Middle and cell in, where the cells start, that nobody has chosen out; of those with neighbours the state in and the length of
         // the list in and out; the lists out; of those that may collide their mark in and out, and their entry.
@@ -123,7 +123,7 @@ mod tests {
         let floor = |phase, method| bytes(phase, method, &work).unwrap();
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
         assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
-        assert_eq!([floor("sort", rounds), floor("sort", cell)], [112.0, 76.0]);
+        assert_eq!([floor("sort", rounds), floor("sort", cell)], [112.0, 72.0]);
         assert_eq!(floor("neighbours", rounds), 16.0);
         assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
         assert_eq!(["tally", "blocks", "remember"].map(|phase| floor(phase, cell)), [32.0, 32.0, 64.0]);
