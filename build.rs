@@ -46,6 +46,10 @@ fn main() {
     for path in SOURCES {
         println!("cargo::rerun-if-changed={path}");
     }
+    // The commit changes without them.
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
+        println!("cargo::rerun-if-changed={log}");
+    }
     let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
         for path in unused {
             println!("cargo::warning={} is used by no kernel", path.display());
@@ -71,10 +75,6 @@ fn main() {
 
 /// What git says of this package's own working tree.
 fn commit() -> Option<String> {
-    let git = |arguments: &[&str]| {
-        let done = process::Command::new("git").args(arguments).output().ok().filter(|done| done.status.success())?;
-        Some(String::from_utf8(done.stdout).ok()?.trim().to_owned())
-    };
     // The package may lie within another's working tree.
     let root = fs::canonicalize(git(&["rev-parse", "--show-toplevel"])?).ok()?;
     if root != fs::canonicalize(".").ok()? {
@@ -83,6 +83,12 @@ fn commit() -> Option<String> {
     let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
     let changed = !git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?.is_empty();
     Some(if changed { commit + "-changed" } else { commit })
+}
+
+/// What git answers, if it does.
+fn git(arguments: &[&str]) -> Option<String> {
+    let done = process::Command::new("git").args(arguments).output().ok().filter(|done| done.status.success())?;
+    Some(String::from_utf8(done.stdout).ok()?.trim().to_owned())
 }
 
 /// Adds a file, or all files of a folder in the order of their names, to a hash (FNV-1a, 64 bits).

@@ -5,7 +5,7 @@
 // Reads `particles`; writes `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
 // owned here nor lies in the halo) and the counts where `scan_cells` puts the starts (`cell_start`, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
-// within the cell depends on the order of the threads; `order` replaces it by the rank of the id.
+// within the cell depends on the order of the threads; `order` replaces it by the rank of the id, `arrange` only in some cells.
 
 // What part of the step's flight is flown to the place that decides the cell.
 override FLOWN: f32 = 0.5;

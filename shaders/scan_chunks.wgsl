@@ -1,45 +1,15 @@
-//! uses: step.wgsl
+//! uses: step.wgsl prefix.wgsl
 // Scan, part 2: the sums of the chunks become their exclusive prefix sums, and the sum of all stands behind them.
 //
-// Reads and writes `chunk_sums` (one more than there are chunks). One workgroup; each thread takes one contiguous share.
+// Reads and writes `chunk_sums` (one more than there are chunks). One workgroup. (Of many chunks sum_stretches.wgsl and the two behind it
+// do the same.)
 
 override CHUNK: u32;
-override SCAN_THREADS: u32 = 128;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
-
-var<workgroup> shares: array<u32, SCAN_THREADS>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn scan_chunks(@builtin(local_invocation_index) thread: u32) {
     // With the cell behind the last.
-    let count = step.bins / CHUNK + 1u;
-    let share = (count + SCAN_THREADS - 1u) / SCAN_THREADS;
-    let begin = min(thread * share, count);
-    let end = min(begin + share, count);
-    var sum = 0u;
-    for (var k = begin; k < end; k++) {
-        sum += chunk_sums[k];
-    }
-    shares[thread] = sum;
-    workgroupBarrier();
-    if (thread == 0u) {
-        var before = 0u;
-        for (var k = 0u; k < SCAN_THREADS; k++) {
-            let own = shares[k];
-            shares[k] = before;
-            before += own;
-        }
-    }
-    workgroupBarrier();
-    var before = shares[thread];
-    for (var k = begin; k < end; k++) {
-        let own = chunk_sums[k];
-        chunk_sums[k] = before;
-        before += own;
-    }
-    if (begin < end && end == count) {
-        chunk_sums[count] = before;
-    }
+    scan_shares(thread, step.bins / CHUNK + 1u);
 }

@@ -97,10 +97,15 @@ pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     TABLE[3][1]
 }
 
-/// By how many times its Knudsen number a hole acts on the method `cell`, against closest approach: of the flow of a continuum 20 % is
-/// lacking at .1 and 37 % at .3, where closest approach lacks 6 and 19 (`docs/limits.md`, `knudsen`), for a cell of a plan is two to
-/// three mean free paths long. The specification has 1.1 by the viscosity.
-pub const HOLES_OF_CELLS: f64 = 3.0;
+/// By how many times its Knudsen number a hole acts on the method `cell`, against closest approach, in cells of six particles or a mean
+/// free path. Measured at f = .12, where cells are three free paths long: three times, for at Kn = .1 the flow lacks 20 % of that of a
+/// continuum, as with closest approach at .3 (`docs/limits.md`, `knudsen`; at .3 it lacks 37 %, more than free flight, and no Knudsen number
+/// tells it). With the square of the cell's edge, as its viscosity goes (Alexander, Garcia and Alder, 1998).
+pub fn hole_of_cells(occupancy: f64) -> f64 {
+    const OF_SQUARE: f64 = 0.222;
+    let edge = (libm::cbrt(6.0) / mean_free_path_over_spacing(occupancy)).max(1.0);
+    1.0 + OF_SQUARE * edge * edge
+}
 
 /// gamma = (5 + zeta) / (3 + zeta).
 pub fn heat_capacity_ratio(spin_dof: f64) -> f64 {
@@ -171,6 +176,14 @@ mod tests {
         assert!(close(diameter(n, 0.12), 0.612 * mean_spacing(n), 1e-3));
         assert!(close(mean_free_path(n, diameter(n, 0.12)), diameter(n, 0.12), 0.02));
         assert!(mean_free_path(n, 0.0).is_infinite());
+    }
+
+    #[test]
+    fn holes_are_worse_in_coarser_cells() {
+        assert!(close(hole_of_cells(0.12), 3.0, 0.01));
+        assert!(hole_of_cells(0.3) > 5.0);
+        // Of cells as long as a free path little is left of it.
+        assert!(close(hole_of_cells(0.02), 1.222, 1e-9) && close(hole_of_cells(0.001), 1.222, 1e-9));
     }
 
     #[test]

@@ -41,22 +41,25 @@ pub fn wanted(
     let statistics = 5.1 * volume / (speed * area * WINDOW * NOISE * NOISE);
     let noise = format!("{:.0} % noise of the pressure on {} cm2 in 1 ms", 100.0 * NOISE, significant(1e4 * area));
     let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
-    let worse = if method == Method::Cell { kinetics::HOLES_OF_CELLS } else { 1.0 };
-    let spacing = WANTED_KNUDSEN * smallest / (worse * kinetics::effective_mean_free_path_over_spacing(occupancy));
+    let worse = if method == Method::Cell { kinetics::hole_of_cells(occupancy) } else { 1.0 };
+    let wanted = WANTED_KNUDSEN / worse;
+    let spacing = wanted * smallest / kinetics::effective_mean_free_path_over_spacing(occupancy);
     let resolution = volume / (spacing * spacing * spacing);
     if method == Method::None || resolution <= statistics {
         return give(statistics.min(MOST_UNASKED).ceil() as u64, noise);
     }
     if resolution > MOST_UNASKED {
         let why = format!(
-            "the most without being asked; an opening of {} mm at Kn .1 takes {:.1e}",
+            "the most without being asked; an opening of {} mm at Kn {} takes {:.1e}",
             significant(1e3 * smallest),
+            significant(wanted),
             resolution
         );
         return give(MOST_UNASKED as u64, why);
     }
     let why = format!(
-        "Kn {WANTED_KNUDSEN} at the smallest opening ({} mm); {} would do for {noise}",
+        "Kn {} at the smallest opening ({} mm); {} would do for {noise}",
+        significant(wanted),
         significant(1e3 * smallest),
         grouped(statistics.ceil() as u64)
     );

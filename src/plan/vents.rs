@@ -83,6 +83,7 @@ pub fn heat(scene: &Scene, species: &[Species], method: Method, measured: &Measu
     };
     // A place on a wall can stand there beside its rest.
     let mut found: Vec<String> = measured.heated.iter().filter_map(of_wall).map(|warning| warning.text).collect();
-    found.dedup();
+    let mut told = std::collections::HashSet::new();
+    found.retain(|text| told.insert(text.clone()));
     found
 }

@@ -164,12 +164,14 @@ pub fn step_stride(device: &Device) -> u64 {
 }
 
 /// Bytes of these buffers for each bin.
-pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64;
+pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64 + 4.0 / (CHUNK * CHUNK) as f64;
 
 /// What grows with the number of cells that have bins.
 pub struct CellBuffers {
     pub capacity: u64,
     pub chunk_sums: wgpu::Buffer,
+    /// Of stretches of CHUNK chunks.
+    pub stretch_sums: wgpu::Buffer,
     /// First the counts of a step's cells, then where their particles start.
     pub cell_start: wgpu::Buffer,
 }
@@ -179,6 +181,7 @@ impl CellBuffers {
         Ok(CellBuffers {
             capacity: bins,
             chunk_sums: device.storage::<u32>("chunk_sums", bins / CHUNK + 2)?,
+            stretch_sums: device.storage::<u32>("stretch_sums", bins / (CHUNK * CHUNK) + 2)?,
             cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
         })
     }
@@ -191,7 +194,7 @@ impl CellBuffers {
     }
 
     pub fn bytes(&self) -> u64 {
-        self.chunk_sums.size() + self.cell_start.size()
+        self.chunk_sums.size() + self.stretch_sums.size() + self.cell_start.size()
     }
 }
 
@@ -392,6 +395,7 @@ impl<'a> Buffers<'a> {
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
+            ("scan_stretches", "chunk_sums") | (_, "stretch_sums") => &cell.stretch_sums,
             (_, "chunk_sums") => &cell.chunk_sums,
             (_, "cell_start") => &cell.cell_start,
             (_, "wall_start") => &domain.wall_start,
@@ -465,7 +469,7 @@ mod tests {
             assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, USUAL_TAILS), "{collisions} {rounds}");
         }
         let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
-        let some = 64 * CHUNK;
+        let some = 4 * CHUNK * CHUNK;
         assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * BYTES_PER_BIN);
     }
 }

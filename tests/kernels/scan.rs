@@ -72,6 +72,31 @@ fn scan_chunks_is_an_exclusive_prefix_sum() {
     }
 }
 
+/// By stretches of chunks the same comes out, whatever is left of the last.
+#[test]
+fn chunks_are_scanned_by_stretches() {
+    let mut stream = Stream::new(7);
+    for chunks in [4, CHUNK, CHUNK + 1, 5000, 3 * 128 * CHUNK - 1] {
+        let mut rig = rig(chunks * CHUNK - 1);
+        let sums = counts(&mut stream, chunks);
+        let stretches = chunks.div_ceil(CHUNK);
+        let of_stretches: Vec<u32> = sums.chunks(CHUNK).map(|stretch| stretch.iter().sum()).collect();
+        rig.put("chunk_sums", &[&sums[..], &[7]].concat());
+        rig.put("stretch_sums", &vec![7u32; stretches + 1]);
+        rig.run("sum_stretches", stretches);
+        assert_eq!(rig.get::<u32>("stretch_sums", stretches), of_stretches);
+        // It scans what it calls the sums of chunks.
+        rig.put("chunk_sums", &[&of_stretches[..], &[7]].concat());
+        rig.run_groups("scan_stretches", [1, 1, 1]);
+        let before: Vec<u32> = rig.get("chunk_sums", stretches + 1);
+        assert_eq!(before, prefix(&of_stretches));
+        rig.put("chunk_sums", &[&sums[..], &[7]].concat());
+        rig.put("stretch_sums", &before);
+        rig.run("start_chunks", stretches);
+        assert_eq!(rig.get::<u32>("chunk_sums", chunks + 1), prefix(&sums));
+    }
+}
+
 #[test]
 fn scan_cells_puts_starts_in_place_of_counts() {
     let mut stream = Stream::new(6);

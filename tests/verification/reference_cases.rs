@@ -85,9 +85,9 @@ fn a_chamber_empties_between_isentropically_and_by_effusion() {
     // A gas of gamma 5/3 has 1/3 in free flight and 2/3 as a continuum.
     let monatomic = |scene: &mut Scene| scene.gases[0].heat = HeatCapacity::Constant(1.5 * GAS_CONSTANT);
     fails(&emptied(&monatomic)[0]);
-    // Free flight has .2, and leaves more slowly, Cd .58.
+    // Free flight leaves more slowly, Cd .58. (Its .2 so few particles do not know well enough.)
     let free = |scene: &mut Scene| {
         (scene.model.diameter, scene.model.diameter_cap, scene.model.method) = (None, None, Some(Method::None));
     };
-    emptied(&free).iter().for_each(fails);
+    fails(&emptied(&free)[1]);
 }

@@ -14,6 +14,7 @@ use serde::de::DeserializeOwned;
 use crate::output::{self, CheckpointError, CheckpointWriter, FileRecord, Origin, OutputError, OutputState};
 use crate::ranks::RankError;
 use crate::simulation::{CheckpointEvery, Interrupt, Moment, Observer, Request, Schedule, SimulationError, WallTime};
+use crate::subdomain::GpuParticle;
 
 /// What the user asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -80,7 +81,11 @@ impl<'a> Checkpoints<'a> {
         let begun = Instant::now();
         let (comm, rank) = (moment.comm, moment.comm.rank());
         let writer = CheckpointWriter::new(&self.folder, moment.step);
-        let own = writer.particles(rank, bytemuck::cast_slice(moment.own)).map_err(|error| error.to_string());
+        // By id: on a device particles may lie in the order of its threads.
+        let mut particles = moment.own.to_vec();
+        particles.sort_unstable_by_key(GpuParticle::id);
+        let own = writer.particles(rank, bytemuck::cast_slice(&particles)).map_err(|error| error.to_string());
+        drop(particles);
         let written = match comm.gather(encoded(&own, rank)?)? {
             None => Ok(None),
             Some(all) => {

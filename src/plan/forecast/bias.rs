@@ -42,7 +42,7 @@ pub fn effective_path(method: Method, occupancy: f64) -> f64 {
 pub fn diameter_of_holes(method: Method, occupancy: f64, number_density: f64) -> f64 {
     let usual = kinetics::diameter(number_density, USUAL_OCCUPANCY);
     let paths = [occupancy, USUAL_OCCUPANCY].map(kinetics::effective_mean_free_path_over_spacing);
-    let ratio = if method == Method::Cell { kinetics::HOLES_OF_CELLS } else { 1.0 } * paths[0] / paths[1];
+    let ratio = if method == Method::Cell { kinetics::hole_of_cells(occupancy) } else { 1.0 } * paths[0] / paths[1];
     usual / ratio.sqrt()
 }
 
@@ -154,7 +154,11 @@ mod tests {
         let usual = kinetics::diameter(1e7, 0.12);
         assert!(near(diameter_of_holes(Method::ClosestApproach, 0.12, 1e7), usual, 1e-12));
         let path = |diameter| kinetics::mean_free_path(1e7, diameter);
-        assert!(near(path(diameter_of_holes(Method::Cell, 0.12, 1e7)) / path(usual), 3.0, 1e-9));
+        assert!(near(
+            path(diameter_of_holes(Method::Cell, 0.12, 1e7)) / path(usual),
+            kinetics::hole_of_cells(0.12),
+            1e-9
+        ));
         let dense = path(diameter_of_holes(Method::ClosestApproach, 0.4, 1e7));
         assert!(dense < path(usual) && dense > path(kinetics::diameter(1e7, 0.4)));
     }

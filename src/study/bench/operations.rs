@@ -155,10 +155,10 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "collide" => {
             let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
             let of_members = counted.of("collide")?.every("for (var k = 0u; k < count");
-            let parts = ["if (bin_end > begin + 1u)", IN_ORDER, COLLIDING];
-            let shared = parts.iter().map(|text| counted.turn("collide", text)).sum::<Option<Operations>>()?;
+            let shared = counted.turn("collide", "if (bin_end > begin + 1u)")? + counted.turn("collide", COLLIDING)?;
             cell * cells
                 + shared * work.shared
+                + counted.turn("collide", IN_ORDER)? * work.few
                 + of_members * work.gathered
                 + counted.turn("collide", "while (done.candidates < candidates)")? * collisions
         }

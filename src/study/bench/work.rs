@@ -20,6 +20,8 @@ pub struct Work {
     pub gathered: f64,
     /// Stretches of [`CHUNK`] cells with a particle.
     pub chunks: f64,
+    /// Cells with two or more that are put in order where they collide.
+    pub few: f64,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
     pub listed: f64,
@@ -53,8 +55,8 @@ impl Work {
         let (rounds, collides) = (plan.rounds as usize, plan.method != crate::scene::Method::None);
         let has_rounds = plan.method.has_rounds();
         let cells = if collides { plan.grid.cell_count() as f64 } else { 0.0 };
-        let [filled, shared, gathered, chunks] =
-            if collides { occupied(&outcome.particles, &plan.grid) } else { [0.0; 4] };
+        let [filled, shared, gathered, chunks, few] =
+            if collides { occupied(&outcome.particles, &plan.grid) } else { [0.0; 5] };
         Work {
             steps,
             particle_steps,
@@ -62,6 +64,7 @@ impl Work {
             filled: filled * steps,
             shared: shared * steps,
             gathered: gathered * steps,
+            few: few * steps,
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,
@@ -82,7 +85,10 @@ impl Work {
 }
 
 /// Cells with a particle, with two or more, the particles of those, and stretches of cells with a particle.
-fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 4] {
+/// Particles of a cell that `shaders/collide.wgsl` puts in order, at most.
+const MEMBERS: u32 = 12;
+
+fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 5] {
     let mut counts = vec![0_u32; grid.cell_count()];
     for particle in particles {
         if let Some(count) = counts.get_mut(grid.cell_index(grid.cell_of(particle.position))) {
@@ -95,6 +101,7 @@ fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 4] {
         shared.clone().count() as f64,
         shared.map(|&count| f64::from(count)).sum(),
         counts.chunks(CHUNK).filter(|chunk| chunk.iter().any(|&count| count > 0)).count() as f64,
+        counts.iter().filter(|count| (2..=MEMBERS).contains(*count)).count() as f64,
     ]
 }
 
@@ -134,7 +141,7 @@ mod tests {
             |x: u32, y: u32| GpuParticle { position: [x * edge + 1, y * edge, edge], ..bytemuck::Zeroable::zeroed() };
         // Three in one cell, one beside it, two far away.
         let particles = [at(1, 1), at(1, 1), at(1, 1), at(2, 1), at(1, 10), at(1, 10)];
-        assert_eq!(occupied(&particles, &grid), [3.0, 2.0, 5.0, 2.0]);
-        assert_eq!(occupied(&[], &grid), [0.0; 4]);
+        assert_eq!(occupied(&particles, &grid), [3.0, 2.0, 5.0, 2.0, 2.0]);
+        assert_eq!(occupied(&[], &grid), [0.0; 5]);
     }
 }

@@ -116,7 +116,7 @@ pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, S
 pub fn at_occupancy(device: &Device, occupancy: f64, particles: u64, seeds: u64) -> Result<Check, StudyError> {
     let gas = EquilibriumBox { particles, occupancy, step_over_tau: 0.2, ..EquilibriumBox::default() };
     let found = viscosity(device, gas, seeds)?;
-    Ok(Check::of(format!("nu / (d c0), f = .1, N = {particles}"), FLOOR, found, 0.1 * FLOOR))
+    Ok(Check::of(format!("nu / (d c0), f = {occupancy}, N = {particles}"), FLOOR, found, 0.1 * FLOOR))
 }
 
 #[cfg(test)]
