@@ -7,9 +7,9 @@ use std::mem::offset_of;
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
-    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
 };
-use naga::{Module, TypeInner};
+use naga::{Expression, Literal, Module, TypeInner};
 
 /// A Rust struct as the shaders should see it.
 struct Twin {
@@ -189,4 +189,19 @@ fn a_wrong_twin_is_found() {
     let short = twin!("Flight", Short, start, wall, partner);
     assert_eq!(differences(order, &short).map(|found| found.len()), Some(2));
     assert!(differences(order, &twin!("NoSuchStruct", Short, start)).is_none());
+}
+
+/// Counts of operations, and tests, go by it.
+#[test]
+fn kernels_put_as_many_in_order_as_the_host_has_it() {
+    let members = |module: &Module| {
+        let (_, constant) =
+            module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some("MEMBERS"))?;
+        match module.global_expressions[constant.init] {
+            Expression::Literal(Literal::U32(value)) => Some(value),
+            _ => panic!("MEMBERS is no number"),
+        }
+    };
+    let found: Vec<u32> = modules().iter().filter_map(|(_, module)| members(module)).collect();
+    assert!(!found.is_empty() && found.iter().all(|&value| value == MEMBERS), "{found:?}, {MEMBERS} on the host");
 }

@@ -52,8 +52,9 @@ pub enum Collisions {
     /// Every hole is in the kinetic limit.
     None,
     /// Those of particles of a diameter (m) and an amount (mol).
-    /// `cap`: the diameter is at most so many mean spacings of the gas.
-    Particles { diameter: f64, cap: Option<f64>, moles_per_particle: f64 },
+    /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, to which
+    /// holes are the worse ([`kinetics::hole_of_cells`]).
+    Particles { diameter: f64, cap: Option<f64>, cell: Option<f64>, moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
 }
@@ -321,16 +322,19 @@ impl ControlVolume {
     }
 
     fn knudsen(&self, a: Side, b: Side, length: f64) -> f64 {
-        let (diameter, cap, moles_per_particle) = match self.collisions {
+        let (diameter, cap, cell, moles_per_particle) = match self.collisions {
             Collisions::None => return f64::INFINITY,
             Collisions::Continuum => return 0.0,
-            Collisions::Particles { diameter, cap, moles_per_particle } => (diameter, cap, moles_per_particle),
+            Collisions::Particles { diameter, cap, cell, moles_per_particle } => {
+                (diameter, cap, cell, moles_per_particle)
+            }
         };
         let density = |side: Side| side.moles.iter().sum::<f64>() / (side.volume * moles_per_particle);
         let (pa, pb) = (a.pressure(), b.pressure());
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);
         let upstream = weight * density(a) + (1.0 - weight) * density(b);
-        kinetics::mean_free_path(upstream, kinetics::capped_diameter(diameter, cap, upstream)) / length
+        let path = kinetics::mean_free_path(upstream, kinetics::capped_diameter(diameter, cap, upstream));
+        path * cell.map_or(1.0, |edge| kinetics::hole_of_cells(edge / path)) / length
     }
 }
 

@@ -62,6 +62,12 @@ pub fn specified(knudsen: f64) -> Option<f64> {
     Some(of_table[1])
 }
 
+/// Discharge coefficient of a gas of gamma 1.4 into vacuum, between the entries of the table.
+pub fn coefficient_into_vacuum(knudsen: f64) -> f64 {
+    let share = continuum_share(knudsen, 0.0);
+    share * CONTINUUM_COEFFICIENT + (1.0 - share) * kinetic_coefficient(MEASURED_GAMMA, 0.0)
+}
+
 /// The Knudsen numbers in the table that the specification does not have.
 pub const BETWEEN: [f64; 2] = [1.0, 3.0];
 
@@ -213,6 +219,7 @@ mod tests {
             let off = (published(knudsen) - cd).abs();
             assert!(off <= if BETWEEN.contains(&knudsen) { 5e-5 } else { 0.021 }, "Kn = {knudsen}: {off}");
             assert_eq!(specified(knudsen), (!BETWEEN.contains(&knudsen)).then_some(cd));
+            assert!((coefficient_into_vacuum(knudsen) - cd).abs() < 1e-12);
         }
         assert_eq!(specified(0.2), None);
         assert!(

@@ -97,14 +97,11 @@ pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     TABLE[3][1]
 }
 
-/// By how many times its Knudsen number a hole acts on the method `cell`, against closest approach, in cells of six particles or a mean
-/// free path. Measured at f = .12, where cells are three free paths long: three times, for at Kn = .1 the flow lacks 20 % of that of a
-/// continuum, as with closest approach at .3 (`docs/limits.md`, `knudsen`; at .3 it lacks 37 %, more than free flight, and no Knudsen number
-/// tells it). With the square of the cell's edge, as its viscosity goes (Alexander, Garcia and Alder, 1998).
-pub fn hole_of_cells(occupancy: f64) -> f64 {
-    const OF_SQUARE: f64 = 0.222;
-    let edge = (libm::cbrt(6.0) / mean_free_path_over_spacing(occupancy)).max(1.0);
-    1.0 + OF_SQUARE * edge * edge
+/// By how many times its Knudsen number a hole acts on the method `cell`, whose cells before it have an edge of so many mean free paths, against
+/// closest approach: as many times more viscous as collisions within cells make a gas (Alexander, Garcia and Alder, Phys. Fluids 10, 1998). How far
+/// that holds: `docs/limits.md`, `cell-edge`.
+pub fn hole_of_cells(edge: f64) -> f64 {
+    1.0 + 16.0 / (45.0 * PI) * edge * edge
 }
 
 /// gamma = (5 + zeta) / (3 + zeta).
@@ -180,10 +177,10 @@ mod tests {
 
     #[test]
     fn holes_are_worse_in_coarser_cells() {
-        assert!(close(hole_of_cells(0.12), 3.0, 0.01));
-        assert!(hole_of_cells(0.3) > 5.0);
-        // Of cells as long as a free path little is left of it.
-        assert!(close(hole_of_cells(0.02), 1.222, 1e-9) && close(hole_of_cells(0.001), 1.222, 1e-9));
+        assert!(close(hole_of_cells(1.0), 1.1132, 1e-4));
+        // A tenth more viscous for cells as long as a free path, twice as viscous for those of plans at f = .12.
+        let edge = libm::cbrt(6.0) / mean_free_path_over_spacing(0.12);
+        assert!(close(hole_of_cells(edge), 2.02, 0.01), "{}", hole_of_cells(edge));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use super::amounts::Amounts;
 use super::error::MOST_PARTICLES;
+use super::limits::{Quantity, limit};
 use super::render::{grouped, significant};
+use super::resolution::cell_edge;
 use super::{Measured, PlanError, Reason};
 use crate::gas::{Inflow, Species, kinetics};
 use crate::scene::{Method, Scene};
@@ -14,6 +16,19 @@ const WINDOW: f64 = 1e-3;
 pub const WANTED_KNUDSEN: f64 = 0.1;
 /// The most particles that the plan chooses by itself.
 const MOST_UNASKED: f64 = 1e7;
+
+/// At the mean density of the end. Cells that are coarse to a hole's gas take a smaller one, and all the more where that is denser: their guard's
+/// at most.
+fn wanted_knudsen(method: Method, occupancy: f64) -> f64 {
+    if method != Method::Cell {
+        return WANTED_KNUDSEN;
+    }
+    // In mean spacings.
+    let (edge, _) = cell_edge(1.0, kinetics::diameter(1.0, occupancy));
+    let worse = kinetics::hole_of_cells(edge / kinetics::mean_free_path_over_spacing(occupancy));
+    let guard = limit(Quantity::Knudsen, method).map_or(WANTED_KNUDSEN, |limit| limit.bound.value());
+    (WANTED_KNUDSEN / worse).min(guard)
+}
 
 /// N_stat = 5.1 V / (cbar A T_w eps^2) and N_res = V / d^3, d = Kn l / .79 (specification, section 6).
 ///
@@ -41,8 +56,7 @@ pub fn wanted(
     let statistics = 5.1 * volume / (speed * area * WINDOW * NOISE * NOISE);
     let noise = format!("{:.0} % noise of the pressure on {} cm2 in 1 ms", 100.0 * NOISE, significant(1e4 * area));
     let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
-    let worse = if method == Method::Cell { kinetics::hole_of_cells(occupancy) } else { 1.0 };
-    let wanted = WANTED_KNUDSEN / worse;
+    let wanted = wanted_knudsen(method, occupancy);
     let spacing = wanted * smallest / kinetics::effective_mean_free_path_over_spacing(occupancy);
     let resolution = volume / (spacing * spacing * spacing);
     if method == Method::None || resolution <= statistics {

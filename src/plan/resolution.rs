@@ -198,17 +198,7 @@ impl Resolution {
         let density = states[1].number_density;
         let (diameter, why) = diameter(Method::Cell, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
-        let path = kinetics::mean_free_path(density, diameter);
-        let few = libm::cbrt(PER_CELL / density);
-        let many = libm::cbrt(MOST_PER_CELL / density);
-        let (cell, why) = if path > many {
-            (many, format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer"))
-        } else if path > few {
-            (path, "the mean free path at the end: what is shorter is no gradient of the gas".to_string())
-        } else {
-            let paths = significant(few / path);
-            (few, format!("{PER_CELL} particles at the mean density of the end; {paths} mean free paths"))
-        };
+        let (cell, why) = cell_edge(density, diameter);
         because("cell", format!("{} mm", significant(1e3 * cell)), why);
         let tau = states
             .iter()
@@ -274,6 +264,20 @@ impl Resolution {
             collisions_per_step: 0.0,
             flight_over_cell: speed * time_step / cell,
         }
+    }
+}
+
+/// The edge of a cell of the method `cell`, m, and why it is that, in gas of this density (1/m3) and collision diameter (m).
+pub(super) fn cell_edge(density: f64, diameter: f64) -> (f64, String) {
+    let path = kinetics::mean_free_path(density, diameter);
+    let [few, many] = [PER_CELL, MOST_PER_CELL].map(|particles| libm::cbrt(particles / density));
+    if path > many {
+        (many, format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer"))
+    } else if path > few {
+        (path, "the mean free path at the end: what is shorter is no gradient of the gas".to_string())
+    } else {
+        let paths = significant(few / path);
+        (few, format!("{PER_CELL} particles at the mean density of the end; {paths} mean free paths"))
     }
 }
 

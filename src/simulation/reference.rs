@@ -49,6 +49,8 @@ fn volume(model: &Model) -> ControlVolume {
             _ => Collisions::Particles {
                 diameter: plan.diameter,
                 cap: plan.diameter_cap,
+                // Of the gas; what cells do to it is an error of the method.
+                cell: None,
                 moles_per_particle: plan.moles_per_particle,
             },
         },

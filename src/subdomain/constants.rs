@@ -12,6 +12,9 @@ use super::walls::Walls;
 
 /// Threads of a workgroup. Part of the plan's bits: a driver may contract differently for another size.
 pub const WORKGROUP: u32 = 64;
+/// Particles of a cell of the method `cell` that a thread puts in order by itself, at most: as `shaders/shared/members.wgsl`
+/// has it, whose sorting network is made for so many (held against it in `tests/layouts.rs`).
+pub const MEMBERS: u32 = 12;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
 const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;

@@ -1,8 +1,9 @@
 //! Law: a run that is stopped at any steps and goes on with any numbers of subdomains leaves the files of one that was
 //! never stopped, to the last byte.
 
-use corpuscle::output::latest;
+use corpuscle::output::{Checkpoint, latest};
 use corpuscle::scene::{Method, Scene};
+use corpuscle::subdomain::GpuParticle;
 
 use super::program::{Case, Numbers, Program, Results, dense, newest, published, tank};
 
@@ -132,6 +133,24 @@ fn a_run_that_has_ended_says_so() {
     let said = case.resume(&Program::sharing(2), &one, &[]).finish();
     assert!(said.contains("Audit"), "{said}");
     case.assert_same("out");
+}
+
+/// The particles are in a checkpoint by id: with `cell` they lie on the device in the order of its threads.
+#[test]
+fn equal_runs_leave_equal_checkpoints() {
+    for method in [Method::Cell, Method::ClosestApproach] {
+        let mut scene = published("box.toml", 2000, 8e-4);
+        scene.model.method = Some(method);
+        let case = Case::new(&scene);
+        let particles = |name: &str| -> Vec<GpuParticle> {
+            case.run(&Program::alone(), name, &["--checkpoint-every", "32"]).finish();
+            let checkpoint = Checkpoint::open(&latest(&case.out(name)).unwrap()).unwrap();
+            bytemuck::pod_collect_to_vec(&checkpoint.particles(0).unwrap())
+        };
+        let first = particles("first");
+        assert!(first.len() >= 2000 && first.is_sorted_by_key(GpuParticle::id), "{} particles", first.len());
+        assert!(particles("second") == first);
+    }
 }
 
 /// The comparison can fail: another seed is another gas.

@@ -193,10 +193,10 @@ fn workgroups_that_change_places_reach_every_cell_once() {
     assert!(after(&whole) != cloud.particles[..alike]);
 }
 
-/// Cells in which few lie are worked on by id, in whatever order these lie: up to 12, and no more.
+/// Cells in which few lie are worked on by id, in whatever order these lie: up to MEMBERS, and no more.
 #[test]
 fn the_order_in_which_few_lie_changes_no_bit() {
-    const MEMBERS: usize = 12;
+    const MEMBERS: usize = corpuscle::subdomain::MEMBERS as usize;
     let cloud = Cloud::of(65, &[tank([0.06, 0.07, 0.08])], 2600);
     let shuffled = |most: usize| {
         let mut stream = Stream::new(66);

@@ -33,7 +33,7 @@ fn two_chambers(length: f64) -> ControlVolume {
         walls: vec![],
         vents: vec![],
         swept: vec![],
-        collisions: Collisions::Particles { diameter: 2.4e-3, cap: None, moles_per_particle: 5e-6 },
+        collisions: Collisions::Particles { diameter: 2.4e-3, cap: None, cell: None, moles_per_particle: 5e-6 },
     }
 }
 
@@ -86,6 +86,24 @@ fn equal_chambers_stay_as_they_are() {
     // Rounding in the equal pressures may grow up to the integrator's tolerance.
     assert!(moved(1e5) < 1e-8);
     assert!(moved(1.01e5) > 5e-3, "a difference of one per cent must level out");
+}
+
+/// A hole before which cells are k free paths long passes what one of that many times its Knudsen number does.
+#[test]
+fn cells_make_a_hole_act_as_a_smaller_one() {
+    let start = [air(1e5, 0.002, 300.0), air(1e3, 0.058, 300.0)];
+    let left = |length: f64, cell: Option<f64>| {
+        let collisions = Collisions::Particles { diameter: 2.4e-3, cap: None, cell, moles_per_particle: 5e-6 };
+        ControlVolume { collisions, ..two_chambers(length) }.solve(&start, &[1e-5])[0][0].moles[0]
+    };
+    let density = start[0].moles.iter().sum::<f64>() / (0.002 * 5e-6);
+    let path = kinetics::mean_free_path(density, 2.4e-3);
+    let length = path / 0.1;
+    let (plain, coarse) = (left(length, None), left(length, Some(4.0 * path)));
+    let as_smaller = left(length / kinetics::hole_of_cells(4.0), None);
+    let flow = |left: f64| start[0].moles[0] - left;
+    assert!(relative(flow(coarse), flow(as_smaller)) < 1e-2, "{} {}", flow(coarse), flow(as_smaller));
+    assert!(flow(coarse) < 0.95 * flow(plain), "{} {}", flow(coarse), flow(plain));
 }
 
 /// Free effusion into a large vacuum: dn/dt = -n cbar A / 4V and U follows (4 + zeta)/2 kT a molecule, so

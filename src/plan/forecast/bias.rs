@@ -37,13 +37,14 @@ pub fn effective_path(method: Method, occupancy: f64) -> f64 {
 }
 
 /// The diameter by which the discharge coefficients of holes follow, m: discharge was measured against the kinetic mean free
-/// path at occupancies about .12, and goes with the effective one at others; of `cell` it is that of a gas as much thinner as its
-/// cells make it.
+/// path at occupancies about .12, and goes with the effective one at others; with `cell`, whose collisions take no room, with the kinetic one.
 pub fn diameter_of_holes(method: Method, occupancy: f64, number_density: f64) -> f64 {
+    if method == Method::Cell {
+        return kinetics::diameter(number_density, occupancy);
+    }
     let usual = kinetics::diameter(number_density, USUAL_OCCUPANCY);
     let paths = [occupancy, USUAL_OCCUPANCY].map(kinetics::effective_mean_free_path_over_spacing);
-    let ratio = if method == Method::Cell { kinetics::hole_of_cells(occupancy) } else { 1.0 } * paths[0] / paths[1];
-    usual / ratio.sqrt()
+    usual / (paths[0] / paths[1]).sqrt()
 }
 
 /// Of the pressure, where collisions are lost: T_tr is too high by zeta/(3 + zeta) of what T_int lacks.
@@ -148,19 +149,17 @@ mod tests {
         assert!(!near(0.5625 * of_fronts(SOD_PATH, SOD_STEP), 0.0589, 0.12));
     }
 
-    /// At the usual occupancy the kinetic mean free path itself; coarser for `cell`, a little finer where denser.
+    /// At the usual occupancy the kinetic mean free path itself; a little finer where denser, but for `cell`.
     #[test]
     fn holes_go_by_the_effective_mean_free_path() {
         let usual = kinetics::diameter(1e7, 0.12);
-        assert!(near(diameter_of_holes(Method::ClosestApproach, 0.12, 1e7), usual, 1e-12));
+        for method in [Method::ClosestApproach, Method::Cell] {
+            assert!(near(diameter_of_holes(method, 0.12, 1e7), usual, 1e-12));
+        }
         let path = |diameter| kinetics::mean_free_path(1e7, diameter);
-        assert!(near(
-            path(diameter_of_holes(Method::Cell, 0.12, 1e7)) / path(usual),
-            kinetics::hole_of_cells(0.12),
-            1e-9
-        ));
-        let dense = path(diameter_of_holes(Method::ClosestApproach, 0.4, 1e7));
-        assert!(dense < path(usual) && dense > path(kinetics::diameter(1e7, 0.4)));
+        let [dense, in_cells] =
+            [Method::ClosestApproach, Method::Cell].map(|method| path(diameter_of_holes(method, 0.4, 1e7)));
+        assert!(in_cells < dense && dense < path(usual));
     }
 
     #[test]

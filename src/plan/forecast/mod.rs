@@ -20,6 +20,7 @@ pub use outlook::{Outlook, SeenHeat, SeenProbe, SeenSurface};
 
 use super::Measured;
 use super::amounts::Amounts;
+use super::resolution::cell_edge;
 use super::warnings::lost_events;
 use crate::gas::{Collisions, FlowIntegral, Species, State, kinetics, thermo};
 use crate::scene::{Method, Scene};
@@ -296,8 +297,9 @@ impl<'a> Run<'a> {
             (None, vec![0.0; course.volumes.len()])
         } else {
             let diameter = bias::diameter_of_holes(method, occupancy, density);
+            let cell = (method == Method::Cell).then(|| cell_edge(density, diameter).0);
             // Measured biases belong to the diameter of the mean gas.
-            let states = course.solve(Collisions::Particles { diameter, cap: None, moles_per_particle });
+            let states = course.solve(Collisions::Particles { diameter, cap: None, cell, moles_per_particle });
             let holes = bias::differences(&states, limit);
             (Some(states), holes)
         };

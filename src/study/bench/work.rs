@@ -2,7 +2,7 @@
 
 use crate::geometry::Grid;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::GpuParticle;
+use crate::subdomain::{GpuParticle, MEMBERS};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -84,10 +84,8 @@ impl Work {
     }
 }
 
-/// Cells with a particle, with two or more, the particles of those, and stretches of cells with a particle.
-/// Particles of a cell that `shaders/collide.wgsl` puts in order, at most.
-const MEMBERS: u32 = 12;
-
+/// Cells with a particle, with two or more, the particles of those, stretches of cells with a particle, and cells whose
+/// particles a thread puts in order.
 fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 5] {
     let mut counts = vec![0_u32; grid.cell_count()];
     for particle in particles {

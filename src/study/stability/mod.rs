@@ -260,6 +260,17 @@ pub const AXES: &[Axis] = &[
         run: flows::knudsen,
     },
     Axis {
+        name: "cell-edge",
+        what: "edge of a cell over the mean free path before a hole",
+        runs: "as knudsen, of a hole of Knudsen number 0.1 and as many particles as this takes, against the flow that forecasts say",
+        methods: &[Method::Cell],
+        quick: &[7.0, 10.0],
+        usual: &[4.2, 5.0, 6.0, 8.0, 10.0],
+        full: &[4.2, 4.6, 5.0, 5.5, 6.0, 7.0, 8.0, 10.0, 12.0],
+        limit: |_| None,
+        run: flows::cell_edge,
+    },
+    Axis {
         name: "wall-speed",
         what: "speed of a piston over sqrt(kT/m)",
         runs: "a piston that starts at once into gas at rest, until its shock is near the far end, against Rankine and Hugoniot",
