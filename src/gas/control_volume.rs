@@ -52,8 +52,8 @@ pub enum Collisions {
     /// Every hole is in the kinetic limit.
     None,
     /// Those of particles of a diameter (m) and an amount (mol).
-    /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, to which
-    /// holes are the worse ([`kinetics::hole_of_cells`]).
+    /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, and are
+    /// the more viscous to a hole ([`kinetics::viscosity_of_cells`]).
     Particles { diameter: f64, cap: Option<f64>, cell: Option<f64>, moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
@@ -334,7 +334,7 @@ impl ControlVolume {
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);
         let upstream = weight * density(a) + (1.0 - weight) * density(b);
         let path = kinetics::mean_free_path(upstream, kinetics::capped_diameter(diameter, cap, upstream));
-        path * cell.map_or(1.0, |edge| kinetics::hole_of_cells(edge / path)) / length
+        path * cell.map_or(1.0, |edge| kinetics::viscosity_of_cells(edge / path)) / length
     }
 }
 

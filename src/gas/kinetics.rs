@@ -97,11 +97,14 @@ pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     TABLE[3][1]
 }
 
-/// By how many times its Knudsen number a hole acts on the method `cell`, whose cells before it have an edge of so many mean free paths, against
-/// closest approach: as many times more viscous as collisions within cells make a gas (Alexander, Garcia and Alder, Phys. Fluids 10, 1998). How far
-/// that holds: `docs/limits.md`, `cell-edge`.
-pub fn hole_of_cells(edge: f64) -> f64 {
-    1.0 + 16.0 / (45.0 * PI) * edge * edge
+/// What collisions across a cell carry, over the gas' own viscosity: this times the square of the cell's edge over the mean free path
+/// (Alexander, Garcia and Alder, Phys. Fluids 10, 1540 (1998)).
+pub const ACROSS_CELLS: f64 = 16.0 / (45.0 * PI);
+
+/// How many times as viscous as the gas itself collisions within cells make it; `edge`: of a cell, over the mean free path. A hole acts on
+/// such gas as one of so many times its Knudsen number: how far that holds, `docs/limits.md`, `cell-edge`.
+pub fn viscosity_of_cells(edge: f64) -> f64 {
+    1.0 + ACROSS_CELLS * edge * edge
 }
 
 /// gamma = (5 + zeta) / (3 + zeta).
@@ -176,11 +179,11 @@ mod tests {
     }
 
     #[test]
-    fn holes_are_worse_in_coarser_cells() {
-        assert!(close(hole_of_cells(1.0), 1.1132, 1e-4));
+    fn gas_in_coarser_cells_is_more_viscous() {
+        assert!(close(viscosity_of_cells(1.0), 1.1132, 1e-4));
         // A tenth more viscous for cells as long as a free path, twice as viscous for those of plans at f = .12.
         let edge = libm::cbrt(6.0) / mean_free_path_over_spacing(0.12);
-        assert!(close(hole_of_cells(edge), 2.02, 0.01), "{}", hole_of_cells(edge));
+        assert!(close(viscosity_of_cells(edge), 2.02, 0.01), "{}", viscosity_of_cells(edge));
     }
 
     #[test]

@@ -145,8 +145,9 @@ pub const LIMITS: &[Limit] = &[
         "rigid spheres press harder than a gas, and flow faster",
     ),
     limit_of(Quantity::Knudsen, None, AtMost(0.1), "its flow is off by 7 % or more"),
-    // Of the mean gas at the end of the run. Before a hole it is denser, and cells more free paths long: where it is four times as dense, twelve
-    // instead of three at the occupancy of plans, and a hole of .03 acts as one of .13 ([`kinetics::hole_of_cells`](crate::gas::kinetics)).
+    // `stability knudsen` has 20 % too little at .1 and 37 % at .3, taken as proportional below. It is of the mean gas at the end; where
+    // gas before a hole is four times as dense, cells are twelve free paths long at the occupancy of plans, and a hole of .03 acts
+    // as one of .13 (`kinetics::viscosity_of_cells`).
     limit_of(Quantity::Knudsen, Some(Method::Cell), AtMost(0.03), "its flow is off by 7 % or more"),
     // Measured at f = .03: 24 % too much at .1, where the others hold. What rigid spheres press harder drives the flow; no
     // Knudsen number mends it.

@@ -42,7 +42,7 @@ pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};
 pub use forecast::{Cause, ColumnForecast, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 pub use render::significant;
-pub use resolution::{FASTEST_PAIR, LADDER_TAIL};
+pub use resolution::{FASTEST_PAIR, LADDER_TAIL, PER_CELL};
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]

@@ -24,8 +24,8 @@ fn wanted_knudsen(method: Method, occupancy: f64) -> f64 {
         return WANTED_KNUDSEN;
     }
     // In mean spacings.
-    let (edge, _) = cell_edge(1.0, kinetics::diameter(1.0, occupancy));
-    let worse = kinetics::hole_of_cells(edge / kinetics::mean_free_path_over_spacing(occupancy));
+    let edge = cell_edge(1.0, kinetics::diameter(1.0, occupancy));
+    let worse = kinetics::viscosity_of_cells(edge / kinetics::mean_free_path_over_spacing(occupancy));
     let guard = limit(Quantity::Knudsen, method).map_or(WANTED_KNUDSEN, |limit| limit.bound.value());
     (WANTED_KNUDSEN / worse).min(guard)
 }
@@ -128,5 +128,20 @@ impl Population {
 
     pub fn of_gas(&self, gas: usize) -> u64 {
         self.injected[gas] + self.initial.iter().map(|chamber| chamber[gas]).sum::<u64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The guard's at the occupancy of plans; less in cells that are longer beside the free path.
+    #[test]
+    fn cells_want_a_hole_of_a_smaller_knudsen_number() {
+        assert_eq!(wanted_knudsen(Method::ClosestApproach, 0.3), WANTED_KNUDSEN);
+        assert_eq!(wanted_knudsen(Method::Cell, 0.12), 0.03);
+        let coarse = wanted_knudsen(Method::Cell, 0.3);
+        let edge = libm::cbrt(6.0) / kinetics::mean_free_path_over_spacing(0.3);
+        assert!(coarse < 0.025 && (coarse * kinetics::viscosity_of_cells(edge) / WANTED_KNUDSEN - 1.0).abs() < 1e-9);
     }
 }

@@ -9,7 +9,7 @@ use crate::gas::kinetics;
 use crate::scene::{Method, ModelRequest};
 
 /// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (specification, section 2).
-const PER_CELL: f64 = 6.0;
+pub const PER_CELL: f64 = 6.0;
 /// In thin gas: one thread collides all of a cell.
 const MOST_PER_CELL: f64 = 20.0;
 /// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
@@ -198,7 +198,16 @@ impl Resolution {
         let density = states[1].number_density;
         let (diameter, why) = diameter(Method::Cell, request, density);
         because("diameter", format!("{} mm", significant(1e3 * diameter)), why);
-        let (cell, why) = cell_edge(density, diameter);
+        let path = kinetics::mean_free_path(density, diameter);
+        let [few, many] = cell_bounds(density);
+        let cell = cell_edge(density, diameter);
+        let why = if path > many {
+            format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer")
+        } else if path > few {
+            "the mean free path at the end: what is shorter is no gradient of the gas".to_string()
+        } else {
+            format!("{PER_CELL} particles at the mean density of the end; {} mean free paths", significant(few / path))
+        };
         because("cell", format!("{} mm", significant(1e3 * cell)), why);
         let tau = states
             .iter()
@@ -267,18 +276,14 @@ impl Resolution {
     }
 }
 
-/// The edge of a cell of the method `cell`, m, and why it is that, in gas of this density (1/m3) and collision diameter (m).
-pub(super) fn cell_edge(density: f64, diameter: f64) -> (f64, String) {
-    let path = kinetics::mean_free_path(density, diameter);
-    let [few, many] = [PER_CELL, MOST_PER_CELL].map(|particles| libm::cbrt(particles / density));
-    if path > many {
-        (many, format!("{MOST_PER_CELL} particles at the mean density of the end; the mean free path is longer"))
-    } else if path > few {
-        (path, "the mean free path at the end: what is shorter is no gradient of the gas".to_string())
-    } else {
-        let paths = significant(few / path);
-        (few, format!("{PER_CELL} particles at the mean density of the end; {paths} mean free paths"))
-    }
+/// The edge of a cell of the method `cell`, m, in gas of this density (1/m3) and collision diameter (m): a mean free path, within these bounds.
+pub(super) fn cell_edge(density: f64, diameter: f64) -> f64 {
+    let [few, many] = cell_bounds(density);
+    kinetics::mean_free_path(density, diameter).clamp(few, many)
+}
+
+fn cell_bounds(density: f64) -> [f64; 2] {
+    [PER_CELL, MOST_PER_CELL].map(|particles| libm::cbrt(particles / density))
 }
 
 /// The collision diameter, m, and why.

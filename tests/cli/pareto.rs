@@ -143,8 +143,8 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
 
 /// The measured table of the specification, section 2: the mean error of the density of free flight and of closest approach at 40,000
 /// particles is .0589 and .0301, of closest approach at 10,000 .0420, each +-5 %; `cell` is as good as closest approach. Its .0533 of
-/// rigid spheres is at an occupancy of .1 of the gas on the left (docs/accuracy.md, `sod-table`); the chart's is of the mean gas, and rigid
-/// spheres that fill .1 of that are worse than free flight, those of .03 better.
+/// rigid spheres is at an occupancy of .1 of the gas on the left (docs/accuracy.md, `sod-table`); the chart's is of the mean gas, where
+/// `corpuscle verify sod-table` has .078, worse than free flight.
 #[test]
 #[ignore = "minutes: cargo test --release --test cli pareto:: -- --ignored"]
 fn the_chart_of_the_shock_tube_has_the_order_of_the_specification() {
@@ -162,13 +162,9 @@ fn the_chart_of_the_shock_tube_has_the_order_of_the_specification() {
         |particles| nearest("closest-approach", particles, &[("occupancy", 0.12), ("step", 0.3), ("rounds", 8.0)]);
     let (fine, coarse) = (closest(40_000.0), closest(10_000.0));
     let rigid = nearest("hard-sphere", 10_000.0, &[("occupancy", 0.1), ("step", 0.3), ("rounds", 2.0)]);
-    let thin = nearest("hard-sphere", 40_000.0, &[("occupancy", 0.03), ("step", 0.3), ("rounds", 8.0)]);
     let free = nearest("none", 40_000.0, &[]);
     let cell = nearest("cell", 40_000.0, &[("occupancy", 0.12), ("step", 0.3)]);
-    println!(
-        "none {free:.4}, hard-sphere {rigid:.4} and {thin:.4}, closest-approach {coarse:.4} and {fine:.4}, cell {cell:.4}"
-    );
-    assert!(rigid > free && free > thin && thin > fine, "{rigid} {free} {thin} {fine}");
-    assert!(free > coarse && coarse > fine, "{free} {coarse} {fine}");
+    println!("none {free:.4}, hard-sphere {rigid:.4}, closest-approach {coarse:.4} and {fine:.4}, cell {cell:.4}");
+    assert!(rigid > free && free > coarse && coarse > fine, "{rigid} {free} {coarse} {fine}");
     assert!((cell / fine - 1.0).abs() < 0.15, "{cell} {fine}");
 }

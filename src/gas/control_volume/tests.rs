@@ -100,7 +100,7 @@ fn cells_make_a_hole_act_as_a_smaller_one() {
     let path = kinetics::mean_free_path(density, 2.4e-3);
     let length = path / 0.1;
     let (plain, coarse) = (left(length, None), left(length, Some(4.0 * path)));
-    let as_smaller = left(length / kinetics::hole_of_cells(4.0), None);
+    let as_smaller = left(length / kinetics::viscosity_of_cells(4.0), None);
     let flow = |left: f64| start[0].moles[0] - left;
     assert!(relative(flow(coarse), flow(as_smaller)) < 1e-2, "{} {}", flow(coarse), flow(as_smaller));
     assert!(flow(coarse) < 0.95 * flow(plain), "{} {}", flow(coarse), flow(plain));

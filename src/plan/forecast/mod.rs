@@ -297,7 +297,7 @@ impl<'a> Run<'a> {
             (None, vec![0.0; course.volumes.len()])
         } else {
             let diameter = bias::diameter_of_holes(method, occupancy, density);
-            let cell = (method == Method::Cell).then(|| cell_edge(density, diameter).0);
+            let cell = (method == Method::Cell).then(|| cell_edge(density, diameter));
             // Measured biases belong to the diameter of the mean gas.
             let states = course.solve(Collisions::Particles { diameter, cap: None, cell, moles_per_particle });
             let holes = bias::differences(&states, limit);

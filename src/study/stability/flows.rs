@@ -2,6 +2,7 @@
 
 use crate::gas::{CONTINUUM_COEFFICIENT, coefficient_into_vacuum, kinetics};
 use crate::gpu::Device;
+use crate::plan::PER_CELL;
 use crate::scene::{DiameterCap, Jet, JetSpeed, Method};
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
@@ -28,10 +29,8 @@ const INTERVALS: u32 = 24;
 /// Occupancies of holes' runs, the second of rigid spheres.
 const USUAL: f64 = 0.12;
 const THIN: f64 = 0.03;
-/// Of the holes with cells of several edges; particles of a cell of plans, at the end, and the room that the gas has then, m3.
+/// Of the holes with cells of several edges.
 const KNUDSEN_OF_EDGES: f64 = 0.1;
-const PARTICLES_OF_CELL: f64 = 6.0;
-const ROOM: f64 = 0.009_513_5;
 /// rad.
 const CONE: f64 = 0.2;
 
@@ -54,13 +53,15 @@ pub(super) fn knudsen(device: &Device, method: Method, knudsen: f64, effort: Eff
 /// Holes of one Knudsen number, of as many particles as make the cells so many free paths long: against the flow that forecasts say.
 pub(super) fn cell_edge(device: &Device, method: Method, edge: f64, _: Effort) -> Result<Vec<Check>, StudyError> {
     let model = hole_of_edge(method, edge)?;
-    let expected = coefficient_into_vacuum(KNUDSEN_OF_EDGES * kinetics::hole_of_cells(edge));
+    let expected = coefficient_into_vacuum(KNUDSEN_OF_EDGES * kinetics::viscosity_of_cells(edge));
     through_hole(device, &model, "flow, Cd over that of forecasts", expected)
 }
 
 fn hole_of_edge(method: Method, edge: f64) -> Result<Model, StudyError> {
     let path = KNUDSEN_OF_EDGES * RADIUS;
-    let particles = PARTICLES_OF_CELL * ROOM / (edge * path).powi(3);
+    // A cell is that of the gas at the end, when it has all the room.
+    let room: f64 = hole(method, 1000, None)?.plan.chambers.iter().map(|chamber| chamber.volume).sum();
+    let particles = PER_CELL * room / (edge * path).powi(3);
     hole(method, particles as u64, Some(path))
 }
 

@@ -12,13 +12,12 @@ mod openings;
 mod rigid;
 mod tubes;
 
-use std::f64::consts::PI;
-
 use super::gas_box::EquilibriumBox;
 use super::shear::viscosity;
 use super::{Case, Check, Effort, Findings};
 use crate::gas::kinetics;
 use crate::gpu::Device;
+use crate::plan::PER_CELL;
 use crate::study::StudyError;
 
 /// All of them, in the order of the tables.
@@ -70,16 +69,11 @@ fn figure(quantity: String, reference: f64, found: (f64, f64), known: f64) -> Ch
 /// third is disputed. Plans have eight rounds. Of cells it has "about .7 to .8": see the notes.
 const FLOORS: [(f64, u32, f64); 4] = [(0.12, 8, 0.783 * 0.79), (0.2, 8, 0.54), (0.2, 3, 0.54), (0.4, 3, 0.52)];
 
-/// Of cells: .783 lambda (Chapman and Enskog) and what collisions across a cell of edge L carry, 16/(45 pi) (L/lambda)^2 of it
-/// (Alexander, Garcia and Alder, Physics of Fluids 10, 1540 (1998)); both lengths in mean spacings.
+/// Of cells: .783 lambda (Chapman and Enskog) in mean spacings, and what collisions across a cell carry besides.
 fn of_cells(occupancy: f64) -> f64 {
     let path = kinetics::mean_free_path_over_spacing(occupancy);
-    let edge = PARTICLES_IN_CELL.cbrt();
-    0.783 * path * (1.0 + 16.0 / (45.0 * PI) * (edge / path).powi(2))
+    0.783 * path * kinetics::viscosity_of_cells(PER_CELL.cbrt() / path)
 }
-
-/// That plans give a cell.
-const PARTICLES_IN_CELL: f64 = 6.0;
 
 fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, seeds) = if effort == Effort::Quick { (4000, 16) } else { (8000, 16) };
@@ -111,7 +105,7 @@ fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> 
         "The specification has .7 to .8 for cells of four to eight particles. Theory has {:.2} for the six of a plan at f = .1 \
          (Alexander, Garcia and Alder, 1998), at least {:.2} at any occupancy, and the run agrees with it",
         of_cells(occupancy),
-        2.0 * 0.783 * (16.0 / (45.0 * PI)).sqrt() * PARTICLES_IN_CELL.cbrt()
+        2.0 * 0.783 * kinetics::ACROSS_CELLS.sqrt() * PER_CELL.cbrt()
     ));
     Ok(findings)
 }
