@@ -1,14 +1,13 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the number of particles behind
+// Reads `sorted`, `flights` (without collisions `particles`), the number of particles behind
 // `cell_start`, the classes and clearances of the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
-// those that meet a wall, or without rounds may meet one (noted in `layers`), to `bouncing`. One thread per
+// those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
 
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
-override ORIFICES: bool = true;
 override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -52,11 +51,8 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if (ROUNDS_OF_PAIRS) {
         meets_wall = flights[s].wall < step.dt;
     } else {
-        var start = 0.0;
-        if (ORIFICES) {
-            start = birth_time(id_of(place.w));
-        }
-        meets_wall = may_hit(position, velocity, start, step.dt);
+        // (What enters in this step, which is rare, starts at a time of its own.)
+        meets_wall = is_newborn(id_of(place.w)) || may_hit(position, velocity, 0.0, step.dt);
     }
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {

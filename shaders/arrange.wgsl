@@ -15,15 +15,10 @@ override PARTED_GAS: bool = true;
 
 // Whether other kernels work on a cell as well, which want its particles in order.
 fn parted_or_moved(cell: u32) -> bool {
-    var found = false;
-    if (PARTED_GAS || MOVING) {
-        let place = cell_of(cell);
-        found = in_any_motion(place);
-        if (PARTED_GAS) {
-            found |= (cell_volume[cell_index(place)] & PARTED) != 0u;
-        }
+    if (in_any_motion(cell_of(cell))) {
+        return true;
     }
-    return found;
+    return PARTED_GAS && (cell_volume[index_of(cell)] & PARTED) != 0u;
 }
 
 @compute @workgroup_size(WORKGROUP)

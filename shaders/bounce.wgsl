@@ -10,7 +10,6 @@
 
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
-override ORIFICES: bool = true;
 override SPIN: bool = true;
 override SURFACES: bool = true;
 override COATS: bool = true;
@@ -83,11 +82,6 @@ fn tally_energy(slot: u32, energy: f32) {
     }
 }
 
-// Of a number that is not zero.
-fn negated(number: vec2<u32>) -> vec2<u32> {
-    return vec2<u32>(~number.x + 1u, ~number.y + select(0u, 1u, number.x == 0u));
-}
-
 fn energy_of(particle: Particle, mass: f32) -> f32 {
     return 0.5 * mass * dot(particle.velocity, particle.velocity) + particle.spin;
 }
@@ -124,7 +118,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     if (ROUNDS_OF_PAIRS) {
         time = flights[s].start;
-    } else if (ORIFICES) {
+    } else {
         time = birth_time(id_of(particle.tag));
     }
     let gas = gases[kind_of(particle.tag)];

@@ -1,7 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 // The collisions of the method `cell`, in cells that no wall parts.
 //
-// Reads `cell_start`, `cell_volume`, `newborns`, `motions`; reads and writes `sorted`, appends the cells that walls part
+// Reads `cell_start`, `cell_volume`, `motions`; reads and writes `sorted`, appends the cells that walls part
 // to `parted`, those that moving walls may touch to `moved`, and among other devices leaves the number of a cell's candidates with its first particle, in
 // `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids, in which up to
 // MEMBERS need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
@@ -159,12 +159,11 @@ fn collide(
         let bin_end = cell_start[bin + 1u];
         var candidates = 0u;
         if (bin_end > begin + 1u) {
-            let place = cell_of(bin);
-            let cell = cell_index(place);
+            let cell = index_of(bin);
             let entry = cell_volume[cell];
             var count = bin_end - begin;
             crowded = count > MEMBERS;
-            if (in_any_motion(place)) {
+            if (in_any_motion(cell_of(bin))) {
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;

@@ -37,7 +37,7 @@ fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
         return;
     }
     let bin = parted[place_in_list];
-    let cell = cell_index(cell_of(bin));
+    let cell = index_of(bin);
     let entry = cell_volume[cell];
     let parts = parts_of(entry);
     let begin = cell_start[bin];

@@ -21,8 +21,6 @@
 @group(0) @binding(44) var<storage, read_write> origins: array<u32>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
-override ORIFICES: bool = true;
-
 // The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
 fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
     let distance2 = from_box2(middle, cell, vec3<i32>(step.own_low), vec3<i32>(step.own_high));
@@ -70,10 +68,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         }
     }
     cells[place] = cell;
-    var start = 0.0;
-    if (ORIFICES) {
-        start = birth_time(own_id);
-    }
+    let start = birth_time(own_id);
     var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
     flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
     middles[place] = packed(middle) | flags;

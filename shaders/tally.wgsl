@@ -5,8 +5,8 @@
 // Reads `particles`, `zones`; writes the integer tally `sums`. A workgroup takes a chunk of particles (y),
 // one zone (x) and two gases (z); each thread adds its own, then the workgroup, then the zone's sums. (The zones of one chunk are
 // next to each other, not the chunks of one zone: some zones have much to do and others nothing, and a software device gives each of its
-// threads a stretch of workgroups.) Where chambers have all of the
-// gas, they are what is added up for the whole. Fixed-point integers with a carry: the sums do not depend on order. A value
+// threads a stretch of workgroups.) Where chambers have all of the gas, the last has what the others leave of the whole: it is not
+// looked for in the space. Fixed-point integers with a carry: the sums do not depend on order. A value
 // out of range is counted, and the host stops the run.
 
 struct Zone {
@@ -150,9 +150,8 @@ fn tally(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let zone = group.x;
-    // The last chamber has what the others leave.
     let chambers_have_all = CHAMBERS > 0u && zones[CHAMBERS].kind == EVERYWHERE;
-    if (zone == 0u && chambers_have_all) {
+    if (zone == CHAMBERS && chambers_have_all) {
         return;
     }
     if (thread < 2u * WORDS) {
@@ -211,8 +210,9 @@ fn tally(
         let high = atomicLoad(&shared_sums[2u * thread + 1u]);
         let word = 2u * (thread % (WORDS / 2u));
         add64((zone * GASES + gas) * WORDS + word, low, high);
-        if (chambers_have_all && zone <= CHAMBERS) {
-            add64(gas * WORDS + word, low, high);
+        if (chambers_have_all && zone < CHAMBERS) {
+            let left = select(negated(vec2<u32>(low, high)), vec2<u32>(low, high), zone == 0u);
+            add64((CHAMBERS * GASES + gas) * WORDS + word, left.x, left.y);
         }
     }
 }

@@ -8,3 +8,8 @@ fn add64(slot: u32, low: u32, high: u32) {
         atomicAdd(&sums[slot + 1u], high + carry);
     }
 }
+
+// Minus a number of two words.
+fn negated(number: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(~number.x + 1u, ~number.y + select(0u, 1u, number.x == 0u));
+}

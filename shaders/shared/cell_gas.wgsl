@@ -26,3 +26,12 @@ fn parts_of(entry: u32) -> u32 {
 fn first_part(entry: u32) -> u32 {
     return entry & 0xffffffu;
 }
+
+// The place in the grid of a cell of this device (local.wgsl).
+fn index_of(bin: u32) -> u32 {
+    if (step.bins == CELLS_X * CELLS_Y * CELLS_Z) {
+        // The box is the grid.
+        return bin;
+    }
+    return cell_index(cell_of(bin));
+}

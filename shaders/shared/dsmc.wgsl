@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl counters.wgsl lists.wgsl spin.wgsl
+//! uses: step.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl spin.wgsl
 // The collisions of the method `cell` in one part of a cell (direct simulation Monte Carlo without a time
 // counter, specification, section 2).
 //
@@ -15,7 +15,6 @@
 override CROSS_SECTION: f32;
 // The upper half of the key of these draws: seed and purpose, as SEED_HIGH.
 override CELL_SEED_HIGH: u32;
-override ORIFICES: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
@@ -23,11 +22,6 @@ override ORIFICES: bool = true;
 
 // More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
 const MOST_CANDIDATES: f32 = 65536.0;
-
-// Those that enter in a step cannot collide yet. They have the highest ids.
-fn is_newborn(id: u32) -> bool {
-    return ORIFICES && id - step.newborn_first_id < step.newborns;
-}
 
 fn at_most(wanted: f32) -> u32 {
     if (wanted > MOST_CANDIDATES) {

@@ -8,15 +8,19 @@ struct Newborn {
 
 @group(0) @binding(3) var<storage, read> newborns: array<Newborn>;
 
+// Whether particles enter anywhere.
+override ORIFICES: bool = true;
+
+// Whether this one enters in this step; those that do have the highest ids. (Where particles are dealt out by id, those between are
+// others' newborns. An older id wraps to far more than the newborns of a step.)
+fn is_newborn(id: u32) -> bool {
+    return ORIFICES && id - step.newborn_first_id < step.newborns * step.stride;
+}
+
 // When a particle's flight starts: at its entry if it is a newborn of this step.
 fn birth_time(id: u32) -> f32 {
-    var birth = id - step.newborn_first_id;
-    if (step.stride > 1u) {
-        // Where particles are dealt out by id. (An older id wraps to far more than the newborns of a step.)
-        birth /= step.stride;
+    if (!is_newborn(id)) {
+        return 0.0;
     }
-    if (birth < step.newborns) {
-        return newborns[step.newborn_offset + birth].start;
-    }
-    return 0.0;
+    return newborns[step.newborn_offset + (id - step.newborn_first_id) / step.stride].start;
 }

@@ -103,7 +103,7 @@ fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 5] {
     ]
 }
 
-/// Zones whose tally reads the particles: of the whole only where the chambers have not all of them.
+/// Zones whose tally reads the particles: where the chambers have all of them, the last has what the others leave.
 fn zones_read(model: &Model) -> usize {
     let chambers = &model.scene.chambers;
     let covered = chambers.last().is_some_and(|chamber| chamber.region.is_none());
