@@ -51,7 +51,7 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
         }
     }
     if !all.is_empty() {
-        say(&format!("\n{}", report::summary(&all, &device)))?;
+        say(&format!("\n{}", report::summary(&all, &ceilings, &device)))?;
     }
     if let Some(path) = &raw.json {
         let missing: Vec<(String, String)> =

@@ -324,7 +324,10 @@ fn a_bench_measures_each_scene_and_method() {
     let all: Vec<_> = ["box", "tank"].iter().flat_map(|&scene| methods.map(|method| (scene, method))).collect();
     for (line, &(scene, method)) in lines[lines.len() - all.len()..].iter().zip(&all) {
         assert_eq!(line[..2], [scene, method], "{text}");
-        let [rate, target, ratio]: [f64; 3] = std::array::from_fn(|k| line[line.len() - 3 + k].parse().unwrap());
+        let numbers: [f64; 5] = std::array::from_fn(|k| line[line.len() - 5 + k].parse().unwrap());
+        let [collisions, at_ceilings, rate, target, ratio] = numbers;
+        assert_eq!(collisions > 0.0, method != "none", "{text}");
+        assert!(at_ceilings > 0.0, "{text}");
         assert!(rate > 0.0 && (ratio - rate / target).abs() < 0.01 / target + 0.001, "{text}");
     }
     let value: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();

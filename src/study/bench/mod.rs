@@ -84,6 +84,17 @@ impl Measured {
         self.particle_steps as f64 / self.seconds
     }
 
+    /// Particle-steps per second if each phase took no more than its counted bytes take at the rate of the copy, or its counted
+    /// operations at the rate of arithmetic, whichever is longer; `None` where no phase is counted.
+    pub fn rate_at_ceilings(&self, ceilings: &Ceilings) -> Option<f64> {
+        let at_least = |cost: &Cost| {
+            let moved = cost.bytes.unwrap_or(0.0) / ceilings.copy;
+            moved.max(cost.operations.map_or(0.0, Operations::all) / ceilings.arithmetic)
+        };
+        let seconds: f64 = self.costs.iter().map(at_least).sum();
+        (seconds > 0.0).then(|| self.particle_steps as f64 / seconds)
+    }
+
     /// Particle-steps per second that this project wants of such a device; `None` of a method without a target.
     pub fn target(&self, device: &Device) -> Option<f64> {
         target(self.method, device.adapter().is_cpu())

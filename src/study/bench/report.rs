@@ -55,13 +55,15 @@ pub fn table(measured: &Measured, ceilings: &Ceilings) -> String {
 }
 
 /// A line for each run; the ratio to the target is the last column.
-pub fn summary(all: &[Measured], device: &Device) -> String {
+pub fn summary(all: &[Measured], ceilings: &Ceilings, device: &Device) -> String {
     let head = [
         "scene",
         "method",
         "particles",
         "bytes/particle",
         "bytes/cell",
+        "collisions/particle-step",
+        "M/s at the ceilings",
         "M particle-steps/s",
         "target",
         "of the target",
@@ -76,6 +78,8 @@ pub fn summary(all: &[Measured], device: &Device) -> String {
             measured.present.to_string(),
             format!("{:.1}", particles / measured.present.max(1) as f64),
             if measured.cells > 0 { format!("{:.1}", cells / measured.cells as f64) } else { "-".into() },
+            format!("{:.3}", measured.work.collisions / measured.work.particle_steps.max(1.0)),
+            measured.rate_at_ceilings(ceilings).map_or_else(|| "-".into(), |rate| format!("{:.1}", 1e-6 * rate)),
             format!("{:.2}", 1e-6 * measured.rate()),
             target.map_or_else(|| "-".into(), |target| format!("{:.0}", 1e-6 * target)),
             target.map_or_else(|| "-".into(), |target| format!("{:.3}", measured.rate() / target)),
@@ -148,6 +152,7 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
             "particle_steps": measured.particle_steps,
             "wall_seconds": measured.seconds,
             "particle_steps_per_second": measured.rate(),
+            "particle_steps_per_second_at_ceilings": measured.rate_at_ceilings(ceilings),
             "target": measured.target(device),
             "collisions": measured.work.collisions,
             "candidates": measured.work.candidates,
