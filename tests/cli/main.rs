@@ -340,6 +340,15 @@ fn a_bench_measures_each_scene_and_method() {
         for (phase, method) in [("collide", "cell"), ("lost", "closest-approach"), ("remember", "closest-approach")] {
             assert_eq!(phases.iter().any(|own| own["phase"] == phase), run["method"] == method, "{phase}: {phases:?}");
         }
+        let number = |of: &serde_json::Value, key: &str| of[key].as_f64().unwrap();
+        let least = |phase: &serde_json::Value| {
+            number(phase, "device_seconds") * number(phase, "share_of_copy").max(number(phase, "share_of_arithmetic"))
+        };
+        // (A phase that moves nothing has no share.)
+        let seconds: f64 = phases.iter().filter(|phase| phase["share_of_copy"].is_number()).map(least).sum();
+        let at_ceilings = number(run, "particle_steps") / seconds;
+        let told = number(run, "particle_steps_per_second_at_ceilings");
+        assert!((told / at_ceilings - 1.0).abs() < 1e-9, "{told} {at_ceilings}");
         // Every phase is counted, as often as it is in one interval.
         let counts = ["bytes", "floating_operations", "integer_operations", "share_of_copy", "share_of_arithmetic"];
         assert!(phases.iter().all(|phase| counts.iter().all(|&count| phase[count].is_number())), "{phases:#?}");

@@ -119,7 +119,7 @@ mod tests {
 
     /// The box has one chamber without a region; the tank two, the last without one, and a probe.
     #[test]
-    fn the_whole_is_read_only_where_chambers_have_not_all() {
+    fn the_last_chamber_is_read_only_where_it_has_a_region() {
         let zones = SCENES.map(|scene| {
             let asked = scene_of(scene.name, scene.text).expect("a scene");
             let mut model = model_from(scene.name, asked).expect("a plan");
