@@ -1,9 +1,9 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl cell_gas.wgsl members.wgsl lay.wgsl
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
-// order by itself.
+// order by itself; those of other cells are listed.
 //
-// Reads `bins`, `cell_start`, `particles`, `cell_volume` and `motions`; writes `sorted` (lay.wgsl), for the others `slots`, and
-// appends these to `crowded`. One thread per particle as they lie in `particles`.
+// Reads `bins`, `cell_start`, `particles`, `cell_volume` and `motions`; writes `sorted` (lay.wgsl), of cells of more than MEMBERS and of
+// the listed `slots`, and appends to `crowded`. One thread per particle as they lie in `particles`.
 
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
@@ -39,8 +39,12 @@ fn arrange(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     }
     let begin = cell_start[bin.x];
     let place = begin + bin.y;
-    if (cell_start[bin.x + 1u] - begin > MEMBERS || parted_or_moved(bin.x)) {
+    let end = cell_start[bin.x + 1u];
+    let listed = !fits_a_thread(begin, end) || parted_or_moved(bin.x);
+    if (listed || end - begin > MEMBERS) {
         slots[place] = id_of(particles[i].place.w);
+    }
+    if (listed) {
         crowded[append(LIST_CROWDED)] = i;
         return;
     }

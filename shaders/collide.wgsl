@@ -1,24 +1,23 @@
 //! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
-// The collisions of the method `cell`, in cells that no wall parts.
+// The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //
 // Reads `cell_start`, `cell_volume`, `motions`; reads and writes `sorted`, appends the cells that walls part
-// to `parted`, those that moving walls may touch to `moved`, and among other devices leaves the number of a cell's candidates with its first particle, in
-// `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids, in which up to
-// MEMBERS need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
+// to `parted`, those that moving walls may touch to `moved`, others of more particles to `crowds`, and among other devices leaves the number of a cell's candidates with its first particle, in
+// `neighbour_count`, for the balance. One thread per cell; each works on its own particles, in order of their ids, in which these
+// need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
 
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(51) var<storage, read_write> parted: array<u32>;
 @group(0) @binding(54) var<storage, read_write> moved: array<u32>;
+@group(0) @binding(62) var<storage, read_write> crowds: array<u32>;
 
 var<workgroup> collisions: atomic<u32>;
 
-// The numbers of a cell's particles by their ids, the first eight and the others; not if they lie in order.
+// The numbers of a cell's particles by their ids, the first eight and the others.
 var<private> by_id: vec2<u32>;
-var<private> crowded: bool;
 
 fn member(begin: u32, k: u32, part: u32) -> u32 {
-    let number = extractBits(select(by_id.y, by_id.x, k < 8u), NUMBER_BITS * (k & 7u), NUMBER_BITS);
-    return begin + select(number, k, crowded);
+    return begin + extractBits(select(by_id.y, by_id.x, k < 8u), NUMBER_BITS * (k & 7u), NUMBER_BITS);
 }
 
 // The id, and below it the number.
@@ -162,31 +161,25 @@ fn collide(
             let cell = index_of(bin);
             let entry = cell_volume[cell];
             var count = bin_end - begin;
-            crowded = count > MEMBERS;
             if (in_any_motion(cell_of(bin))) {
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;
-            } else {
-                if (!crowded) {
-                    put_in_order(begin, count);
-                }
+            } else if (count <= MEMBERS) {
+                put_in_order(begin, count);
                 while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
                     count--;
                 }
                 if (count > 1u) {
-                    var bulk: Bulk;
-                    if (crowded) {
-                        bulk = bulk_of(begin, count, 0u);
-                    } else {
-                        bulk = bulk_of_few(begin, count);
-                    }
+                    let bulk = bulk_of_few(begin, count);
                     let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
                     candidates = done.candidates;
                     if (done.collisions > 0u) {
                         atomicAdd(&collisions, done.collisions);
                     }
                 }
+            } else {
+                crowds[append(LIST_CROWDS)] = bin;
             }
         }
         if (step.peers > 0u) {

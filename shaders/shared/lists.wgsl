@@ -3,7 +3,7 @@
 // every thread.) The order of a list depends on the order of the threads; entries are independent.
 
 // Lists 0 .. 8 are the pairs of the rounds (of the method `cell`, list 0 the cells that walls part, list 1 those
-// that moving walls touch, list 2 the particles of cells that are put in order by themselves); list ROUNDS counts the pairs that the rounds lost. Lists
+// that moving walls touch, list 2 the particles of cells that are put in order by themselves, list 3 the crowded cells); list ROUNDS counts the pairs that the rounds lost. Lists
 // LIST_RECHOOSE + r are the particles that choose in round r. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
 // were asked for their choice; LIST_OUTBOX and
@@ -11,6 +11,7 @@
 const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
+const LIST_CROWDS: u32 = 3;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;

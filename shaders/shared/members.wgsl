@@ -1,5 +1,11 @@
-// Cells of the method `cell` with so few particles that a thread puts them in order by itself: at most MEMBERS, numbered as they lie.
+// Cells of the method `cell` that a thread puts in order by itself: of at most MEMBERS particles, numbered as they lie, and of more by
+// their slots, up to CROWD, counted from the slot of a multiple of four that is their first or before it.
 
 const MEMBERS: u32 = 12;
 // Bits of such a number.
 const NUMBER_BITS: u32 = 4;
+const CROWD: u32 = 64;
+
+fn fits_a_thread(begin: u32, end: u32) -> bool {
+    return end - (begin & 0xfffffffcu) <= CROWD;
+}

@@ -271,12 +271,12 @@ pub struct ParticleBuffers {
     /// is in `sorted` then.
     pub particles: wgpu::Buffer,
     pub newborns: wgpu::Buffer,
-    /// Of the sort `bins`; afterwards the `choices` of the rounds.
+    /// Of the sort `bins`; afterwards the `choices` of the rounds, or the `crowds` of the method `cell`.
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, to screen the lists in its second half; afterwards
     /// the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `crowded` or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// One after the other `crowded` and `order_by_id`, or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub flights: wgpu::Buffer,
@@ -424,9 +424,9 @@ impl<'a> Buffers<'a> {
             ("screen", "particles") if particle.neighbours.is_none() => &particle.sorted,
             (_, "particles") => &particle.particles,
             (_, "newborns") => &particle.newborns,
-            (_, "bins" | "choices") => &particle.bins,
+            (_, "bins" | "crowds" | "choices") => &particle.bins,
             (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
-            (_, "crowded" | "near_walls" | "rechoose" | "bouncing") => &particle.rare,
+            (_, "crowded" | "order_by_id" | "near_walls" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,

@@ -15,6 +15,8 @@ pub const WORKGROUP: u32 = 64;
 /// Particles of a cell of the method `cell` that a thread puts in order by itself, at most: as `shaders/shared/members.wgsl`
 /// has it, whose sorting network is made for so many (held against it in `tests/layouts.rs`).
 pub const MEMBERS: u32 = 12;
+/// And of more, slots that one thread puts in order.
+pub const CROWD: u32 = 64;
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
 const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;

@@ -80,6 +80,7 @@ impl StepSlot {
 const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
+const LIST_CROWDS: u32 = 3;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_SCREEN: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
@@ -380,6 +381,7 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("collide");
             kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
+            kernels.collide_crowded.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_CROWDS);
             if let Some(parted) = &kernels.parted {
                 parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
             }

@@ -55,6 +55,7 @@ pub struct CellKernels<K> {
     pub arrange: K,
     pub arrange_crowded: K,
     pub collide: K,
+    pub collide_crowded: K,
     /// Of a scene whose walls part the gas of a cell.
     pub parted: Option<K>,
     /// Of a scene whose walls move.
@@ -97,6 +98,7 @@ impl<K> Kernels<K> {
                 arrange: make("arrange")?,
                 arrange_crowded: make("arrange_crowded")?,
                 collide: make("collide")?,
+                collide_crowded: make("collide_crowded")?,
                 parted: if features.parted { Some(make("collide_parted")?) } else { None },
                 moved: if features.moving { Some(make("collide_moved")?) } else { None },
             })

@@ -30,7 +30,7 @@ pub use buffers::{
     BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
-pub use constants::{Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
+pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
 pub use domain::{Domain, DomainInput};
 pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};

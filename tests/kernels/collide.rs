@@ -1,10 +1,10 @@
-//! `collide` and `collide_parted`: who collides, how often, and what is conserved (specification, section 2).
+//! `collide`, `collide_crowded` and `collide_parted`: who collides, how often, and what is conserved (specification, section 2).
 
 use std::f64::consts::PI;
 
 use corpuscle::geometry::{CELL_GENERATOR, CELL_POINTS, TriangleGrid, Vessel, cell_gas};
 use corpuscle::scene::{GasSide, Shape};
-use corpuscle::subdomain::{CellTable, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
+use corpuscle::subdomain::{CROWD, CellTable, GpuGas, GpuMotion, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES, Walls};
 
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, dot, minus, norm};
@@ -55,7 +55,7 @@ impl Cloud {
 
     pub fn run(&self, step: GpuStep, seed: u32) -> Rig {
         let rig = self.rig(step, seed);
-        rig.run("collide", self.start.len() - 1);
+        collide(&rig, self.start.len() - 1);
         let parted = rig.counter(0);
         if parted > 0 {
             rig.run("collide_parted", parted as usize);
@@ -80,6 +80,11 @@ impl Cloud {
         rig.put("cell_start", &self.start);
         rig.put("cell_volume", &self.table.volume);
         rig.put("cell_parts", &self.table.parts);
+        let mut slots: Vec<u32> = self.particles.iter().map(GpuParticle::id).collect();
+        slots.resize(slots.len().next_multiple_of(4), 0);
+        rig.put("slots", &slots);
+        rig.put("order_by_id", &slots);
+        rig.put("crowds", &vec![0u32; self.start.len()]);
         rig.put("parted", &vec![0u32; self.table.parted as usize + 1]);
         rig.put("neighbour_count", &vec![UNTOLD; self.particles.len()]);
         rig.put("moved", &vec![0u32; self.start.len()]);
@@ -106,6 +111,15 @@ impl Cloud {
     /// Particles of a cell.
     pub fn cell(&self, cell: usize) -> std::ops::Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize
+    }
+}
+
+/// In the first cells that no wall parts.
+fn collide(rig: &Rig, cells: usize) {
+    rig.run("collide", cells);
+    let crowds = rig.counter(LIST_CROWDS);
+    if crowds > 0 {
+        rig.run("collide_crowded", crowds as usize);
     }
 }
 
@@ -186,42 +200,53 @@ fn workgroups_that_change_places_reach_every_cell_once() {
         }
     }
     let in_order = cloud.rig(step, 6);
-    in_order.run("collide", PERMUTED - 64);
+    collide(&in_order, PERMUTED - 64);
     let alike = cloud.start[PERMUTED - 64] as usize;
     let after = |rig: &Rig| -> Vec<GpuParticle> { rig.get("sorted", alike) };
     assert!(after(&whole) == after(&in_order), "a cell was worked on twice, or as another");
     assert!(after(&whole) != cloud.particles[..alike]);
 }
 
-/// Cells in which few lie are worked on by id, in whatever order these lie: up to MEMBERS, and no more.
+/// The slots from the last multiple of four at or before a cell's first to its last.
+fn slots_of(cell: &std::ops::Range<usize>) -> usize {
+    cell.end - cell.start / 4 * 4
+}
+
+/// Cells are worked on by id, in whatever order their particles lie: few or many, up to CROWD slots, and no more. `counts` of particles
+/// have cells of each of `sizes`.
 #[test]
-fn the_order_in_which_few_lie_changes_no_bit() {
-    const MEMBERS: usize = corpuscle::subdomain::MEMBERS as usize;
-    let cloud = Cloud::of(65, &[tank([0.06, 0.07, 0.08])], 2600);
-    let shuffled = |most: usize| {
-        let mut stream = Stream::new(66);
-        let mut other = cloud.particles.clone();
-        for cell in (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell)).filter(|cell| cell.len() <= most) {
-            stream.shuffle(&mut other[cell]);
-        }
-        Cloud { particles: other, ..Cloud::of(65, &[tank([0.06, 0.07, 0.08])], 2600) }
-    };
+fn the_order_in_which_particles_lie_changes_no_bit() {
+    const CROWDED: usize = MEMBERS as usize + 1;
+    const FULL: usize = CROWD as usize;
+    let walls = [tank([0.06, 0.07, 0.08])];
     let by_id = |cloud: &Cloud| {
-        let limit = 2000;
-        let rig = cloud.run(GpuStep { newborn_first_id: limit, newborns: 2000, ..GpuStep::default() }, 2);
+        let limit = 3 * cloud.particles.len() as u32 / 4;
+        let rig = cloud.run(GpuStep { newborn_first_id: limit, newborns: limit, ..GpuStep::default() }, 2);
         let mut after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
         after.sort_by_key(GpuParticle::id);
         (after, rig.counter(32))
     };
-    let sizes: Vec<usize> = (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell).len()).collect();
-    for size in 0..=MEMBERS + 1 {
-        assert!(sizes.contains(&size), "no cell of {size}");
+    for (count, sizes) in [(2600, 0..=CROWDED), (10_000, CROWDED..=45), (20_000, 45..=FULL + 4)] {
+        let cloud = Cloud::of(65, &walls, count);
+        let cells = || (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell));
+        let shuffled = |most: usize| {
+            let mut stream = Stream::new(66);
+            let mut other = Cloud::of(65, &walls, count);
+            for cell in cells().filter(|cell| slots_of(cell) <= most) {
+                stream.shuffle(&mut other.particles[cell]);
+            }
+            other
+        };
+        for size in sizes {
+            assert!(cells().any(|cell| cell.len() == size), "{count}: no cell of {size}");
+        }
+        let (other, found) = (shuffled(FULL), by_id(&cloud));
+        assert!(other.particles != cloud.particles && found.1 > 100);
+        assert!(by_id(&other) == found, "{count}");
+        // The check can fail: those of more are taken as they lie.
+        let full = cells().any(|cell| slots_of(&cell) > FULL);
+        assert_eq!(by_id(&shuffled(usize::MAX)) != found, full, "{count}");
     }
-    let (few, found) = (shuffled(MEMBERS), by_id(&cloud));
-    assert!(few.particles != cloud.particles && found.1 > 100);
-    assert!(by_id(&few) == found);
-    // The check can fail: those of more are taken as they lie.
-    assert!(by_id(&shuffled(MEMBERS + 1)) != found);
 }
 
 /// Those that enter in this step do not collide, and others are not slower for it: a cell of theirs alone stays as it is.

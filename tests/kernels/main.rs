@@ -50,6 +50,7 @@ fn every_kernel_has_its_test() {
         "collide",
         "collide_moved",
         "collide_parted",
+        "collide_crowded",
         "fill_outbox",
         "fill_updates",
         "inject",

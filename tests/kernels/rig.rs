@@ -17,6 +17,7 @@ use crate::oracle::walls::Triangle;
 pub const COUNTERS: usize = corpuscle::subdomain::COUNTER_WORDS;
 pub const LISTS: usize = 32;
 pub const LIST_CROWDED: usize = 2;
+pub const LIST_CROWDS: usize = 3;
 pub const LIST_NEAR_WALLS: usize = 9;
 pub const LIST_SCREEN: usize = 10;
 pub const LIST_BOUNCE: usize = 11;

@@ -1,7 +1,7 @@
 //! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly; `arrange` and `arrange_crowded`: by cell, and by id where
 //! `collide` wants it.
 
-use corpuscle::subdomain::{GpuFlight, GpuMotion, GpuNewborn, GpuParticle, GpuStep, MOTION_ENTRIES};
+use corpuscle::subdomain::{CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES};
 
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
@@ -190,18 +190,17 @@ fn order_is_canonical() {
     }
 }
 
-/// Particles of the method `cell` come into the places of their cells: as their slots say, but by id in cells of more than
-/// `collide` puts in order by itself, in those that walls part and in those that walls may touch which move. Among others their cells are noted.
+/// Particles of the method `cell` come into the places of their cells: as their slots say, but by id in cells of more than a thread
+/// puts in order by itself, in those that walls part and in those that walls may touch which move. Slots have the ids of those and of crowded cells. Among others their cells are noted.
 #[test]
 fn particles_of_cells_are_arranged() {
-    const MEMBERS: u32 = 12;
     const PARTED: u32 = 1 << 31;
     let Sorted { world, particles, mut cell, .. } = sorted(12);
     let cells = world.cells();
     let mut stream = Stream::new(13);
-    // One cell has just as many as `collide` takes, another one more, others many more: all in the middle of the grid.
+    // One cell has just as many as are few, another one more, others many more: all in the middle of the grid.
     let middle = [3, 4, 4];
-    let crowds = [(MEMBERS, [0, 0, 0]), (MEMBERS + 1, [1, 0, 0]), (40, [0, 1, 0]), (3 * MEMBERS, [1, 1, 0])];
+    let crowds = [(MEMBERS, [0, 0, 0]), (MEMBERS + 1, [1, 0, 0]), (40, [0, 1, 0]), (CROWD + 1, [1, 1, 0])];
     let mut next = 0;
     for &(count, off) in &crowds {
         let there = cells.index([0, 1, 2].map(|k| middle[k] + off[k]));
@@ -237,7 +236,7 @@ fn particles_of_cells_are_arranged() {
     }
     for (walls, peers) in [(false, 0), (true, 1)] {
         let ordered = |c: u32| {
-            let crowded = start[c as usize + 1] - start[c as usize] > MEMBERS;
+            let crowded = start[c as usize + 1] - start[c as usize] / 4 * 4 > CROWD;
             crowded || walls && (c == parted || moved(c))
         };
         let mut expected = by_slot.clone();
@@ -272,6 +271,11 @@ fn particles_of_cells_are_arranged() {
         assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "walls {walls}");
         // The check can fail: by their slots they are not in order.
         assert_ne!(by_slot, expected);
+        let noted_slot = |slot: usize| {
+            let c = (0..cells.count()).find(|&c| (start[c]..start[c + 1]).contains(&(slot as u32))).expect("a cell");
+            if ordered(c as u32) || start[c + 1] - start[c] > MEMBERS { by_slot[slot].id() } else { NOBODY }
+        };
+        assert_eq!(rig.get::<u32>("slots", COUNT), (0..COUNT).map(noted_slot).collect::<Vec<_>>());
         let mut noted = vec![9; COUNT + EMPTY];
         let mut layers = noted.clone();
         if peers > 0 {

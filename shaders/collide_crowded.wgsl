@@ -1,0 +1,195 @@
+//! uses: step.wgsl grid.wgsl local.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
+// The collisions of the method `cell`, in cells of more than MEMBERS particles that no wall parts.
+//
+// Reads `crowds`, `cell_start`, `cell_volume` and `slots`; writes `order_by_id`; reads and writes `sorted`, and among other devices
+// leaves the number of a cell's candidates with its first particle, in `neighbour_count`. One thread per entry of `crowds`; each works on
+// its own particles, in order of their ids, in which those of up to CROWD slots need not lie.
+
+@group(0) @binding(62) var<storage, read> crowds: array<u32>;
+// Four ids each.
+@group(0) @binding(9) var<storage, read> slots: array<vec4<u32>>;
+// The places of a cell's particles by their ids.
+@group(0) @binding(63) var<storage, read_write> order_by_id: array<u32>;
+@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+
+const ROWS: u32 = 16;
+
+// Four ids, one of each column, and the slots they are of.
+struct Row {
+    ids: vec4<u32>,
+    slots: vec4<u32>,
+}
+
+fn member(begin: u32, k: u32, part: u32) -> u32 {
+    return order_by_id[begin + k];
+}
+
+fn hidden(s: u32, t: u32) -> bool {
+    return false;
+}
+
+// The slots begin .. end of a row; behind all ids where there is none.
+fn row_of(begin: u32, end: u32, row: u32) -> Row {
+    let at = begin / 4u + row;
+    let slot = vec4<u32>(4u * at) + vec4<u32>(0u, 1u, 2u, 3u);
+    var ids = vec4<u32>(NOBODY);
+    if (4u * at < end) {
+        ids = select(ids, slots[at], (slot >= vec4<u32>(begin)) & (slot < vec4<u32>(end)));
+    }
+    return Row(ids, slot);
+}
+
+// The lower of each column to `low`.
+fn exchange(rows: ptr<function, array<Row, ROWS>>, low: u32, high: u32) {
+    let a = (*rows)[low];
+    let b = (*rows)[high];
+    let turned = b.ids < a.ids;
+    (*rows)[low] = Row(min(a.ids, b.ids), select(a.slots, b.slots, turned));
+    (*rows)[high] = Row(max(a.ids, b.ids), select(b.slots, a.slots, turned));
+}
+
+// The stages of a bitonic network (Batcher, 1968) that works on four columns at a time. Of each stretch of 2 `half` rows the first with the
+// last, and so on.
+fn mirror(rows: ptr<function, array<Row, ROWS>>, half: u32) {
+    for (var k = 0u; k < ROWS / 2u; k++) {
+        let first = 2u * (k - k % half);
+        exchange(rows, first + k % half, first + 2u * half - 1u - k % half);
+    }
+}
+
+// Each row of the first half with that of the second.
+fn halve(rows: ptr<function, array<Row, ROWS>>, half: u32) {
+    for (var k = 0u; k < ROWS / 2u; k++) {
+        let first = 2u * k - k % half;
+        exchange(rows, first, first + half);
+    }
+}
+
+fn halve_all(rows: ptr<function, array<Row, ROWS>>) {
+    halve(rows, 8u);
+    halve(rows, 4u);
+    halve(rows, 2u);
+    halve(rows, 1u);
+}
+
+// Two columns in order, to two that follow each other, from the lower ends of the one and the upper of the other on.
+fn mirror_pairs(rows: ptr<function, array<Row, ROWS>>) {
+    for (var k = 0u; k < ROWS; k++) {
+        let a = (*rows)[k];
+        let b = (*rows)[ROWS - 1u - k];
+        let turned = b.ids.yw < a.ids.xz;
+        let low = select(a.slots.xz, b.slots.yw, turned);
+        let high = select(b.slots.yw, a.slots.xz, turned);
+        let low_ids = min(a.ids.xz, b.ids.yw);
+        let high_ids = max(a.ids.xz, b.ids.yw);
+        (*rows)[k].ids.x = low_ids.x;
+        (*rows)[k].ids.z = low_ids.y;
+        (*rows)[k].slots.x = low.x;
+        (*rows)[k].slots.z = low.y;
+        (*rows)[ROWS - 1u - k].ids.y = high_ids.x;
+        (*rows)[ROWS - 1u - k].ids.w = high_ids.y;
+        (*rows)[ROWS - 1u - k].slots.y = high.x;
+        (*rows)[ROWS - 1u - k].slots.w = high.y;
+    }
+}
+
+// The same of two columns and two.
+fn mirror_all(rows: ptr<function, array<Row, ROWS>>) {
+    for (var k = 0u; k < ROWS; k++) {
+        let a = (*rows)[k];
+        let b = (*rows)[ROWS - 1u - k];
+        let turned = b.ids.wz < a.ids.xy;
+        (*rows)[k] = Row(
+            vec4<u32>(min(a.ids.xy, b.ids.wz), a.ids.zw),
+            vec4<u32>(select(a.slots.xy, b.slots.wz, turned), a.slots.zw),
+        );
+        let last = (*rows)[ROWS - 1u - k];
+        (*rows)[ROWS - 1u - k] = Row(
+            vec4<u32>(last.ids.xy, max(a.ids.xy, b.ids.wz).yx),
+            vec4<u32>(last.slots.xy, select(b.slots.wz, a.slots.xy, turned).yx),
+        );
+    }
+}
+
+// Each first column with the second, each third with the fourth.
+fn halve_pairs(rows: ptr<function, array<Row, ROWS>>) {
+    for (var k = 0u; k < ROWS; k++) {
+        let a = (*rows)[k];
+        let turned = a.ids.yw < a.ids.xz;
+        let low = select(a.slots.xz, a.slots.yw, turned);
+        let high = select(a.slots.yw, a.slots.xz, turned);
+        let low_ids = min(a.ids.xz, a.ids.yw);
+        let high_ids = max(a.ids.xz, a.ids.yw);
+        (*rows)[k] = Row(
+            vec4<u32>(low_ids.x, high_ids.x, low_ids.y, high_ids.y),
+            vec4<u32>(low.x, high.x, low.y, high.y),
+        );
+    }
+}
+
+fn put(place: u32, end: u32, slot: u32) {
+    if (place < end) {
+        order_by_id[place] = slot;
+    }
+}
+
+fn put_in_order(begin: u32, end: u32) {
+    var rows: array<Row, ROWS>;
+    for (var k = 0u; k < ROWS; k++) {
+        rows[k] = row_of(begin, end, k);
+    }
+    mirror(&rows, 1u);
+    mirror(&rows, 2u);
+    halve(&rows, 1u);
+    mirror(&rows, 4u);
+    halve(&rows, 2u);
+    halve(&rows, 1u);
+    mirror(&rows, 8u);
+    halve(&rows, 4u);
+    halve(&rows, 2u);
+    halve(&rows, 1u);
+    mirror_pairs(&rows);
+    halve_all(&rows);
+    mirror_all(&rows);
+    halve_pairs(&rows);
+    halve_all(&rows);
+    for (var k = 0u; k < ROWS; k++) {
+        put(begin + k, end, rows[k].slots.x);
+        put(begin + ROWS + k, end, rows[k].slots.y);
+        put(begin + 2u * ROWS + k, end, rows[k].slots.z);
+        put(begin + 3u * ROWS + k, end, rows[k].slots.w);
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn collide_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let place_in_list = linear(id, groups);
+    if (place_in_list >= atomicLoad(&counters[LIST_CROWDS])) {
+        return;
+    }
+    let bin = crowds[place_in_list];
+    let cell = index_of(bin);
+    let begin = cell_start[bin];
+    let end = cell_start[bin + 1u];
+    if (fits_a_thread(begin, end)) {
+        put_in_order(begin, end);
+    } else {
+        for (var s = begin; s < end; s++) {
+            order_by_id[s] = s;
+        }
+    }
+    var count = end - begin;
+    while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+        count--;
+    }
+    if (count > 1u) {
+        let bulk = bulk_of(begin, count, 0u);
+        let done = collide_members(begin, count, bulk, bitcast<f32>(cell_volume[cell]), cell, 0u);
+        if (done.collisions > 0u) {
+            count_collisions(done.collisions);
+        }
+        if (step.peers > 0u) {
+            neighbour_count[begin] = done.candidates;
+        }
+    }
+}
