@@ -165,21 +165,23 @@ fn collide(
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;
-            } else if (count <= MEMBERS) {
-                put_in_order(begin, count);
-                while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
-                    count--;
-                }
-                if (count > 1u) {
-                    let bulk = bulk_of_few(begin, count);
-                    let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
-                    candidates = done.candidates;
-                    if (done.collisions > 0u) {
-                        atomicAdd(&collisions, done.collisions);
-                    }
-                }
             } else {
-                crowds[append(LIST_CROWDS)] = bin;
+                if (count <= MEMBERS) {
+                    put_in_order(begin, count);
+                    while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+                        count--;
+                    }
+                    if (count > 1u) {
+                        let bulk = bulk_of_few(begin, count);
+                        let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
+                        candidates = done.candidates;
+                        if (done.collisions > 0u) {
+                            atomicAdd(&collisions, done.collisions);
+                        }
+                    }
+                } else {
+                    crowds[append(LIST_CROWDS)] = bin;
+                }
             }
         }
         if (step.peers > 0u) {

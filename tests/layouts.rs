@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::KERNELS;
 use corpuscle::subdomain::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
-    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
+    CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
+    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -194,14 +194,18 @@ fn a_wrong_twin_is_found() {
 /// Counts of operations, and tests, go by it.
 #[test]
 fn kernels_put_as_many_in_order_as_the_host_has_it() {
-    let members = |module: &Module| {
-        let (_, constant) =
-            module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some("MEMBERS"))?;
+    let value = |module: &Module, name: &str| {
+        let (_, constant) = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name))?;
         match module.global_expressions[constant.init] {
             Expression::Literal(Literal::U32(value)) => Some(value),
-            _ => panic!("MEMBERS is no number"),
+            _ => panic!("{name} is no number"),
         }
     };
-    let found: Vec<u32> = modules().iter().filter_map(|(_, module)| members(module)).collect();
-    assert!(!found.is_empty() && found.iter().all(|&value| value == MEMBERS), "{found:?}, {MEMBERS} on the host");
+    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)] {
+        let found: Vec<u32> = modules().iter().filter_map(|(_, module)| value(module, name)).collect();
+        assert!(
+            !found.is_empty() && found.iter().all(|&value| value == of_host),
+            "{name}: {found:?}, {of_host} on the host"
+        );
+    }
 }

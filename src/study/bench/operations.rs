@@ -11,7 +11,7 @@
 //! | pairs found | half of the entries of the lists |
 //! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
 //! | walls, for a flight near them and at each hit | one cell, one triangle up to the side it shows |
-//! | members of a cell, twice, and what puts them in order; candidates in it | all; those that collided |
+//! | members of a crowded cell, twice, and what puts a cell in order; candidates in it | all; those that collided |
 //! | particles in the tally | all up to the test of the zone for each zone and two gases, once the rest |
 //!
 //! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
@@ -23,7 +23,7 @@ use crate::scene::Method;
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work.
-const COUNTED: [&str; 20] = [
+const COUNTED: [&str; 21] = [
     "inject",
     "bin",
     "arrange",
@@ -35,6 +35,7 @@ const COUNTED: [&str; 20] = [
     "wall_times",
     "neighbours",
     "collide",
+    "collide_crowded",
     "choose",
     "match_pairs",
     "settle",
@@ -53,7 +54,10 @@ const FEWEST_TURNS: f64 = 4.0;
 const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
 const MUTUAL: &str = "if (other == NOBODY";
 const LISTED: &str = "for (var k = 0u; k < listed";
-const IN_ORDER: &str = "if (!crowded)";
+const IN_ORDER: &str = "if (count <= MEMBERS)";
+const FITTING: &str = "if (fits_a_thread(";
+/// Of all rows, and of half of them.
+const ROWS: [(&str, f64); 2] = [("for (var k = 0u; k < ROWS;", 16.0), ("for (var k = 0u; k < ROWS / 2u", 8.0)];
 const COLLIDING: &str = "if (count > 1u)";
 const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
 const MAY_HIT: &str = "if (around == CLASS_SOLID";
@@ -154,12 +158,16 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         }
         "collide" => {
             let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
-            let of_members = counted.of("collide")?.every("for (var k = 0u; k < count");
-            let shared = counted.turn("collide", "if (bin_end > begin + 1u)")? + counted.turn("collide", COLLIDING)?;
+            let few = counted.turn("collide", IN_ORDER)? + counted.turn("collide", COLLIDING)?;
+            let crowds = counted.of("collide_crowded")?;
+            let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * turns).sum::<Operations>();
+            let crowd = crowds.straight() + crowds.inner(FITTING)?.straight() + network;
+            let crowd = crowd + counted.turn("collide_crowded", COLLIDING)?;
             cell * cells
-                + shared * work.shared
-                + counted.turn("collide", IN_ORDER)? * work.few
-                + of_members * work.gathered
+                + counted.turn("collide", "if (bin_end > begin + 1u)")? * work.shared
+                + few * work.few
+                + crowd * (work.shared - work.few)
+                + crowds.every("for (var k = 0u; k < count") * work.crowded
                 + counted.turn("collide", "while (done.candidates < candidates)")? * collisions
         }
         "advect" => {

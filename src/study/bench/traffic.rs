@@ -33,11 +33,12 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
         // Counters in, and the starts out in their place; sums of stretches of cells out. (The counters are cleared outside of the phases.)
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
-        // State, cell and place in it, and where the cell starts in; state out.
+        // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
         "sort" => {
             // Slot, cell, layer, flight, middle, mark of the rounds and length of the list.
             let of_rounds = if rounds { FLIGHT + 6.0 * WORD } else { 0.0 };
-            n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds) + filled * WORD
+            n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
+                + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
         }
         // Middle and cell in, where the cells start, that nobody has chosen out; of those with neighbours the state in and the length of
         // the list in and out; the lists out; of those that may collide their mark in and out, and their entry.
@@ -57,11 +58,13 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + collisions * (2.0 * WORD + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD)
         }
         "lost" => work.lost_choosers * (choice + matched),
-        // Where the cells start; of cells with two or more their volume and their states in; those that collide out.
+        // Where the cells start; of cells with two or more their volume and their states in; those that collide out; of crowded ones
+        // slots in, and the order out.
         "collide" => {
             cells * WORD
                 + work.shared * WORD
                 + work.gathered * PARTICLE
+                + work.crowded * 2.0 * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
         // State in and out; flight where there is one.
@@ -136,5 +139,8 @@ mod tests {
         );
         let collided = Work { particle_steps: 1.0, collisions: 1.0, ..Work::default() };
         assert_eq!(bytes("settle", rounds, &collided), Some(8.0 + 192.0 + 16.0));
+        let crowded = Work { crowded: 1.0, ..Work::default() };
+        assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
+        assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));
     }
 }

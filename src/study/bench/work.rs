@@ -22,6 +22,8 @@ pub struct Work {
     pub chunks: f64,
     /// Cells with two or more that are put in order where they collide.
     pub few: f64,
+    /// Particles in cells of more.
+    pub crowded: f64,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
     pub listed: f64,
@@ -55,8 +57,8 @@ impl Work {
         let (rounds, collides) = (plan.rounds as usize, plan.method != crate::scene::Method::None);
         let has_rounds = plan.method.has_rounds();
         let cells = if collides { plan.grid.cell_count() as f64 } else { 0.0 };
-        let [filled, shared, gathered, chunks, few] =
-            if collides { occupied(&outcome.particles, &plan.grid) } else { [0.0; 5] };
+        let [filled, shared, gathered, chunks, few, crowded] =
+            if collides { occupied(&outcome.particles, &plan.grid) } else { [0.0; 6] };
         Work {
             steps,
             particle_steps,
@@ -65,6 +67,7 @@ impl Work {
             shared: shared * steps,
             gathered: gathered * steps,
             few: few * steps,
+            crowded: crowded * steps,
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,
@@ -85,8 +88,8 @@ impl Work {
 }
 
 /// Cells with a particle, with two or more, the particles of those, stretches of cells with a particle, and cells whose
-/// particles a thread puts in order.
-fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 5] {
+/// particles a thread puts in order where they collide, and the particles of cells of more.
+fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 6] {
     let mut counts = vec![0_u32; grid.cell_count()];
     for particle in particles {
         if let Some(count) = counts.get_mut(grid.cell_index(grid.cell_of(particle.position))) {
@@ -100,6 +103,7 @@ fn occupied(particles: &[GpuParticle], grid: &Grid) -> [f64; 5] {
         shared.map(|&count| f64::from(count)).sum(),
         counts.chunks(CHUNK).filter(|chunk| chunk.iter().any(|&count| count > 0)).count() as f64,
         counts.iter().filter(|count| (2..=MEMBERS).contains(*count)).count() as f64,
+        counts.iter().filter(|&&count| count > MEMBERS).map(|&count| f64::from(count)).sum(),
     ]
 }
 
@@ -139,7 +143,11 @@ mod tests {
             |x: u32, y: u32| GpuParticle { position: [x * edge + 1, y * edge, edge], ..bytemuck::Zeroable::zeroed() };
         // Three in one cell, one beside it, two far away.
         let particles = [at(1, 1), at(1, 1), at(1, 1), at(2, 1), at(1, 10), at(1, 10)];
-        assert_eq!(occupied(&particles, &grid), [3.0, 2.0, 5.0, 2.0, 2.0]);
-        assert_eq!(occupied(&[], &grid), [0.0; 5]);
+        assert_eq!(occupied(&particles, &grid), [3.0, 2.0, 5.0, 2.0, 2.0, 0.0]);
+        // Where the three were, a crowd.
+        let crowd = [&vec![at(1, 1); MEMBERS as usize - 2][..], &particles].concat();
+        let many = f64::from(MEMBERS) + 1.0;
+        assert_eq!(occupied(&crowd, &grid), [3.0, 2.0, many + 2.0, 2.0, 1.0, many]);
+        assert_eq!(occupied(&[], &grid), [0.0; 6]);
     }
 }
