@@ -212,8 +212,7 @@ fn slots_of(cell: &std::ops::Range<usize>) -> usize {
     cell.end - cell.start / 4 * 4
 }
 
-/// Cells are worked on by id, in whatever order their particles lie: few or many, up to CROWD slots, and no more. `counts` of particles
-/// have cells of each of `sizes`.
+/// Cells are worked on by id, in whatever order their particles lie: few or many, up to CROWD slots, and no more.
 #[test]
 fn the_order_in_which_particles_lie_changes_no_bit() {
     const CROWDED: usize = MEMBERS as usize + 1;
@@ -226,7 +225,9 @@ fn the_order_in_which_particles_lie_changes_no_bit() {
         after.sort_by_key(GpuParticle::id);
         (after, rig.counter(32))
     };
-    for (count, sizes) in [(2600, 0..=CROWDED), (10_000, CROWDED..=45), (20_000, 45..=FULL + 4)] {
+    for (count, sizes) in
+        [(2600, 0..=CROWDED), (6000, CROWDED..=23), (10_000, 23..=37), (16_000, 38..=55), (21_000, 55..=FULL + 4)]
+    {
         let cloud = Cloud::of(65, &walls, count);
         let cells = || (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell));
         let shuffled = |most: usize| {
