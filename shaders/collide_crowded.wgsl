@@ -12,7 +12,7 @@
 @group(0) @binding(63) var<storage, read_write> order_by_id: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 
-const ROWS: u32 = 16;
+const ROWS: u32 = CROWD / 4u;
 
 // Four ids, one of each column, and the slots they are of.
 struct Row {
@@ -72,28 +72,33 @@ fn halve_all(rows: ptr<function, array<Row, ROWS>>) {
     halve(rows, 1u);
 }
 
-// Two columns in order, to two that follow each other, from the lower ends of the one and the upper of the other on.
+// The lower of each first and second column, and of each third and fourth, to `low`, a row of the first and third.
+fn exchange_columns(rows: ptr<function, array<Row, ROWS>>, low: u32, high: u32) {
+    let a = (*rows)[low];
+    let b = (*rows)[high];
+    let turned = b.ids.yw < a.ids.xz;
+    let low_ids = min(a.ids.xz, b.ids.yw);
+    let high_ids = max(a.ids.xz, b.ids.yw);
+    let low_slots = select(a.slots.xz, b.slots.yw, turned);
+    let high_slots = select(b.slots.yw, a.slots.xz, turned);
+    (*rows)[low].ids.x = low_ids.x;
+    (*rows)[low].ids.z = low_ids.y;
+    (*rows)[low].slots.x = low_slots.x;
+    (*rows)[low].slots.z = low_slots.y;
+    (*rows)[high].ids.y = high_ids.x;
+    (*rows)[high].ids.w = high_ids.y;
+    (*rows)[high].slots.y = high_slots.x;
+    (*rows)[high].slots.w = high_slots.y;
+}
+
+// Two columns, each in order, as `mirror`: the first row of the one with the last of the other, and so on.
 fn mirror_pairs(rows: ptr<function, array<Row, ROWS>>) {
     for (var k = 0u; k < ROWS; k++) {
-        let a = (*rows)[k];
-        let b = (*rows)[ROWS - 1u - k];
-        let turned = b.ids.yw < a.ids.xz;
-        let low = select(a.slots.xz, b.slots.yw, turned);
-        let high = select(b.slots.yw, a.slots.xz, turned);
-        let low_ids = min(a.ids.xz, b.ids.yw);
-        let high_ids = max(a.ids.xz, b.ids.yw);
-        (*rows)[k].ids.x = low_ids.x;
-        (*rows)[k].ids.z = low_ids.y;
-        (*rows)[k].slots.x = low.x;
-        (*rows)[k].slots.z = low.y;
-        (*rows)[ROWS - 1u - k].ids.y = high_ids.x;
-        (*rows)[ROWS - 1u - k].ids.w = high_ids.y;
-        (*rows)[ROWS - 1u - k].slots.y = high.x;
-        (*rows)[ROWS - 1u - k].slots.w = high.y;
+        exchange_columns(rows, k, ROWS - 1u - k);
     }
 }
 
-// The same of two columns and two.
+// The same of the first two columns, in order one after the other, and the last two.
 fn mirror_all(rows: ptr<function, array<Row, ROWS>>) {
     for (var k = 0u; k < ROWS; k++) {
         let a = (*rows)[k];
@@ -111,19 +116,10 @@ fn mirror_all(rows: ptr<function, array<Row, ROWS>>) {
     }
 }
 
-// Each first column with the second, each third with the fourth.
+// Each row of the first column with that of the second, of the third with that of the fourth.
 fn halve_pairs(rows: ptr<function, array<Row, ROWS>>) {
     for (var k = 0u; k < ROWS; k++) {
-        let a = (*rows)[k];
-        let turned = a.ids.yw < a.ids.xz;
-        let low = select(a.slots.xz, a.slots.yw, turned);
-        let high = select(a.slots.yw, a.slots.xz, turned);
-        let low_ids = min(a.ids.xz, a.ids.yw);
-        let high_ids = max(a.ids.xz, a.ids.yw);
-        (*rows)[k] = Row(
-            vec4<u32>(low_ids.x, high_ids.x, low_ids.y, high_ids.y),
-            vec4<u32>(low.x, high.x, low.y, high.y),
-        );
+        exchange_columns(rows, k, k);
     }
 }
 

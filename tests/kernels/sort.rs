@@ -191,7 +191,8 @@ fn order_is_canonical() {
 }
 
 /// Particles of the method `cell` come into the places of their cells: as their slots say, but by id in cells of more than a thread
-/// puts in order by itself, in those that walls part and in those that walls may touch which move. Slots have the ids of those and of crowded cells. Among others their cells are noted.
+/// puts in order by itself, in those that walls part and in those that walls may touch which move. Slots have the ids of those and of
+/// crowded cells. Among others their cells are noted.
 #[test]
 fn particles_of_cells_are_arranged() {
     const PARTED: u32 = 1 << 31;

@@ -19,6 +19,7 @@
 
 use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
 use crate::scene::Method;
+use crate::subdomain::CROWD;
 
 use super::work::{CHUNK, Work};
 
@@ -56,8 +57,9 @@ const MUTUAL: &str = "if (other == NOBODY";
 const LISTED: &str = "for (var k = 0u; k < listed";
 const IN_ORDER: &str = "if (count <= MEMBERS)";
 const FITTING: &str = "if (fits_a_thread(";
-/// Of all rows, and of half of them.
-const ROWS: [(&str, f64); 2] = [("for (var k = 0u; k < ROWS;", 16.0), ("for (var k = 0u; k < ROWS / 2u", 8.0)];
+/// Loops over the rows of four slots of a crowded cell, and over half of them.
+const ROWS: [(&str, u32); 2] =
+    [("for (var k = 0u; k < ROWS;", CROWD / 4), ("for (var k = 0u; k < ROWS / 2u", CROWD / 8)];
 const COLLIDING: &str = "if (count > 1u)";
 const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
 const MAY_HIT: &str = "if (around == CLASS_SOLID";
@@ -160,7 +162,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
             let few = counted.turn("collide", IN_ORDER)? + counted.turn("collide", COLLIDING)?;
             let crowds = counted.of("collide_crowded")?;
-            let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * turns).sum::<Operations>();
+            let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * f64::from(turns)).sum::<Operations>();
             let crowd = crowds.straight() + crowds.inner(FITTING)?.straight() + network;
             let crowd = crowd + counted.turn("collide_crowded", COLLIDING)?;
             cell * cells
