@@ -173,20 +173,21 @@ impl Bench {
         let step = device.uniform("step", size_of::<GpuStep>() as u64)?;
         device.write(&step, 0, &[GpuStep { bins: cells as u32, ..GpuStep::default() }]);
         let chunks = cells / chunk + 1;
-        // Zeros to the end of the four that has the cell behind the last.
+        // Zeros to the end of the chunk that has the cell behind the last.
         let mut all = counts.to_vec();
-        all.resize(4 * (cells / 4 + 1), 0);
+        all.resize(chunk * chunks, 0);
         let kept = device.storage_of("kept", &all)?;
         let buffers = [
             ("step", step),
-            ("chunk_sums", device.storage::<u32>("chunk_sums", chunks as u64 + 1)?),
+            ("chunk_sums", device.storage::<u32>("chunk_sums", chunks as u64)?),
+            ("stretch_sums", device.storage::<u32>("stretch_sums", chunks.div_ceil(64) as u64)?),
             ("cell_start", device.storage::<u32>("cell_start", all.len() as u64)?),
         ];
         let constants = [("CHUNK", chunk as f64)];
         let mut dispatches = Vec::new();
         for (name, groups) in [
             ("scan_sums", self.groups(chunks, 64)),
-            ("scan_chunks", [1, 1, 1]),
+            ("scan_stretches", [1, 1, 1]),
             ("scan_cells", self.groups(chunks, 64)),
         ] {
             dispatches.push((self.bind(&Kernel::new(device, name, &constants)?, &buffers)?, groups));
@@ -195,8 +196,8 @@ impl Bench {
             name: format!("chunks of {chunk} cells, a thread each"),
             dispatches,
             // It leaves starts where the counts were.
-            restores: vec![(kept, buffers[2].1.clone())],
-            result: buffers[2].1.clone(),
+            restores: vec![(kept, buffers[3].1.clone())],
+            result: buffers[3].1.clone(),
             words: cells + 1,
         })
     }
@@ -334,6 +335,7 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
+        by_subgroups: None,
     }))
 }
 

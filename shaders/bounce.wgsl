@@ -54,9 +54,9 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
     let whole = vec4<i32>(round(scaled));
     for (var axis = 0u; axis < 4u; axis++) {
         let word = bitcast<u32>(whole[axis]);
-        add64(surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
+        add64_together(surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
-    add64(surface * SURFACE_WORDS + 8u, 1u, 0u);
+    add64_together(surface * SURFACE_WORDS + 8u, 1u, 0u);
 }
 
 // Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
@@ -76,9 +76,9 @@ fn tally_energy(slot: u32, energy: f32) {
         once = negated(once);
         left = negated(left);
     }
-    add64(slot, once.x, once.y);
+    add64_together(slot, once.x, once.y);
     if (step.tallies_left > 0u) {
-        add64(slot + 2u, left.x, left.y);
+        add64_together(slot + 2u, left.x, left.y);
     }
 }
 
@@ -90,9 +90,9 @@ fn energy_of(particle: Particle, mass: f32) -> f32 {
 fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
     let slot = VENTS_AT + vents[v].index * VENT_WORDS;
     let probability = vents[v].beta * mass * speed;
-    add64(slot + 4u, 1u, 0u);
+    add64_together(slot + 4u, 1u, 0u);
     if (probability > 1.0) {
-        add64(slot + 6u, 1u, 0u);
+        add64_together(slot + 6u, 1u, 0u);
     }
     if (unit_interval(word) >= probability) {
         return false;
@@ -203,7 +203,10 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         particle.velocity = turned;
         time = hit.time;
     }
-    atomicAdd(&counters[BOUNCES], bounces);
+    let all_bounces = sum_together(bounces);
+    if (threads_before() == 0u) {
+        atomicAdd(&counters[BOUNCES], all_bounces);
+    }
     if (overshoot > 0.0) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
     }

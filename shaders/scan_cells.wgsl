@@ -1,7 +1,7 @@
 //! uses: step.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
-// Reads `chunk_sums`; reads counts and writes starts in `cell_start`, by fours, up to the one with the cell behind the last. One
+// Reads `chunk_sums` and `stretch_sums`; reads counts and writes starts in `cell_start`, by fours, up to a whole chunk. One
 // thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
 // count is read.
 
@@ -10,27 +10,65 @@ override CHUNK: u32;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
+@group(0) @binding(29) var<storage, read> stretch_sums: array<u32>;
+
+var<workgroup> sums: array<u32, WORKGROUP>;
+
+// Where the particles of the cells of a four start, of which `before` are before it, and of the next one.
+struct Starts {
+    starts: vec4<u32>,
+    next: u32,
+}
+
+fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
+    let two = counts.x + counts.y;
+    let three = two + counts.z;
+    return Starts(before + vec4<u32>(0u, counts.x, two, three), before + three + counts.w);
+}
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn scan_cells(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
     let chunk = linear(id, groups);
-    let begin = chunk * (CHUNK / 4u);
-    let fours = step.bins / 4u + 1u;
-    if (begin >= fours) {
+    let there = chunk <= step.bins / CHUNK;
+    var own = 0u;
+    if (there) {
+        own = chunk_sums[chunk];
+    }
+    sums[thread] = own;
+    workgroupBarrier();
+    if (!there) {
         return;
     }
-    let end = min(begin + CHUNK / 4u, fours);
-    var before = chunk_sums[chunk];
-    var four = begin;
-    let filled = select(end, begin, chunk_sums[chunk + 1u] == before);
-    for (; four < filled; four++) {
-        let own = cell_start[four];
-        let two = own.x + own.y;
-        let three = two + own.z;
-        cell_start[four] = before + vec4<u32>(0u, own.x, two, three);
-        before += three + own.w;
+    var before = stretch_sums[chunk / WORKGROUP];
+    for (var k = 0u; k < thread; k++) {
+        before += sums[k];
     }
-    for (; four < end; four++) {
-        cell_start[four] = vec4<u32>(before);
+    let begin = chunk * (CHUNK / 4u);
+    let end = begin + CHUNK / 4u;
+    if (own == 0u) {
+        for (var four = begin; four < end; four++) {
+            cell_start[four] = vec4<u32>(before);
+        }
+        return;
+    }
+    // Four fours are read before any is written: a read would wait for what was written before it.
+    for (var four = begin; four < end; four += 4u) {
+        let counts0 = cell_start[four];
+        let counts1 = cell_start[four + 1u];
+        let counts2 = cell_start[four + 2u];
+        let counts3 = cell_start[four + 3u];
+        let starts0 = starts_of(counts0, before);
+        let starts1 = starts_of(counts1, starts0.next);
+        let starts2 = starts_of(counts2, starts1.next);
+        let starts3 = starts_of(counts3, starts2.next);
+        cell_start[four] = starts0.starts;
+        cell_start[four + 1u] = starts1.starts;
+        cell_start[four + 2u] = starts2.starts;
+        cell_start[four + 3u] = starts3.starts;
+        before = starts3.next;
     }
 }

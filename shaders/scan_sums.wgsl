@@ -1,27 +1,40 @@
 //! uses: step.wgsl
-// Scan, part 1: sums of the counts of each chunk of cells.
+// Scan, part 1: how many particles each chunk of cells has, and each stretch of as many chunks as a workgroup has threads.
 //
-// Reads the counts in `cell_start`, by fours; writes `chunk_sums`. One thread per chunk: few barriers, and sums of integers do
-// not depend on order. The cell behind the last is counted as one without particles, up to a whole four.
+// Reads the counts in `cell_start`, by fours; writes `chunk_sums` and `stretch_sums`. One thread per chunk. The cell behind the last, and
+// those up to a whole chunk, are counted as ones without particles.
 
 override CHUNK: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read> cell_start: array<vec4<u32>>;
+@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
+
+var<workgroup> sum_of_stretch: atomic<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_sums(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn scan_sums(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
     let chunk = linear(id, groups);
-    let begin = chunk * (CHUNK / 4u);
-    let fours = step.bins / 4u + 1u;
-    if (begin >= fours) {
-        return;
+    let there = chunk <= step.bins / CHUNK;
+    if (there) {
+        let begin = chunk * (CHUNK / 4u);
+        var sum = vec4<u32>(0u);
+        for (var four = 0u; four < CHUNK / 4u; four++) {
+            sum += cell_start[begin + four];
+        }
+        let all = sum.x + sum.y + sum.z + sum.w;
+        chunk_sums[chunk] = all;
+        if (all > 0u) {
+            atomicAdd(&sum_of_stretch, all);
+        }
     }
-    let end = min(begin + CHUNK / 4u, fours);
-    var sum = vec4<u32>(0u);
-    for (var four = begin; four < end; four++) {
-        sum += cell_start[four];
+    workgroupBarrier();
+    if (there && thread == 0u) {
+        stretch_sums[chunk / WORKGROUP] = atomicLoad(&sum_of_stretch);
     }
-    chunk_sums[chunk] = sum.x + sum.y + sum.z + sum.w;
 }

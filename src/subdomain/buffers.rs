@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuError};
 
 use super::cell_table::CellTable;
-use super::constants::Features;
+use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate,
@@ -13,6 +13,8 @@ use super::walls::Walls;
 
 /// Cells per thread of the scan.
 pub const CHUNK: u64 = 64;
+/// Those of a workgroup, of a thread each.
+const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).
@@ -164,13 +166,13 @@ pub fn step_stride(device: &Device) -> u64 {
 }
 
 /// Bytes of these buffers for each bin.
-pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64 + 4.0 / (CHUNK * CHUNK) as f64;
+pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64 + 4.0 / STRETCH as f64;
 
 /// What grows with the number of cells that have bins.
 pub struct CellBuffers {
     pub capacity: u64,
     pub chunk_sums: wgpu::Buffer,
-    /// Of stretches of CHUNK chunks.
+    /// Of stretches of STRETCH cells.
     pub stretch_sums: wgpu::Buffer,
     /// First the counts of a step's cells, then where their particles start.
     pub cell_start: wgpu::Buffer,
@@ -180,17 +182,17 @@ impl CellBuffers {
     pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
         Ok(CellBuffers {
             capacity: bins,
-            chunk_sums: device.storage::<u32>("chunk_sums", bins / CHUNK + 2)?,
-            stretch_sums: device.storage::<u32>("stretch_sums", bins / (CHUNK * CHUNK) + 2)?,
+            chunk_sums: device.storage::<u32>("chunk_sums", bins / CHUNK + 1)?,
+            stretch_sums: device.storage::<u32>("stretch_sums", bins / STRETCH + 1)?,
             cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
         })
     }
 }
 
 impl CellBuffers {
-    /// Of the starts of so many bins and of the end, which kernels write by fours.
+    /// Of the starts of so many bins and of the end, which kernels write by chunks.
     pub fn start_bytes(bins: u64) -> u64 {
-        16 * (bins / 4 + 1)
+        4 * CHUNK * (bins / CHUNK + 1)
     }
 
     pub fn bytes(&self) -> u64 {
@@ -395,7 +397,7 @@ impl<'a> Buffers<'a> {
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
-            ("scan_stretches", "chunk_sums") | (_, "stretch_sums") => &cell.stretch_sums,
+            (_, "stretch_sums") => &cell.stretch_sums,
             (_, "chunk_sums") => &cell.chunk_sums,
             (_, "cell_start") => &cell.cell_start,
             (_, "wall_start") => &domain.wall_start,
@@ -469,7 +471,7 @@ mod tests {
             assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, USUAL_TAILS), "{collisions} {rounds}");
         }
         let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
-        let some = 4 * CHUNK * CHUNK;
+        let some = 4 * STRETCH;
         assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * BYTES_PER_BIN);
     }
 }

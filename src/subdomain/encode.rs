@@ -89,9 +89,6 @@ const LIST_ASKED: u32 = 26;
 const LIST_LONG: u32 = 27;
 const LIST_LONG_LATE: u32 = 28;
 
-/// Chunks that one workgroup takes alone: more than some tens for each of its threads are quicker by stretches.
-const MOST_CHUNKS: u64 = 1 << 13;
-
 /// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
 /// the ghosts that were asked.
 pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
@@ -329,19 +326,11 @@ impl Subdomain {
     pub fn scan(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
-            let count = self.bins() / CHUNK + 1;
-            let chunks = threads(device, count);
+            let chunks = threads(device, self.bins() / CHUNK + 1);
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
             kernels.scan_sums.dispatch(pass, offset, chunks);
-            if count <= MOST_CHUNKS {
-                kernels.scan_chunks.dispatch(pass, offset, [1, 1, 1]);
-            } else {
-                let stretches = threads(device, count.div_ceil(CHUNK));
-                kernels.sum_stretches.dispatch(pass, offset, stretches);
-                kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
-                kernels.start_chunks.dispatch(pass, offset, stretches);
-            }
+            kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
             kernels.scan_cells.dispatch(pass, offset, chunks);
         }
     }

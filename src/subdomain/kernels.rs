@@ -23,10 +23,7 @@ pub struct Kernels<K> {
 pub struct SortKernels<K> {
     pub bin: K,
     pub scan_sums: K,
-    pub scan_chunks: K,
-    pub sum_stretches: K,
     pub scan_stretches: K,
-    pub start_chunks: K,
     pub scan_cells: K,
 }
 
@@ -84,10 +81,7 @@ impl<K> Kernels<K> {
             Some(SortKernels {
                 bin: make("bin")?,
                 scan_sums: make("scan_sums")?,
-                scan_chunks: make("scan_chunks")?,
-                sum_stretches: make("sum_stretches")?,
                 scan_stretches: make("scan_stretches")?,
-                start_chunks: make("start_chunks")?,
                 scan_cells: make("scan_cells")?,
             })
         } else {

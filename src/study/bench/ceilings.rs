@@ -11,6 +11,9 @@ const TURNS: u32 = 4;
 /// As many dispatches make one as take so long together, s: waiting for them is little beside.
 const LONG: f64 = 0.05;
 const MOST_DISPATCHES: f64 = 4096.0;
+/// How long a GPU is kept busy before what is timed: idle, it clocks lower, and takes its time to rise. And how many particles that moves.
+const WAKING: f64 = 1.0;
+const WAKING_PARTICLES: u64 = 1 << 20;
 /// Multiplications and additions of a thread in a loop: four vectors of four, two each.
 const OPERATIONS: f64 = 32.0;
 /// Reads of a thread in a loop.
@@ -101,6 +104,28 @@ impl Ceilings {
             flights: particles as f64 / best("ceiling_flights", particles)?,
         })
     }
+}
+
+/// Keeps a GPU busy until its clocks are up; a software device has none of its own.
+///
+/// # Errors
+/// If the device fails or has no room.
+pub fn wake(device: &Device) -> Result<(), GpuError> {
+    if device.adapter().is_cpu() {
+        return Ok(());
+    }
+    let moved = device.storage::<[[u32; 4]; 2]>("copy_to", WAKING_PARTICLES)?;
+    let kernel = Kernel::new(device, "ceiling_flights", &[("WORKGROUP", f64::from(WORKGROUP))])?;
+    let bound = kernel.bind(device, |name| (name == "copy_to").then_some(&moved))?;
+    let groups = fold(WAKING_PARTICLES, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
+    let start = Instant::now();
+    while start.elapsed().as_secs_f64() < WAKING {
+        let mut recording = Recording::new(device);
+        (0..256).for_each(|_| bound.dispatch(recording.phase("wake"), 0, groups));
+        let submission = recording.submit();
+        device.wait(&submission)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -141,6 +141,7 @@ pub fn measure(
     simulation.begin(&mut ())?;
     simulation.advance(&mut ())?;
     simulation.settle(&mut ())?;
+    ceilings::wake(device)?;
     let before = simulation.done();
     let (start, cpu_start) = (Instant::now(), CpuTime::now());
     while simulation.advance(&mut ())? {}

@@ -29,7 +29,7 @@ const COUNTED: [&str; 21] = [
     "bin",
     "arrange",
     "scan_sums",
-    "scan_chunks",
+    "scan_stretches",
     "scan_cells",
     "scatter",
     "order",
@@ -129,12 +129,13 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let (stretches, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
             let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
-            // The loops of the middle part, before and after its barriers.
-            let sum = counted.turn("scan_chunks", "for (var k = begin")? * 2.0;
-            (own + sum) * stretches
+            // Of the others of a workgroup half come before, in the mean.
+            let before = counted.turn("scan_cells", "for (var k = 0u; k < thread")? * (0.5 * CHUNK as f64);
+            let sum = counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64);
+            (own + before + sum) * stretches
                 + counted.turn("scan_sums", "for (")? * fours
-                + counted.turn("scan_cells", "for (; four < filled")? * filled
-                + counted.turn("scan_cells", "for (; four < end")? * (fours - filled).max(0.0)
+                + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
+                + counted.turn("scan_cells", "for (var four = begin; four < end; four++")? * (fours - filled).max(0.0)
         }
         "sort" if rounds => {
             let order = counted.away_from_walls("order")? + counted.turn("order", "for (var k = begin >> 2u")?;
