@@ -1,8 +1,7 @@
 //! Parses and validates every shader, so that a broken one is a build error, and generates the table of kernels.
 //!
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
-//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). Where one of these is in
-//! `shaders/shared/subgroups/` too, the kernel has a second form with that one, for adapters with subgroups. The result is
+//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). The result is
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
@@ -15,9 +14,8 @@ use std::{env, fs, process};
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing, and in their form for adapters with subgroups those.
+/// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
-const WITH_SUBGROUPS: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -28,16 +26,12 @@ const FNV_PRIME: u64 = 0x100_0000_01b3;
 pub struct Kernel {
     pub name: String,
     pub source: String,
-    /// The form for adapters with subgroups, where it is another.
-    pub by_subgroups: Option<Box<Kernel>>,
     pub entry_point: String,
     /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
     pub bindings: Vec<(u32, String, &'static str)>,
     /// Override constants, and whether they have no default.
     pub overrides: Vec<(String, bool)>,
     parts: Vec<Part>,
-    /// It is that form.
-    subgroups: bool,
 }
 
 /// One file's place in the source of a kernel.
@@ -128,9 +122,7 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
         return Err(errors.join("\n"));
     }
     let mut unused = wgsl_files(&folder.join("shared"))?;
-    unused.extend(wgsl_files(&folder.join("shared/subgroups"))?);
-    let forms = || kernels.iter().flat_map(|kernel| [Some(kernel), kernel.by_subgroups.as_deref()]).flatten();
-    unused.retain(|path| !forms().any(|kernel| kernel.parts.iter().any(|part| part.path == *path)));
+    unused.retain(|path| !kernels.iter().any(|kernel| kernel.parts.iter().any(|part| part.path == *path)));
     Ok((kernels, unused))
 }
 
@@ -143,33 +135,21 @@ pub fn table(kernels: &[Kernel]) -> String {
         for (index, variable, access) in &kernel.bindings {
             rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
         }
-        let by_subgroups = kernel.by_subgroups.as_ref().map(|other| &other.source);
-        rust += &format!("], overrides: &{:?}, source: {source:?}, by_subgroups: {by_subgroups:?} }},\n", kernel.overrides);
+        rust += &format!("], overrides: &{:?}, source: {source:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
 
 impl Kernel {
-    /// In both of its forms.
     fn assemble(folder: &Path, path: &Path) -> Result<Kernel, String> {
-        let [mut kernel, other] = [Kernel::form(folder, path, false)?, Kernel::form(folder, path, true)?];
-        if other.source != kernel.source {
-            kernel.by_subgroups = Some(Box::new(other));
-        }
-        Ok(kernel)
-    }
-
-    fn form(folder: &Path, path: &Path, subgroups: bool) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
-            by_subgroups: None,
             entry_point: String::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
             parts: Vec::new(),
-            subgroups,
         };
         kernel.append(folder, path, &mut Vec::new())?;
         Ok(kernel)
@@ -191,13 +171,7 @@ impl Kernel {
                     shared.display()
                 ));
             }
-            let other = folder.join("shared/subgroups").join(used);
-            if self.subgroups && other.is_file() {
-                visited.push(shared);
-                self.append(folder, &other, visited)?;
-            } else {
-                self.append(folder, &shared, visited)?;
-            }
+            self.append(folder, &shared, visited)?;
         }
         self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
         self.source += &text;
@@ -216,8 +190,7 @@ impl Kernel {
         let [entry_point] = module.entry_points.as_slice() else {
             return Err(self.report("a kernel file needs one entry point", Vec::new(), Vec::new()));
         };
-        let capabilities = if self.subgroups { WITH_SUBGROUPS } else { CAPABILITIES };
-        let mut validator = Validator::new(ValidationFlags::all(), capabilities);
+        let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
         let info = validator.validate(&module).map_err(|error| {
             let labels = error.spans().cloned().collect();
             let mut causes = Vec::new();
@@ -246,13 +219,6 @@ impl Kernel {
         self.bindings.sort();
         let named = module.overrides.iter().filter_map(|(_, o)| Some((o.name.clone()?, o.init.is_none())));
         self.overrides = named.collect();
-        let Some(mut other) = self.by_subgroups.take() else { return Ok(()) };
-        other.validate()?;
-        if other.entry_point != self.entry_point || other.bindings != self.bindings || other.overrides != self.overrides {
-            let message = "its form for adapters with subgroups has other bindings or constants";
-            return Err(self.report(message, Vec::new(), Vec::new()));
-        }
-        self.by_subgroups = Some(other);
         Ok(())
     }
 

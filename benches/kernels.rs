@@ -335,7 +335,6 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
-        by_subgroups: None,
     }))
 }
 

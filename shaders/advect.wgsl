@@ -59,7 +59,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             if (step.peers > 0u) {
                 layers[s] |= NEAR;
             }
-            count(LIST_NEAR_WALLS);
+            atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         }
         bouncing[append(LIST_BOUNCE)] = s;
         return;

@@ -32,7 +32,7 @@ fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) gr
         bins[i] = vec2<u32>(index, atomicAdd(&cell_start[index], 1u));
     } else {
         bins[i] = vec2<u32>(NOBODY, 0u);
-        count(COUNT_DROPPED);
+        atomicAdd(&counters[COUNT_DROPPED], 1u);
     }
     if (there) {
         if (i >= step.count + step.newborns && in_box(cell, step.own_low, step.own_high)) {

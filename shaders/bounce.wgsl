@@ -26,6 +26,10 @@ override COATS_AT: u32 = 0;
 override VENTS_AT: u32 = 0;
 // And where those of moving walls do.
 override WORKS_AT: u32 = 0;
+// There are copies of all of these, each of so many words, that workgroups take in turn, and the host adds up: a GPU does atomic operations on
+// one word, or on its neighbours, one after the other.
+override COPIES: u32 = 1;
+override COPY_WORDS: u32 = 0;
 
 // Words of a surface's tally, two each: three impulse components, normal impulse, hits.
 const SURFACE_WORDS: u32 = 10;
@@ -45,6 +49,9 @@ const ENERGY_RANGE: f32 = 4.29e9;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(26) var<storage, read> bouncing: array<u32>;
 
+// Where the copy of this thread's workgroup starts.
+var<private> copy: u32;
+
 fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
     let scaled = vec4<f32>(impulse, -dot(impulse, normal)) * IMPULSE_SCALE;
     if (any(abs(scaled) >= vec4<f32>(1073741824.0))) {
@@ -54,9 +61,9 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
     let whole = vec4<i32>(round(scaled));
     for (var axis = 0u; axis < 4u; axis++) {
         let word = bitcast<u32>(whole[axis]);
-        add64_together(surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
+        add64(copy + surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
-    add64_together(surface * SURFACE_WORDS + 8u, 1u, 0u);
+    add64(copy + surface * SURFACE_WORDS + 8u, 1u, 0u);
 }
 
 // Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
@@ -76,9 +83,9 @@ fn tally_energy(slot: u32, energy: f32) {
         once = negated(once);
         left = negated(left);
     }
-    add64_together(slot, once.x, once.y);
+    add64(copy + slot, once.x, once.y);
     if (step.tallies_left > 0u) {
-        add64_together(slot + 2u, left.x, left.y);
+        add64(copy + slot + 2u, left.x, left.y);
     }
 }
 
@@ -90,15 +97,15 @@ fn energy_of(particle: Particle, mass: f32) -> f32 {
 fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
     let slot = VENTS_AT + vents[v].index * VENT_WORDS;
     let probability = vents[v].beta * mass * speed;
-    add64_together(slot + 4u, 1u, 0u);
+    add64(copy + slot + 4u, 1u, 0u);
     if (probability > 1.0) {
-        add64_together(slot + 6u, 1u, 0u);
+        add64(copy + slot + 6u, 1u, 0u);
     }
     if (unit_interval(word) >= probability) {
         return false;
     }
     tally_energy(slot, energy_of(particle, mass));
-    atomicAdd(&sums[slot + 8u + gas_of(particle.tag)], 1u);
+    atomicAdd(&sums[copy + slot + 8u + gas_of(particle.tag)], 1u);
     return true;
 }
 
@@ -109,6 +116,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     let s = bouncing[entry];
+    copy = (entry / WORKGROUP) % COPIES * COPY_WORDS;
     var particle: Particle;
     var time = 0.0;
     if (COLLISIONS) {
@@ -203,10 +211,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         particle.velocity = turned;
         time = hit.time;
     }
-    let all_bounces = sum_together(bounces);
-    if (threads_before() == 0u) {
-        atomicAdd(&counters[BOUNCES], all_bounces);
-    }
+    atomicAdd(&counters[BOUNCES], bounces);
     if (overshoot > 0.0) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
     }

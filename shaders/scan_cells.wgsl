@@ -1,4 +1,4 @@
-//! uses: step.wgsl
+//! uses: step.wgsl shares.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`; reads counts and writes starts in `cell_start`, by fours, up to a whole chunk. One
@@ -6,13 +6,12 @@
 // count is read.
 
 override CHUNK: u32;
+override SHARES: u32 = WORKGROUP;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(29) var<storage, read> stretch_sums: array<u32>;
-
-var<workgroup> sums: array<u32, WORKGROUP>;
 
 // Where the particles of the cells of a four start, of which `before` are before it, and of the next one.
 struct Starts {
@@ -38,15 +37,12 @@ fn scan_cells(
     if (there) {
         own = chunk_sums[chunk];
     }
-    sums[thread] = own;
+    shares[thread] = own;
     workgroupBarrier();
     if (!there) {
         return;
     }
-    var before = stretch_sums[chunk / WORKGROUP];
-    for (var k = 0u; k < thread; k++) {
-        before += sums[k];
-    }
+    var before = stretch_sums[chunk / WORKGROUP] + shares_before(thread);
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;
     if (own == 0u) {

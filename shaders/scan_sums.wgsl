@@ -24,8 +24,10 @@ fn scan_sums(
     if (there) {
         let begin = chunk * (CHUNK / 4u);
         var sum = vec4<u32>(0u);
-        for (var four = 0u; four < CHUNK / 4u; four++) {
-            sum += cell_start[begin + four];
+        // Eight reads a turn: a GPU waits for each turn's.
+        for (var four = begin; four < begin + CHUNK / 4u; four += 8u) {
+            sum += cell_start[four] + cell_start[four + 1u] + cell_start[four + 2u] + cell_start[four + 3u];
+            sum += cell_start[four + 4u] + cell_start[four + 5u] + cell_start[four + 6u] + cell_start[four + 7u];
         }
         let all = sum.x + sum.y + sum.z + sum.w;
         chunk_sums[chunk] = all;

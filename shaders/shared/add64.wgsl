@@ -1,4 +1,3 @@
-//! uses: together.wgsl
 // 64-bit sums in two words, in an array<atomic<u32>> named `sums`: the carry of the low word goes to
 // the high one, so the result does not depend on the order of the additions.
 
@@ -7,19 +6,6 @@ fn add64(slot: u32, low: u32, high: u32) {
     let carry = select(0u, 1u, old + low < old);
     if (high + carry != 0u) {
         atomicAdd(&sums[slot + 1u], high + carry);
-    }
-}
-
-// The same, once for all threads that run together and add to the same slot.
-fn add64_together(slot: u32, low: u32, high: u32) {
-    loop {
-        if (slot == of_first(slot)) {
-            let sum = sum64_together(low, high);
-            if (threads_before() == 0u) {
-                add64(slot, sum.x, sum.y);
-            }
-            break;
-        }
     }
 }
 

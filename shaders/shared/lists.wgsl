@@ -1,4 +1,3 @@
-//! uses: together.wgsl
 // Lists of rare work: a kernel that meets it appends, and one that does it is dispatched over exactly
 // the list. (On a device that executes untaken branches under a mask, rare heavy branches would cost
 // every thread.) The order of a list depends on the order of the threads; entries are independent.
@@ -41,13 +40,7 @@ const GROUP_LIMIT: u32 = 65535;
 //
 // The place of a new entry; makes sure that the list's dispatch covers it.
 fn append(list: u32) -> u32 {
-    let rank = threads_before();
-    let together = threads_together();
-    var first = 0u;
-    if (rank == 0u) {
-        first = atomicAdd(&counters[list], together);
-    }
-    let k = of_first(first) + rank;
+    let k = atomicAdd(&counters[list], 1u);
     if (k % WORKGROUP == 0u) {
         let group = k / WORKGROUP;
         atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
@@ -56,15 +49,7 @@ fn append(list: u32) -> u32 {
     return k;
 }
 
-// Counts without an entry.
-fn count(list: u32) {
-    let together = threads_together();
-    if (threads_before() == 0u) {
-        atomicAdd(&counters[list], together);
-    }
-}
-
-// The same as `append` for a list whose entries have a workgroup each.
+// The same for a list whose entries have a workgroup each.
 fn append_group(list: u32) -> u32 {
     let k = atomicAdd(&counters[list], 1u);
     atomicMax(&dispatches[3u * list], min(k + 1u, GROUP_LIMIT));

@@ -64,7 +64,6 @@ pub struct Device {
     queue: wgpu::Queue,
     adapter: AdapterDescription,
     timestamps: bool,
-    subgroups: bool,
     trouble: Arc<Mutex<Option<String>>>,
 }
 
@@ -89,9 +88,7 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        // Subgroups spare a GPU atomic operations that wait for each other; the threads of a software device do not.
-        let subgroups = if adapter.is_cpu() { wgpu::Features::empty() } else { wgpu::Features::SUBGROUP };
-        let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | subgroups);
+        let features = adapter.features & wgpu::Features::TIMESTAMP_QUERY;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
             required_features: features,
@@ -110,8 +107,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        let subgroups = features.contains(wgpu::Features::SUBGROUP);
-        Ok(Device { device, queue, adapter, timestamps, subgroups, trouble })
+        Ok(Device { device, queue, adapter, timestamps, trouble })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -125,11 +121,6 @@ impl Device {
     /// Whether phases can be timed on the device.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps
-    }
-
-    /// Whether kernels may ask which threads run together.
-    pub fn has_subgroups(&self) -> bool {
-        self.subgroups
     }
 
     /// Nanoseconds per timestamp unit.

@@ -29,14 +29,6 @@ pub struct KernelSource {
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
     pub source: &'static str,
-    /// The form for adapters with subgroups, where it is another.
-    pub by_subgroups: Option<&'static str>,
-}
-
-impl KernelSource {
-    fn text(&self, subgroups: bool) -> &'static str {
-        if subgroups { self.by_subgroups.unwrap_or(self.source) } else { self.source }
-    }
 }
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
@@ -97,7 +89,7 @@ impl Kernel {
         });
         let module = device.raw().create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source.text(device.has_subgroups()).into()),
+            source: wgpu::ShaderSource::Wgsl(source.source.into()),
         });
         let pipeline_layout = device.raw().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(name),

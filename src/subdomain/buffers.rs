@@ -19,6 +19,8 @@ const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).
 pub const SURFACE_WORDS: usize = 10;
+/// Copies of the tallies of walls (`shaders/bounce.wgsl`).
+pub const SURFACE_COPIES: usize = 16;
 /// Words per coat and per vent (`shaders/bounce.wgsl`).
 pub const COAT_WORDS: usize = 4;
 pub const VENT_WORDS: usize = 24;

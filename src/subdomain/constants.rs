@@ -5,7 +5,7 @@ use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::{CHUNK, COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
+use super::buffers::{CHUNK, COAT_WORDS, SURFACE_COPIES, SURFACE_WORDS, VENT_WORDS};
 use super::nearness;
 use super::scales::Scales;
 use super::walls::Walls;
@@ -71,6 +71,11 @@ impl Patches {
 
     pub(super) fn words(&self) -> usize {
         self.ends()[2] + self.motions * COAT_WORDS
+    }
+
+    /// Words of a copy of these tallies: no two copies share a line of a cache.
+    pub(super) fn copy_words(&self) -> usize {
+        self.words().next_multiple_of(32)
     }
 }
 
@@ -152,6 +157,8 @@ pub fn constants(
         ("COATS_AT", coats_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),
+        ("COPIES", SURFACE_COPIES as f64),
+        ("COPY_WORDS", patches.copy_words() as f64),
         ("CELL_POINTS", CELL_POINTS as f64),
         ("GENERATOR_Y", CELL_GENERATOR[1] as f64),
         ("GENERATOR_Z", CELL_GENERATOR[2] as f64),

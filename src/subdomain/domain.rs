@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuError};
 use crate::plan::Plan;
 
-use super::buffers::{BLOCK_WORDS, DomainBuffers, TallyWords, ZONE_WORDS};
+use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
 use super::constants::{Features, Patches, block_counts, constants};
 use super::kernels::Compiled;
@@ -56,7 +56,7 @@ impl Domain {
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
-            surfaces: input.patches.words(),
+            surfaces: SURFACE_COPIES * input.patches.copy_words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
         let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan));

@@ -4,6 +4,19 @@ use super::buffers::{BLOCK_WORDS, COAT_WORDS, SURFACE_WORDS, TallyWords, VENT_WO
 use super::constants::Patches;
 use super::counters::{self, Counters};
 
+/// The tallies of the walls, of which there are copies (`shaders/bounce.wgsl`). All are numbers of two words, but for those of particles
+/// that left through vents, whose low words have no carry, as their sum has none.
+fn sum_of_copies(copies: &[u32], patches: Patches) -> Vec<u32> {
+    let mut sums = vec![0; patches.words()];
+    for copy in copies.chunks_exact(patches.copy_words()) {
+        for (sum, own) in sums.chunks_exact_mut(2).zip(copy.chunks_exact(2)) {
+            let both = long(sum, 0).wrapping_add(long(own, 0));
+            sum.copy_from_slice(&[both as u32, (both >> 32) as u32]);
+        }
+    }
+    sums
+}
+
 /// Sums over the particles of one gas in one zone and over the tallies of an interval, in tally units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ZoneSum {
@@ -79,7 +92,8 @@ impl Tallies {
         counter_words.copy_from_slice(&words[..counters::WORDS]);
         let rest = &words[counters::WORDS..];
         let (zones, rest) = rest.split_at(sizes.zones);
-        let (walls, rest) = rest.split_at(sizes.surfaces);
+        let (copies, rest) = rest.split_at(sizes.surfaces);
+        let walls = sum_of_copies(copies, patches);
         let [coats_at, vents_at, works_at] = patches.ends();
         let (surfaces, coats) = (&walls[..coats_at], &walls[coats_at..vents_at]);
         let (vents, works) = (&walls[vents_at..works_at], &walls[works_at..]);

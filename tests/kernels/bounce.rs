@@ -9,6 +9,10 @@ use crate::rig::*;
 
 const DT: f32 = 3e-5;
 
+/// Copies of the tallies, and words of each.
+const COPIES: usize = 5;
+const COPY_WORDS: usize = 32;
+
 const GASES: [GpuGas; 2] = [
     GpuGas { mass: 1.0, exchange: 0.4, inverse_beta: 1.0, inverse_beta1: 0.5 },
     GpuGas { mass: 0.25, exchange: 0.0, inverse_beta: 0.0, inverse_beta1: 1.0 },
@@ -24,7 +28,9 @@ fn bounce(world: &World, particles: &[GpuParticle], flights: &[GpuFlight], surfa
     rig.put("flights", flights);
     rig.put("particles", &vec![GpuParticle::default(); particles.len()]);
     rig.put("bouncing", &(0..particles.len() as u32).collect::<Vec<_>>());
-    rig.put("sums", &[0u32; 3 * SURFACE_WORDS]);
+    rig.constant("COPIES", COPIES as f64);
+    rig.constant("COPY_WORDS", COPY_WORDS as f64);
+    rig.put("sums", &[0u32; COPIES * COPY_WORDS]);
     rig.set_counter(LIST_BOUNCE, particles.len() as u32);
     rig.step(GpuStep { count: particles.len() as u32, dt: DT, ..GpuStep::default() });
     rig.run("bounce", particles.len());
@@ -159,9 +165,16 @@ fn surfaces_tally_the_impulse_of_their_hits() {
             v = turned;
         }
     }
-    let words: Vec<u32> = rig.get("sums", 3 * SURFACE_WORDS);
-    for (found, expected) in words.chunks_exact(SURFACE_WORDS).zip(expected) {
-        let word = |k: usize| (u64::from(found[2 * k]) | u64::from(found[2 * k + 1]) << 32).cast_signed() as f64;
+    let words: Vec<u32> = rig.get("sums", COPIES * COPY_WORDS);
+    let long = |at: usize| (u64::from(words[at]) | u64::from(words[at + 1]) << 32).cast_signed();
+    // Each workgroup has its own: all are used, and nothing is written behind one.
+    for copy in words.chunks_exact(COPY_WORDS) {
+        assert!(copy[8] > 0);
+        assert!(copy[3 * SURFACE_WORDS..].iter().all(|&word| word == 0));
+    }
+    for (surface, expected) in expected.iter().enumerate() {
+        let at = |k: usize| surface * SURFACE_WORDS + 2 * k;
+        let word = |k: usize| (0..COPIES).map(|copy| long(copy * COPY_WORDS + at(k))).sum::<i64>() as f64;
         assert_eq!(word(4), expected[4]);
         for (k, expected) in expected.iter().enumerate().take(4) {
             // Impulses are some 10^6 units; f32 keeps 8 u of them.
