@@ -78,26 +78,18 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         var partners = vec4<u32>(0u);
         var places = vec4<u32>(0u);
         // One loop over all rows: threads that run together wait for the one with the most candidates, not for the fullest row of each.
-        // Two candidates a turn: a GPU waits for what it reads in each.
-        for (; k < turns && found + 2u <= KEPT; k += 2u) {
-            let both = vec2<u32>(k, k + 1u);
-            var base = vec2<u32>(r0);
-            base = select(base, vec2<u32>(r1.x - e0), both >= vec2<u32>(e0));
-            base = select(base, vec2<u32>(r2.x - e1), both >= vec2<u32>(e1));
-            base = select(base, vec2<u32>(r3.x - e2), both >= vec2<u32>(e2));
-            base = select(base, vec2<u32>(r4.x - e3), both >= vec2<u32>(e3));
-            let j = select(vec2<u32>(s), base + both, both < vec2<u32>(e4));
-            let other = vec2<u32>(middles[j.x], middles[j.y]);
-            if (j.x != s && may_meet(middle, other.x, j.x, n)) {
+        for (; k < turns && found < KEPT; k++) {
+            var base = r0;
+            base = select(base, r1.x - e0, k >= e0);
+            base = select(base, r2.x - e1, k >= e1);
+            base = select(base, r3.x - e2, k >= e2);
+            base = select(base, r4.x - e3, k >= e3);
+            let j = select(s, base + k, k < e4);
+            let other = middles[j];
+            if (j != s && may_meet(middle, other, j, n)) {
                 let next = vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u);
-                partners = select(partners, vec4<u32>(j.x), next);
-                places = select(places, vec4<u32>(other.x), next);
-                found++;
-            }
-            if (j.y != s && may_meet(middle, other.y, j.y, n)) {
-                let next = vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u);
-                partners = select(partners, vec4<u32>(j.y), next);
-                places = select(places, vec4<u32>(other.y), next);
+                partners = select(partners, vec4<u32>(j), next);
+                places = select(places, vec4<u32>(other), next);
                 found++;
             }
         }

@@ -146,7 +146,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
             counted.straight("neighbours")? * n
-                + counted.turn("neighbours", "for (; k < turns")? * (0.5 * turns)
+                + counted.turn("neighbours", "for (; k < turns")? * turns
                 + counted.turn("neighbours", "for (var p = ")? * (0.5 * candidates)
         }
         "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
