@@ -158,7 +158,7 @@ impl Bench {
         let mut numbers = Numbers::of(3);
         (0..self.count).for_each(|_| counts[numbers.below(cells as u32) as usize / 2] += 1);
         let mut ways = Vec::new();
-        for chunk in [64, 16, 256] {
+        for chunk in [64, 32, 256] {
             ways.push(self.scan_of_chunks(&counts, chunk)?);
         }
         for workgroup in [64, 256] {
@@ -177,9 +177,10 @@ impl Bench {
         let mut all = counts.to_vec();
         all.resize(chunk * chunks, 0);
         let kept = device.storage_of("kept", &all)?;
+        let no_sums = device.storage_of("no_sums", &vec![0u32; chunks.div_ceil(64)])?;
         let buffers = [
             ("step", step),
-            ("chunk_sums", device.storage::<u32>("chunk_sums", chunks as u64)?),
+            ("chunk_sums", device.storage::<u32>("chunk_sums", chunks.next_multiple_of(64) as u64)?),
             ("stretch_sums", device.storage::<u32>("stretch_sums", chunks.div_ceil(64) as u64)?),
             ("cell_start", device.storage::<u32>("cell_start", all.len() as u64)?),
         ];
@@ -195,8 +196,8 @@ impl Bench {
         Ok(Way {
             name: format!("chunks of {chunk} cells, a thread each"),
             dispatches,
-            // It leaves starts where the counts were.
-            restores: vec![(kept, buffers[3].1.clone())],
+            // It leaves starts where the counts were, and adds to the sums of stretches.
+            restores: vec![(kept, buffers[3].1.clone()), (no_sums, buffers[2].1.clone())],
             result: buffers[3].1.clone(),
             words: cells + 1,
         })

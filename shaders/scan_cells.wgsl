@@ -1,4 +1,4 @@
-//! uses: step.wgsl shares.wgsl
+//! uses: step.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`; reads counts and writes starts in `cell_start`, by fours, up to a whole chunk. One
@@ -6,10 +6,9 @@
 // count is read.
 
 override CHUNK: u32;
-override SHARES: u32 = WORKGROUP;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(7) var<storage, read> chunk_sums: array<u32>;
+@group(0) @binding(7) var<storage, read> chunk_sums: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(29) var<storage, read> stretch_sums: array<u32>;
 
@@ -26,23 +25,24 @@ fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_cells(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) thread: u32,
-) {
+fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let chunk = linear(id, groups);
-    let there = chunk <= step.bins / CHUNK;
-    var own = 0u;
-    if (there) {
-        own = chunk_sums[chunk];
-    }
-    shares[thread] = own;
-    workgroupBarrier();
-    if (!there) {
+    if (chunk > step.bins / CHUNK) {
         return;
     }
-    var before = stretch_sums[chunk / WORKGROUP] + shares_before(thread);
+    // Of the chunks before it in its stretch, by fours.
+    let last = chunk / 4u;
+    var sum = vec4<u32>(0u);
+    for (var four = chunk / WORKGROUP * (WORKGROUP / 4u); four < last; four += 4u) {
+        sum += chunk_sums[four];
+        sum += select(vec4<u32>(0u), chunk_sums[four + 1u], four + 1u < last);
+        sum += select(vec4<u32>(0u), chunk_sums[four + 2u], four + 2u < last);
+        sum += select(vec4<u32>(0u), chunk_sums[four + 3u], four + 3u < last);
+    }
+    let among = chunk_sums[last];
+    sum += select(vec4<u32>(0u), among, vec4<u32>(0u, 1u, 2u, 3u) < vec4<u32>(chunk % 4u));
+    var before = stretch_sums[chunk / WORKGROUP] + sum.x + sum.y + sum.z + sum.w;
+    let own = among[chunk % 4u];
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;
     if (own == 0u) {

@@ -1,42 +1,33 @@
 //! uses: step.wgsl
 // Scan, part 1: how many particles each chunk of cells has, and each stretch of as many chunks as a workgroup has threads.
 //
-// Reads the counts in `cell_start`, by fours; writes `chunk_sums` and `stretch_sums`. One thread per chunk. The cell behind the last, and
-// those up to a whole chunk, are counted as ones without particles.
+// Reads the counts in `cell_start`, by fours; writes `chunk_sums`, and adds to `stretch_sums` (zero before). One thread per chunk. The cell
+// behind the last, and those up to a whole chunk, are counted as ones without particles.
 
+// Cells of a chunk, a multiple of 32.
 override CHUNK: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
 @group(0) @binding(8) var<storage, read> cell_start: array<vec4<u32>>;
-@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
-
-var<workgroup> sum_of_stretch: atomic<u32>;
+@group(0) @binding(29) var<storage, read_write> stretch_sums: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_sums(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) thread: u32,
-) {
+fn scan_sums(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let chunk = linear(id, groups);
-    let there = chunk <= step.bins / CHUNK;
-    if (there) {
-        let begin = chunk * (CHUNK / 4u);
-        var sum = vec4<u32>(0u);
-        // Eight reads a turn: a GPU waits for each turn's.
-        for (var four = begin; four < begin + CHUNK / 4u; four += 8u) {
-            sum += cell_start[four] + cell_start[four + 1u] + cell_start[four + 2u] + cell_start[four + 3u];
-            sum += cell_start[four + 4u] + cell_start[four + 5u] + cell_start[four + 6u] + cell_start[four + 7u];
-        }
-        let all = sum.x + sum.y + sum.z + sum.w;
-        chunk_sums[chunk] = all;
-        if (all > 0u) {
-            atomicAdd(&sum_of_stretch, all);
-        }
+    if (chunk > step.bins / CHUNK) {
+        return;
     }
-    workgroupBarrier();
-    if (there && thread == 0u) {
-        stretch_sums[chunk / WORKGROUP] = atomicLoad(&sum_of_stretch);
+    let begin = chunk * (CHUNK / 4u);
+    var sum = vec4<u32>(0u);
+    // Eight reads a turn: a GPU waits for each turn's.
+    for (var four = begin; four < begin + CHUNK / 4u; four += 8u) {
+        sum += cell_start[four] + cell_start[four + 1u] + cell_start[four + 2u] + cell_start[four + 3u];
+        sum += cell_start[four + 4u] + cell_start[four + 5u] + cell_start[four + 6u] + cell_start[four + 7u];
+    }
+    let all = sum.x + sum.y + sum.z + sum.w;
+    chunk_sums[chunk] = all;
+    if (all > 0u) {
+        atomicAdd(&stretch_sums[chunk / WORKGROUP], all);
     }
 }

@@ -184,8 +184,8 @@ impl CellBuffers {
     pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
         Ok(CellBuffers {
             capacity: bins,
-            chunk_sums: device.storage::<u32>("chunk_sums", bins / CHUNK + 1)?,
-            stretch_sums: device.storage::<u32>("stretch_sums", bins / STRETCH + 1)?,
+            chunk_sums: device.storage::<u32>("chunk_sums", (bins / STRETCH + 1) * (STRETCH / CHUNK))?,
+            stretch_sums: device.storage::<u32>("stretch_sums", CellBuffers::stretch_bytes(bins) / 4)?,
             cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
         })
     }
@@ -195,6 +195,11 @@ impl CellBuffers {
     /// Of the starts of so many bins and of the end, which kernels write by chunks.
     pub fn start_bytes(bins: u64) -> u64 {
         4 * CHUNK * (bins / CHUNK + 1)
+    }
+
+    /// Of the sums of their stretches.
+    pub fn stretch_bytes(bins: u64) -> u64 {
+        4 * (bins / STRETCH + 1)
     }
 
     pub fn bytes(&self) -> u64 {

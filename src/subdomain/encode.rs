@@ -310,7 +310,9 @@ impl Subdomain {
     /// The particles that are here; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if self.kernels.sort.is_some() {
-            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(CellBuffers::start_bytes(self.bins())));
+            let encoder = rec.encoder();
+            encoder.clear_buffer(&self.cell.cell_start, 0, Some(CellBuffers::start_bytes(self.bins())));
+            encoder.clear_buffer(&self.cell.stretch_sums, 0, Some(CellBuffers::stretch_bytes(self.bins())));
         }
         let slots = u64::from(step.count) + u64::from(step.newborns);
         self.bin_slots(rec, step, slots);

@@ -55,7 +55,7 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
         let (chunks, stretches) = (cells / CHUNK + 1, cells / STRETCH + 1);
         rig.put("cell_start", &all);
         rig.put("chunk_sums", &vec![7u32; chunks]);
-        rig.put("stretch_sums", &vec![7u32; stretches]);
+        rig.put("stretch_sums", &vec![0u32; stretches]);
         rig.run("scan_sums", chunks);
         assert_eq!(rig.get::<u32>("chunk_sums", chunks), sums(&all, CHUNK));
         assert_eq!(rig.get::<u32>("stretch_sums", stretches), sums(&all, STRETCH));
@@ -91,7 +91,10 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         let starts = prefix(&counts);
         let all = with_end(&counts);
         let of_stretches = prefix(&sums(&all, STRETCH));
-        rig.put("chunk_sums", &sums(&all, CHUNK));
+        let mut of_chunks = sums(&all, CHUNK);
+        // What is behind them is not counted.
+        of_chunks.resize(64 * (cells / STRETCH + 1), 7);
+        rig.put("chunk_sums", &of_chunks);
         rig.put("stretch_sums", &of_stretches[..cells / STRETCH + 1]);
         rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);

@@ -129,8 +129,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let (stretches, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
             let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
-            // Of the others of a workgroup half come before, in the mean.
-            let before = counted.turn("scan_cells", "for (var k = 0u; k < thread")? * (0.5 * CHUNK as f64 / 8.0);
+            // Of the others of a stretch half come before, in the mean.
+            let before = counted.turn("scan_cells", "for (var four = chunk / WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
             let sum = counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64);
             (own + before + sum) * stretches
                 + counted.turn("scan_sums", "for (")? * (fours / 8.0)
