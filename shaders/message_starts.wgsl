@@ -1,16 +1,12 @@
-//! uses: step.wgsl
+//! uses: step.wgsl shares.wgsl
 // Exchange and update, part 2: where each peer's message begins among all that is sent.
 //
 // Reads `peer_counts` and leaves zeros there; writes their exclusive prefix sums and, behind them, the sum of all to
 // `peer_starts`. One workgroup; each thread takes one contiguous share of the peers.
 
-override SCAN_THREADS: u32 = 128;
-
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(56) var<storage, read_write> peer_counts: array<u32>;
 @group(0) @binding(57) var<storage, read_write> peer_starts: array<u32>;
-
-var<workgroup> shares: array<u32, SCAN_THREADS>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn message_starts(@builtin(local_invocation_index) thread: u32) {
@@ -23,10 +19,7 @@ fn message_starts(@builtin(local_invocation_index) thread: u32) {
     }
     shares[thread] = sum;
     workgroupBarrier();
-    var before = 0u;
-    for (var k = 0u; k < thread; k++) {
-        before += shares[k];
-    }
+    var before = shares_before(thread);
     for (var p = begin; p < end; p++) {
         peer_starts[p] = before;
         before += peer_counts[p];

@@ -4,8 +4,8 @@ use super::buffers::{BLOCK_WORDS, COAT_WORDS, SURFACE_WORDS, TallyWords, VENT_WO
 use super::constants::Patches;
 use super::counters::{self, Counters};
 
-/// The tallies of the walls, of which there are copies (`shaders/bounce.wgsl`). All are numbers of two words, but for those of particles
-/// that left through vents, whose low words have no carry, as their sum has none.
+/// The tallies of the walls, of which there are copies (`shaders/bounce.wgsl`). All are numbers of two words, but for the
+/// counts of particles that left through vents, a word each: two of them add up like one number, since there are fewer than 2^32 particles.
 fn sum_of_copies(copies: &[u32], patches: Patches) -> Vec<u32> {
     let mut sums = vec![0; patches.words()];
     for copy in copies.chunks_exact(patches.copy_words()) {
@@ -196,5 +196,27 @@ impl Tallies {
         });
         let works = self.works.iter_mut().flat_map(|work| [&mut work.energy, &mut work.tallied]);
         zones.chain(surfaces).chain(coats).chain(vents).chain(works)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Low words carry into high ones, negative numbers are added as such, and what lies between the copies is not read.
+    #[test]
+    fn copies_add_up_as_numbers_of_two_words() {
+        let patches = Patches { surfaces: 1, ..Patches::default() };
+        let numbers = [[i64::from(u32::MAX), 3], [-5, -7], [1 << 40, 4]];
+        let copy = |own: [i64; 2]| {
+            let mut words: Vec<u32> =
+                own.iter().flat_map(|n| [n.cast_unsigned() as u32, (n.cast_unsigned() >> 32) as u32]).collect();
+            words.resize(patches.words(), 0);
+            words.resize(patches.copy_words(), 9);
+            words
+        };
+        let sums = sum_of_copies(&numbers.map(copy).concat(), patches);
+        assert_eq!(sums.len(), patches.words());
+        assert_eq!([signed(&sums, 0), signed(&sums, 2)], [i64::from(u32::MAX) - 5 + (1 << 40), 0]);
     }
 }

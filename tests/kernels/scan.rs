@@ -60,7 +60,9 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
         assert_eq!(rig.get::<u32>("chunk_sums", chunks), sums(&all, CHUNK));
         assert_eq!(rig.get::<u32>("stretch_sums", stretches), sums(&all, STRETCH));
         // The check can fail: the last count matters.
-        assert_ne!(sums(&all[..cells - 1], STRETCH), sums(&all, STRETCH));
+        let mut without = all;
+        without[cells - 1] = 0;
+        assert_ne!(rig.get::<u32>("stretch_sums", stretches), sums(&without, STRETCH));
     }
 }
 

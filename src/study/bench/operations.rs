@@ -126,13 +126,13 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "inject" => counted.straight("inject")? * work.newborns,
         "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
         "scan" => {
-            let (stretches, fours) = (cells / CHUNK as f64, cells / 4.0);
+            let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
             let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
             // Of the others of a stretch half come before, in the mean.
             let before = counted.turn("scan_cells", "for (var four = chunk / WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
             let sum = counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64);
-            (own + before + sum) * stretches
+            (own + before + sum) * chunks
                 + counted.turn("scan_sums", "for (")? * (fours / 8.0)
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four++")? * (fours - filled).max(0.0)
