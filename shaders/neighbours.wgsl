@@ -19,14 +19,8 @@ const KEPT: u32 = 4;
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
-// Whether a particle has a list by now: the outermost ghosts have not all their neighbours here, and choose nobody; others may
-// have to be asked before (asked.wgsl).
 fn has_list(s: u32) -> bool {
-    if (!HALO || step.depth == 0u) {
-        return true;
-    }
-    let layer = atomicLoad(&layers[s]) & LAYER;
-    return layer < step.depth && !waits(layer);
+    return !HALO || step.depth == 0u || has_list_at(atomicLoad(&layers[s]) & LAYER);
 }
 
 fn enter(list: u32, k: u32, entry: u32, stride: u32) {

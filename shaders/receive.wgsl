@@ -1,15 +1,40 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl touch.wgsl update.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
 // Update, part 2: what the owners of the ghosts did to them.
 //
-// Reads `updates_in`, `cell_start`; writes `sorted` and `flights`, and lets the particles around choose again.
+// Reads `updates_in`, `cell_start`, `layers`, the lists of `neighbours`, `middles`; writes `sorted` and `flights`, and lets those choose
+// again who may have the ghost in their lists; not if this device has done the same to it, and has let them choose then.
 // One thread per update, each of another ghost, which is found in its cell by its id; one that is not there
 // is counted, and the host stops the run.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
+@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
+@group(0) @binding(12) var<storage, read> middles: array<u32>;
+@group(0) @binding(32) var<storage, read> layers: array<u32>;
 @group(0) @binding(39) var<storage, read> updates_in: array<Update>;
+
+// Those who choose and may have a particle in their lists that has none itself.
+fn touch_around(s: u32, cell: vec3<u32>) {
+    let middle = middles[s];
+    let near = near2(FULL_SHARE);
+    // In layers of cells farther out nobody chooses.
+    let around = step.depth - 1u;
+    let low = max(cell - 1u, max(step.own_low, vec3<u32>(around)) - around);
+    let high = min(cell + 2u, step.own_high + around);
+    for (var z = low.z; z < high.z; z++) {
+        for (var y = low.y; y < high.y; y++) {
+            let row = local_index(vec3<u32>(low.x, y, z));
+            let last = cell_start[row + max(high.x, low.x) - low.x];
+            for (var j = cell_start[row]; j < last; j++) {
+                let away = packed_between(middle, middles[j]);
+                if (dot(away, away) < near && (layers[j] & LAYER) < step.depth) {
+                    touch(j);
+                }
+            }
+        }
+    }
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -18,25 +43,30 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     if (entry > updates_in[0].cell) {
         return;
     }
-    let tag = updates_in[entry].particle.tag;
-    let bin = local_index(global_cell(updates_in[entry].cell));
+    let after = packed_of(updates_in[entry].particle);
+    let flight = packed_flight(updates_in[entry].flight);
+    let cell = global_cell(updates_in[entry].cell);
+    let bin = local_index(cell);
     let end = cell_start[bin + 1u];
-    var place = cell_start[bin];
-    while (place < end && sorted[place].tag != tag) {
-        place++;
+    var s = cell_start[bin];
+    while (s < end && sorted[s].place.w != after.place.w) {
+        s++;
     }
-    if (place == end) {
+    if (s == end) {
         atomicAdd(&counters[MISSING], 1u);
         return;
     }
-    sorted[place] = updates_in[entry].particle;
-    flights[place] = updates_in[entry].flight;
-    let corner = bin - step.size.x * step.size.y - step.size.x - 1u;
-    for (var row = 0u; row < 9u; row++) {
-        let first = corner + (row / 3u) * step.size.x * step.size.y + (row % 3u) * step.size.x;
-        let last = cell_start[first + 3u];
-        for (var j = cell_start[first]; j < last; j++) {
-            touch(j);
-        }
+    // A pair across the border is settled on both sides.
+    let before = sorted[s];
+    if (all(before.place == after.place) && all(bitcast<vec4<u32>>(before.motion) == bitcast<vec4<u32>>(after.motion))
+        && all(flights[s] == flight)) {
+        return;
+    }
+    sorted[s] = after;
+    flights[s] = flight;
+    if (has_list_at(layers[s] & LAYER)) {
+        touch_neighbours(s);
+    } else {
+        touch_around(s, cell);
     }
 }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
@@ -20,8 +20,6 @@ override FASTEST2: f32;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
-@group(0) @binding(13) var<storage, read> neighbours: array<u32>;
-@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(16) var<storage, read> pairs: array<vec2<u32>>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(37) var<storage, read_write> changed: array<u32>;
@@ -74,15 +72,6 @@ fn tell(s: u32) {
 
 fn is_own(s: u32) -> bool {
     return (layers[s] & LAYER) == 0u;
-}
-
-fn touch_neighbours(s: u32) {
-    let stride = arrayLength(&neighbour_count);
-    let listed = neighbour_count[s];
-    let tail = tail_of(s, listed, stride);
-    for (var k = 0u; k < listed; k++) {
-        touch(neighbours[entry_of(s, k, listed, stride, tail)]);
-    }
 }
 
 @compute @workgroup_size(WORKGROUP)

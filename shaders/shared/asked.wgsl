@@ -18,6 +18,12 @@ fn waits(layer: u32) -> bool {
     return step.ghosts == GHOSTS_WAIT && layer + 1u == step.depth;
 }
 
+// Whether particles of this layer have lists of neighbours from the search on: the outermost ghosts have not all their neighbours
+// here, and choose nobody; others may have to be asked before.
+fn has_list_at(layer: u32) -> bool {
+    return layer < step.depth && !waits(layer);
+}
+
 // The particle of a thread in the pass over those that were asked, or NOBODY.
 fn asked_of(thread: u32) -> u32 {
     if (thread >= atomicLoad(&counters[LIST_ASKED])) {

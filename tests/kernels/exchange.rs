@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep, GpuUpdate};
 
 use crate::local::Local;
+use crate::neighbour_lists::{DIRECT, put_lists};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -243,28 +244,40 @@ fn updates_go_to_those_who_have_the_ghost() {
     assert!(expected.len() > 100);
 }
 
-/// A ghost takes the state of its update; all in the cells around may choose again, each once; an update of a
+/// A ghost takes the state of its update. Who has it in his list may choose again, once: those in its own list if it has
+/// one, else all who choose and are near enough. An update of what is known already has nobody choose again; one of a
 /// ghost that is not there is counted and changes nothing.
 #[test]
 fn ghosts_take_their_updates_and_those_around_choose_again() {
     const ROUND: u32 = 1;
+    const NEAR2: u32 = 100 * 100;
     let world = World::plain();
-    let local = Local::new(&world);
+    // Of ghosts in the one layer of cells around some are two links away.
+    let local = Local { depth: 2, ..Local::new(&world) };
+    let grid = world.cells();
     let mut stream = Stream::new(53);
-    let (mut particles, mut flights_now) = (world.particles(&mut stream, COUNT, 400.0), flights(&mut stream));
+    let (particles, flights_now) = (world.particles(&mut stream, COUNT, 400.0), flights(&mut stream));
     let (cells, starts) = crowd(&local, &mut stream);
-    let told: Vec<usize> = (0..COUNT).filter(|&s| local.own.away(cells[s]) > 0 && stream.below(150) == 0).collect();
-    let (others, other_flights) = (world.particles(&mut stream, COUNT, 300.0), flights(&mut stream));
-    let mut updates: Vec<GpuUpdate> = told
+    let mut anywhere = |cell: [u32; 3]| cell.map(|c| (c << grid.bits) + (stream.word() >> (32 - grid.bits)));
+    let middles: Vec<[u32; 3]> = cells.iter().map(|&cell| anywhere(cell)).collect();
+    let layers: Vec<u32> = cells
         .iter()
-        .map(|&s| GpuUpdate {
-            particle: GpuParticle { tag: particles[s].tag, ..others[s] },
-            flight: other_flights[s],
-            cell: local.index(cells[s]),
-            ..GpuUpdate::default()
-        })
+        .map(|&cell| if local.own.holds(cell) { SHARED } else { SHARED | NEAR | (1 + stream.below(2)) })
         .collect();
-    let known = updates.len();
+    let layer = |s: usize| layers[s] & 0xff;
+    let some = |stream: &mut Stream| (0..stream.below(2 * DIRECT as u32)).map(|_| stream.below(COUNT as u32)).collect();
+    let lists: Vec<Vec<u32>> = (0..COUNT).map(|_| some(&mut stream)).collect();
+    let told: Vec<usize> = (0..COUNT).filter(|&s| layer(s) > 0 && stream.below(100) == 0).collect();
+    let known: Vec<usize> = (0..COUNT).filter(|&s| layer(s) > 0 && s % 50 == 7 && !told.contains(&s)).collect();
+    let (others, other_flights) = (world.particles(&mut stream, COUNT, 300.0), flights(&mut stream));
+    let update = |s: usize, particle: GpuParticle, flight: GpuFlight| GpuUpdate {
+        particle: GpuParticle { tag: particles[s].tag, ..particle },
+        flight,
+        cell: local.index(cells[s]),
+        ..GpuUpdate::default()
+    };
+    let mut updates: Vec<GpuUpdate> = told.iter().map(|&s| update(s, others[s], other_flights[s])).collect();
+    updates.extend(known.iter().map(|&s| update(s, particles[s], flights_now[s])));
     // Two of nobody: an id that is not there, and one that is in another cell.
     let unknown = GpuParticle { tag: GpuParticle::tag(0, 3_000_000), ..others[0] };
     updates.push(GpuUpdate { particle: unknown, ..updates[0] });
@@ -275,30 +288,47 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     updates.insert(0, GpuUpdate { cell: updates.len() as u32, ..GpuUpdate::default() });
     updates.push(GpuUpdate { particle: unknown, ..GpuUpdate::default() });
     let touched: Vec<u32> = (0..COUNT).map(|_| ROUND + 1 + stream.below(2)).collect();
-    let mut rig = Rig::new(&world);
-    rig.put("sorted", &particles);
-    rig.put("flights", &flights_now);
-    rig.put("cell_start", &starts);
-    rig.put("updates_in", &updates);
-    rig.put("touched", &touched);
-    rig.put("rechoose", &vec![0u32; COUNT]);
-    rig.put("peers", &local.peers());
-    rig.step(GpuStep { count: COUNT as u32, round: ROUND, ..local.step() });
-    rig.run("receive", updates.len());
-    assert_eq!(rig.counter(MISSING), 2);
-    for &s in &told {
-        particles[s] = GpuParticle { tag: particles[s].tag, ..others[s] };
-        flights_now[s] = other_flights[s];
+    // Where the outermost ghosts that choose wait until they are asked, none has a list.
+    for (ghosts, listed) in [(0, 1), (1, 0)] {
+        let mut rig = Rig::new(&world);
+        rig.put("sorted", &particles);
+        rig.put("flights", &flights_now);
+        rig.put("middles", &middles.iter().map(|&p| grid.packed(p)).collect::<Vec<_>>());
+        rig.put("layers", &layers);
+        put_lists(&mut rig, &lists);
+        rig.put("cell_start", &starts);
+        rig.put("updates_in", &updates);
+        rig.put("touched", &touched);
+        rig.put("rechoose", &vec![0u32; COUNT]);
+        rig.put("peers", &local.peers());
+        rig.step(GpuStep { count: COUNT as u32, round: ROUND, ghosts, near2: NEAR2, ..local.step() });
+        rig.run("receive", updates.len());
+        assert_eq!(rig.counter(MISSING), 2);
+        let (mut after, mut flights_after) = (particles.clone(), flights_now.clone());
+        for &s in &told {
+            after[s] = GpuParticle { tag: particles[s].tag, ..others[s] };
+            flights_after[s] = other_flights[s];
+        }
+        assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), after);
+        assert_eq!(rig.get::<GpuFlight>("flights", COUNT), flights_after);
+        let beside = |a: [u32; 3], b: [u32; 3]| (0..3).all(|k| a[k].abs_diff(b[k]) <= 1);
+        let has_it = |s: usize, ghost: usize| {
+            if layer(ghost) == listed {
+                lists[ghost].contains(&(s as u32))
+            } else {
+                let near = grid.packed_near(middles[s], middles[ghost], NEAR2);
+                layer(s) < local.depth && beside(cells[s], cells[ghost]) && near
+            }
+        };
+        let again: Vec<u32> = (0..COUNT)
+            .filter(|&s| touched[s] == ROUND + 1 && told.iter().any(|&ghost| has_it(s, ghost)))
+            .map(|s| s as u32)
+            .collect();
+        assert_eq!(rig.list("rechoose", LIST_RECHOOSE + ROUND as usize + 1), again);
+        // The check can fail: there are updates of both kinds, and particles that nothing near concerns.
+        let open = touched.iter().filter(|&&round| round == ROUND + 1).count();
+        assert!(told.len() > 5 && known.len() > 5, "{} {}", told.len(), known.len());
+        assert!(again.len() > told.len() && again.len() < open - 50, "{} of {open}", again.len());
+        assert!([1, 2].iter().all(|&away| told.iter().any(|&ghost| layer(ghost) == away)));
     }
-    assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), particles);
-    assert_eq!(rig.get::<GpuFlight>("flights", COUNT), flights_now);
-    let beside = |a: [u32; 3], b: [u32; 3]| (0..3).all(|k| a[k].abs_diff(b[k]) <= 1);
-    let again: Vec<u32> = (0..COUNT)
-        .filter(|&s| touched[s] == ROUND + 1 && told.iter().any(|&t| beside(cells[s], cells[t])))
-        .map(|s| s as u32)
-        .collect();
-    assert_eq!(rig.list("rechoose", LIST_RECHOOSE + ROUND as usize + 1), again);
-    // The check can fail: there are updates, and particles that nothing near concerns.
-    let open = touched.iter().filter(|&&round| round == ROUND + 1).count();
-    assert!(known > 5 && again.len() > known && again.len() < open - 50, "{known} {} of {open}", again.len());
 }
