@@ -7,8 +7,9 @@ use crate::subdomain::{StepSlot, Subdomain};
 use super::SimulationError;
 use super::exchange::Exchange;
 
-/// The phases in which pairs are sought and collide.
-pub const PAIR_PHASES: [&str; 4] = ["neighbours", "collide", "choose", "settle"];
+/// The phases whose time goes with the entries of neighbour lists. (That of `collide`, which has none, goes with cells and particles
+/// as well as with the pairs that are tried.)
+pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
 
 /// In the order of a step; `lost`, `blocks` and `remember` are once an interval.
 const PHASES: [&str; 15] = [

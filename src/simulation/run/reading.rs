@@ -38,8 +38,10 @@ impl Simulation<'_> {
         };
         let mut timed = timer.seconds(phases, stamps);
         timed.retain(|(phase, _)| !once_an_interval(phase));
-        let pairs = timed.iter().filter(|(phase, _)| PAIR_PHASES.contains(phase)).map(|(_, seconds)| seconds).sum();
-        (timed.iter().map(|(_, seconds)| seconds).sum(), Some(pairs))
+        let all = timed.iter().map(|(_, seconds)| seconds).sum();
+        timed.retain(|(phase, _)| PAIR_PHASES.contains(phase));
+        let pairs = timed.iter().map(|(_, seconds)| seconds).sum();
+        (all, (!timed.is_empty()).then_some(pairs))
     }
 
     /// The tallies of all ranks, the stamps of this one, and every rank's load.
