@@ -35,7 +35,7 @@ use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
 
-pub use choice::{Alternative, Choice, Forecast, choose};
+pub use choice::{Alternative, Choice, Forecast, choose, left_out};
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
 pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};

@@ -98,6 +98,11 @@ impl Resolution {
         self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square)
     }
 
+    /// Whether blocks of uniform gas of this density (at the end, 1/m3) that are denser by chance do not halve the step.
+    pub fn has_room(&self, number_density: f64) -> bool {
+        self.collisions_per_step * unevenness(number_density * self.cell.powi(3), SCATTER) <= self.collision_limit
+    }
+
     /// How many steps a run makes of one: in gas of this x, whose blocks scatter as those of this mean number density.
     pub fn halved(&self, x: f64, number_density: f64) -> f64 {
         let uneven = x * unevenness(number_density * self.cell.powi(3), TAIL_SCATTER);

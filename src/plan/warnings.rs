@@ -179,11 +179,15 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
     Warning::beyond(Quantity::Step, bound, "the time step", x, &effect, remedy)
 }
 
-/// cbar dt S / (4 V), with cbar tau the mean free path.
+/// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path.
+pub fn wall_hits(measured: &Measured, number_density: f64, resolution: &Resolution) -> f64 {
+    let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
+    flown * measured.wall_area / (4.0 * measured.gas_volume)
+}
+
 fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
     let Decided { method, number_density, resolution, .. } = *decided;
-    let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
-    let hits = flown * measured.wall_area / (4.0 * measured.gas_volume);
+    let hits = wall_hits(measured, number_density, resolution);
     Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
 }
 

@@ -126,7 +126,14 @@ fn hole(raw: &At<RawHole>, face: Face, extent: Extent, units: UnitSystem) -> Res
             return Err(Problem::value(&hole.center.value.0[axis].span, found, allowed));
         }
     }
-    Ok(Hole { name: hole.name.value.clone(), face, center, outline })
+    let flow_only = match &hole.flow_only {
+        Some(asked) if asked.value && face == Face::Plane => {
+            let allowed = "no `flow_only` here: what is behind a plate is no space of its own";
+            return Err(Problem::value(&asked.span, "`flow_only` of a hole in a plane", allowed));
+        }
+        asked => asked.as_ref().is_some_and(|asked| asked.value),
+    };
+    Ok(Hole { name: hole.name.value.clone(), face, center, outline, flow_only })
 }
 
 /// Half the sides of the rectangle that holds the outline.
@@ -161,7 +168,7 @@ mod tests {
     use super::*;
 
     fn hole(center: [f64; 2], outline: Outline) -> Hole {
-        Hole { name: String::new(), face: Face::Plane, center, outline }
+        Hole { name: String::new(), face: Face::Plane, center, outline, flow_only: false }
     }
 
     /// The polygon has the area of the circle.

@@ -198,6 +198,9 @@ pub struct RawHole {
     pub diameter: Option<At<f64>>,
     /// Corners of the polygon of equal area that stands for the circle, 3 to 1024; 32 unless given.
     pub segments: Option<At<i64>>,
+    /// Of a box: of what is behind the hole only the flow into it matters, so a plan with an accuracy or a budget may model
+    /// the hole as a vent and leave out what is behind it; false unless given.
+    pub flow_only: Option<At<bool>>,
 }
 
 /// A part of space.

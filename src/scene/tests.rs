@@ -131,6 +131,7 @@ name = "round"
 face = "+z"
 center = [<0.1 length>, <-0.1 length>]
 diameter = <0.05 length>
+flow_only = true
 [[wall]]
 name = "pipe"
 shape = "cylinder"

@@ -146,6 +146,8 @@ pub struct Hole {
     /// for a plane (u, normal x u) from its centre.
     pub center: [f64; 2],
     pub outline: Outline,
+    /// A plan with a wish may model the hole as a vent and leave out what is outside of the box.
+    pub flow_only: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -155,6 +155,9 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
                 out.count("segments", u64::from(segments));
             }
         }
+        if hole.flow_only {
+            out.flag("flow_only", true);
+        }
     }
 }
 
@@ -261,6 +264,9 @@ impl Lines {
         self.entry(key, &shown(value));
     }
     fn count(&mut self, key: &str, value: u64) {
+        self.entry(key, &value.to_string());
+    }
+    fn flag(&mut self, key: &str, value: bool) {
         self.entry(key, &value.to_string());
     }
     fn numbers(&mut self, key: &str, values: &[f64]) {

@@ -13,6 +13,7 @@ mod coats;
 mod conditions;
 mod decomposition;
 mod exchange;
+mod flow_only;
 mod guards;
 mod interrupt;
 mod interval;

@@ -1,11 +1,14 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
-use crate::plan::{Choice, Measured, MeasuredVent, Plan, PlanError, Reason, choose, plan, significant};
+use crate::plan::{
+    Choice, Measured, MeasuredVent, Outlook, Plan, PlanError, Reason, choose, left_out, plan, significant,
+};
 use crate::scene::{Opening, Scene};
 use crate::subdomain::Memory;
 
 use super::coats::Coats;
+use super::flow_only;
 use super::moving::Moving;
 use super::outlook::outlook;
 
@@ -70,20 +73,26 @@ impl Model {
     /// # Errors
     /// If the walls are not closed, an orifice is not in the gas, or no plan can be made.
     pub fn new(mut scene: Scene) -> Result<Model, ModelError> {
-        let vessel = Vessel::build(&scene.walls)?;
-        check_orifices(&scene, &vessel)?;
-        let coats = Coats::new(&scene, &vessel)?;
-        let moving = Moving::new(&scene, &vessel)?;
-        let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
-        let measured = measured(&scene, &vessel, &coats, &moving, &probe_volumes);
+        let mut seen = Seen::new(&scene)?;
         let mut choice = None;
         if scene.model.wish.is_any() {
-            let chosen = choose(&scene, &measured, &outlook(&scene, &vessel, &measured, &coats))?;
+            let (chosen, part) = chosen(&scene, &seen)?;
+            if let Some((of_part, seen_of_part)) = part {
+                (scene, seen) = (of_part, seen_of_part);
+            }
             // From here on the scene is one that says it all, so that it can be resumed and refined as any other.
             scene.model = chosen.request.clone();
             choice = Some(chosen);
         }
-        let plan = plan(&scene, &measured)?;
+        let mut plan = plan(&scene, &seen.measured)?;
+        if choice.is_none() {
+            plan.reasons.extend(flow_only::names(&scene).into_iter().map(|hole| Reason {
+                quantity: format!("hole {hole}"),
+                value: "resolved".into(),
+                why: "`flow_only` lets a plan with an accuracy or a budget model it; this scene has neither".into(),
+            }));
+        }
+        let Seen { vessel, coats, moving, probe_volumes, .. } = seen;
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
 
@@ -113,6 +122,72 @@ impl Model {
             return std::borrow::Cow::Borrowed(&self.vessel);
         }
         std::borrow::Cow::Owned(self.moving.vessel_at(&self.vessel, time))
+    }
+}
+
+/// What a scene's walls are, and what was measured of them.
+struct Seen {
+    vessel: Vessel,
+    coats: Coats,
+    moving: Moving,
+    probe_volumes: Vec<f64>,
+    measured: Measured,
+}
+
+impl Seen {
+    fn new(scene: &Scene) -> Result<Seen, ModelError> {
+        let vessel = Vessel::build(&scene.walls)?;
+        check_orifices(scene, &vessel)?;
+        let coats = Coats::new(scene, &vessel)?;
+        let moving = Moving::new(scene, &vessel)?;
+        let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
+        let measured = measured(scene, &vessel, &coats, &moving, &probe_volumes);
+        Ok(Seen { vessel, coats, moving, probe_volumes, measured })
+    }
+
+    fn outlook(&self, scene: &Scene) -> Outlook {
+        outlook(scene, &self.vessel, &self.measured, &self.coats)
+    }
+}
+
+/// What is chosen for a scene with a wish; with the part of the scene that is left where holes are modelled, if that is the better
+/// choice (specification, section 6.2).
+fn chosen(scene: &Scene, seen: &Seen) -> Result<(Choice, Option<(Scene, Seen)>), ModelError> {
+    let whole = seen.outlook(scene);
+    let resolved = choose(scene, &seen.measured, &whole);
+    let part = match flow_only::part(scene, &seen.vessel, &seen.measured) {
+        None => return Ok((resolved?, None)),
+        Some(part) => part,
+    };
+    let modelled = part.and_then(|part| {
+        let seen_of_part = Seen::new(&part.scene).map_err(|error| error.to_string())?;
+        let own = seen_of_part.outlook(&part.scene);
+        let sights = [(scene, &seen.measured, &whole), (&part.scene, &seen_of_part.measured, &own)];
+        let left_out = left_out(sights, &part.kept).map_err(|error| error.to_string())?;
+        let outlook = Outlook { left_out, ..own };
+        let choice = choose(&part.scene, &seen_of_part.measured, &outlook).map_err(|error| format!("then {error}"))?;
+        Ok((choice, part, seen_of_part))
+    });
+    let wish = &scene.model.wish;
+    match (resolved, modelled) {
+        (Ok(mut resolved), Err(why)) => {
+            resolved.hole_notes(flow_only::names(scene), &format!("; it cannot be modelled: {why}"));
+            Ok((resolved, None))
+        }
+        (Err(error), Err(_)) => Err(error.into()),
+        (Ok(mut resolved), Ok((modelled, ..))) if !modelled.is_better_than(&resolved, wish) => {
+            let why = format!("; modelled as a vent it would be no better: {}", modelled.in_short());
+            resolved.hole_notes(flow_only::names(scene), &why);
+            Ok((resolved, None))
+        }
+        (resolved, Ok((mut modelled, part, seen))) => {
+            let beside = match &resolved {
+                Ok(resolved) => format!("resolved: {}", resolved.in_short()),
+                Err(error) => format!("resolved, {error}"),
+            };
+            modelled.holes_modelled(&part.holes, &beside);
+            Ok((modelled, Some((part.scene, seen))))
+        }
     }
 }
 

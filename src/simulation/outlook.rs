@@ -43,6 +43,7 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coat
         probes: probes.collect(),
         borders: borders(scene, vessel, measured),
         heated: heated.map(|coat| SeenHeat { wall: coat.wall, chamber: coat.chamber, area: coat.area }).collect(),
+        left_out: Vec::new(),
     }
 }
 

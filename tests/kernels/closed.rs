@@ -26,6 +26,7 @@ fn hollow_box_with_hole() -> World {
         face: Face::Box { axis: 0, positive: true },
         center: [0.03, 0.03],
         outline: Outline::Rectangle { size: [0.01, 0.01] },
+        flow_only: false,
     };
     let inner = Shape::Box { min: [0.02; 3], max: [0.04; 3], thickness: Some(0.004), holes: vec![hole] };
     World::new(&[tank([0.07, 0.06, 0.06]), wall(inner, GasSide::Both)], 0.006)

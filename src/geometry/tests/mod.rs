@@ -30,7 +30,7 @@ pub(super) fn pierced_box(min: [f64; 3], max: [f64; 3], thickness: f64, holes: V
 }
 
 pub(super) fn hole(name: &str, face: Face, center: [f64; 2], outline: Outline) -> Hole {
-    Hole { name: name.into(), face, center, outline }
+    Hole { name: name.into(), face, center, outline, flow_only: false }
 }
 
 pub(super) fn sphere(name: &str, center: [f64; 3], radius: f64, subdivisions: u32, gas: GasSide) -> Wall {

@@ -2,13 +2,16 @@
 //! particles than the statistics do, and only the flow through it matters, a `[[vent]]` does.
 //!
 //! The plan cannot know what matters, and a vent is another scene: gas that leaves is gone, and of the chamber behind it
-//! only the pressure is left. So it says what each takes, and what the vent would be.
+//! only the pressure is left. So it says what each takes, and what the vent would be; where the scene says that only the flow
+//! matters (`flow_only`), both are planned and the better one is taken (`simulation::flow_only`).
 
 use super::Possible;
 use crate::gas::CONTINUUM_COEFFICIENT;
-use crate::plan::forecast::Cause;
+use crate::plan::amounts::Amounts;
+use crate::plan::forecast::{Cause, Outlook, pressures};
+use crate::plan::heat::species;
 use crate::plan::render::{grouped, significant};
-use crate::plan::{OpeningPlan, Plan, Quantity, limit};
+use crate::plan::{Measured, OpeningPlan, Plan, PlanError, Quantity, limit};
 use crate::scene::{Method, Scene};
 
 /// What the wish asks of the statistics, and what lies behind holes.
@@ -61,6 +64,32 @@ impl Holes {
             significant(pressure(behind)),
         ))
     }
+}
+
+/// What is seen of a scene.
+pub type Sight<'a> = (&'a Scene, &'a Measured, &'a Outlook);
+
+/// What the pressures of a part of a scene, whose holes are modelled, lack: by the control volumes of both, the root mean square
+/// over the rows of the difference, over the mean, of each chamber of the part. `kept`: its chambers in the whole.
+///
+/// # Errors
+/// If a gas cannot be modelled.
+pub fn left_out([whole, part]: [Sight<'_>; 2], kept: &[usize]) -> Result<Vec<f64>, PlanError> {
+    let solved = |(scene, measured, outlook): Sight<'_>| -> Result<Vec<Vec<f64>>, PlanError> {
+        let species = species(scene, measured, &mut Vec::new())?;
+        let amounts = Amounts::of(scene, &species, measured)?;
+        Ok(pressures(scene, measured, outlook, &species, &amounts))
+    };
+    let (whole, part) = (solved(whole)?, solved(part)?);
+    let rows = whole.len().max(1) as f64;
+    let of_chamber = |(own, &chamber): (usize, &usize)| {
+        let mean = whole.iter().map(|row| row[chamber]).sum::<f64>() / rows;
+        let squares = whole.iter().zip(&part).map(|(whole, part)| (whole[chamber] - part[own]).powi(2));
+        let error = (squares.sum::<f64>() / rows).sqrt() / mean;
+        // The rest is rounding.
+        if error > 1e-9 { error } else { 0.0 }
+    };
+    Ok(kept.iter().enumerate().map(of_chamber).collect())
 }
 
 /// Particles with which the Knudsen number of a hole is that of the table of limits: lambda ~ d ~ N^(-1/3) at a fixed

@@ -17,14 +17,16 @@ use super::decide::mean_states;
 use super::error::{MOST_CELLS, MOST_PARTICLES};
 use super::forecast::{Candidate, Cause, ColumnForecast, Forecaster, Outlook, worst};
 use super::heat::species;
-use super::resolution::{Extreme, Resolution};
-use super::{Measured, PlanError};
+use super::resolution::{Extreme, MeanState, Resolution};
+use super::warnings::wall_hits;
+use super::{Measured, PlanError, Quantity, limit};
 use crate::gas::kinetics;
 use crate::geometry::Grid;
 use crate::scene::{Method, ModelRequest, Scene, Wish};
 use cost::{Cost, UNIFORM_SECONDS, USUAL_RATE};
 use families::{Family, families};
 
+pub use holes::left_out;
 pub use report::{Alternative, Choice, Forecast};
 
 /// About the smallest share of the true error that a forecast was (.18 of .31, `tests/verification/planner.rs`): the plan aims
@@ -42,6 +44,8 @@ const NEXT: f64 = 2.0;
 pub struct Possible {
     pub family: Family,
     pub candidate: Candidate,
+    /// s; `None`: that which a scene has that asks for none.
+    pub time_step: Option<f64>,
     pub columns: Vec<ColumnForecast>,
     pub error: f64,
     pub cost: Cost,
@@ -236,10 +240,7 @@ impl Chooser<'_> {
         }
         let initial = particles * self.amounts.initial_total() / self.amounts.total();
         let states = mean_states(self.scene, self.measured, self.amounts, [initial, particles]);
-        let request = self.request(family, particles as u64);
-        let end = self.scene.end_time;
-        let resolution =
-            Resolution::choose(family.method, &request, states, self.extreme, end, &mut Vec::new()).ok()?;
+        let (resolution, longer) = self.resolution(family, particles, states)?;
         let grid = Grid::around(self.measured.bounds_min, self.measured.bounds_max, resolution.cell).ok()?;
         if grid.cell_count() > MOST_CELLS {
             return None;
@@ -257,13 +258,32 @@ impl Chooser<'_> {
         let [at_start, at_end] = halvings::steps_over_planned(&gas, &resolution);
         let mean = 0.5 * (initial * at_start + particles * at_end);
         let cost = Cost::of(family.method, &resolution, mean, density, self.rate);
-        Some(self.forecast(family, candidate, cost))
+        Some(Possible { time_step: longer.then_some(resolution.time_step), ..self.forecast(family, candidate, cost) })
+    }
+
+    /// `None` if it is impossible. With the step of a scene that asks for none where a longer one is more than collisions or
+    /// walls allow.
+    fn resolution(&self, family: &Family, particles: f64, states: [MeanState; 2]) -> Option<(Resolution, bool)> {
+        let request = self.request(family, particles as u64);
+        let choose = |request: &ModelRequest| {
+            let end = self.scene.end_time;
+            Resolution::choose(family.method, request, states, self.extreme, end, &mut Vec::new()).ok()
+        };
+        let own = choose(&request)?;
+        if family.stretch <= 1.0 {
+            return Some((own, false));
+        }
+        let longer = choose(&ModelRequest { time_step: Some(family.stretch * own.time_step), ..request })?;
+        let density = states[1].number_density;
+        let hits = wall_hits(self.measured, density, &longer);
+        let few_hits = limit(Quantity::WallHits, family.method).is_none_or(|limit| limit.bound.holds(hits));
+        Some(if longer.has_room(density) && few_hits { (longer, true) } else { (own, false) })
     }
 
     fn forecast(&self, family: &Family, candidate: Candidate, cost: Cost) -> Possible {
         let columns = self.forecaster.columns(&candidate);
         let error = worst(&columns).map_or(0.0, |column| column.error);
-        Possible { family: *family, candidate, columns, error, cost }
+        Possible { family: *family, candidate, time_step: None, columns, error, cost }
     }
 
     /// The scene's request with the choices in it.

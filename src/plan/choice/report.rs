@@ -39,6 +39,8 @@ pub struct Choice {
     pub forecast: Forecast,
     reasons: Vec<Reason>,
     holes: Holes,
+    /// Of holes that are resolved, in place of an advice: the name, and what to add to its reason.
+    hole_notes: Vec<(String, String)>,
 }
 
 impl Choice {
@@ -47,6 +49,39 @@ impl Choice {
         let Forecast { error, seconds, .. } = &self.forecast;
         let method = self.request.method.map_or("", Method::name);
         format!("{method}: predicted error {}, predicted cost {}", percent(*error), duration(*seconds))
+    }
+
+    /// The same in few words, beside another choice.
+    pub fn in_short(&self) -> String {
+        let particles = self.request.particles.map_or(String::new(), |n| format!(" with {} particles", grouped(n)));
+        let method = self.request.method.map_or("", Method::name);
+        let Forecast { error, seconds, .. } = &self.forecast;
+        format!("{method}{particles}, predicted error {}, cost {}", percent(*error), duration(*seconds))
+    }
+
+    /// Whether it is better by what was wished: of those that reach an accuracy the cheaper one, else the more accurate one.
+    pub fn is_better_than(&self, other: &Choice, wish: &Wish) -> bool {
+        let [own, other] = [self, other].map(|choice| {
+            let Forecast { error, seconds, .. } = choice.forecast;
+            wish.accuracy.map_or((false, error), |accuracy| (error > AIM * accuracy, seconds))
+        });
+        own < other
+    }
+
+    /// Adds to the reasons of holes that are resolved.
+    pub fn hole_notes(&mut self, holes: Vec<String>, note: &str) {
+        self.hole_notes = holes.into_iter().map(|hole| (hole, note.to_owned())).collect();
+    }
+
+    /// Gives the reasons of holes that are modelled: of each its name and what stands for it; `beside`: what resolving them
+    /// would be.
+    pub fn holes_modelled(&mut self, holes: &[(String, String)], beside: &str) {
+        let lacking = self.forecast.columns.iter().filter(|column| column.asked).flat_map(|column| &column.parts);
+        let error = lacking.filter(|part| part.cause == Cause::LeftOut).map(|part| part.error).fold(0.0, f64::max);
+        for (hole, what) in holes {
+            let why = format!("only its flow matters: {what}, which is {} of a pressure; {beside}", percent(error));
+            self.reasons.push(reason(&format!("hole {hole}"), "modelled".into(), why));
+        }
     }
 
     /// Says that a wish of the command line has set the scene's `particles` aside.
@@ -60,7 +95,10 @@ impl Choice {
         let mut reasons = self.reasons.clone();
         for hole in &plan.openings {
             let mut own = hole_reason(plan.method, &hole.name, hole.knudsen, &self.forecast.columns);
-            own.why.extend(self.holes.advice(plan, hole));
+            match self.hole_notes.iter().find(|(name, _)| *name == hole.name) {
+                Some((_, note)) => own.why.push_str(note),
+                None => own.why.extend(self.holes.advice(plan, hole)),
+            }
             reasons.push(own);
         }
         for vent in &plan.vents {
@@ -204,6 +242,7 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
         reasons.push(particles_reason(chooser, &chosen));
         reasons.extend(occupancy_reason(chooser, &chosen));
         reasons.extend(rounds_reason(chooser, &chosen));
+        reasons.extend(step_reason(&chosen));
     }
     let none = |why: &str| ("none".to_string(), why.to_string());
     let shown = |plan: &Possible| {
@@ -222,9 +261,11 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
         better: better.as_ref().map(alternative),
         columns: chosen.columns.clone(),
     };
-    let request = chooser.request(&chosen.family, chosen.candidate.particles as u64);
+    let mut request = chooser.request(&chosen.family, chosen.candidate.particles as u64);
+    request.time_step = chosen.time_step.or(request.time_step);
     let aimed = wish.accuracy.map_or(chosen.error, |accuracy| AIM * accuracy);
-    Choice { request, forecast, reasons, holes: Holes::new(chooser.scene, &chosen, aimed) }
+    let holes = Holes::new(chooser.scene, &chosen, aimed);
+    Choice { request, forecast, reasons, holes, hole_notes: Vec::new() }
 }
 
 /// How many rounds, and why not the other number.
@@ -233,6 +274,17 @@ fn rounds_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Option<Reason> {
     let x = significant(chosen.candidate.collisions_per_step);
     let lost = percent(crate::plan::warnings::lost_events(chosen.candidate.collisions_per_step, rounds));
     Some(reason("rounds", rounds.to_string(), format!("the cheaper number: {lost} of collisions lost at x = {x}")))
+}
+
+/// Why a longer step than without a wish.
+fn step_reason(chosen: &Possible) -> Option<Reason> {
+    let step = chosen.time_step?;
+    let why = format!(
+        "{} times that of a scene without a wish: cheaper, though cells are larger; x = {}",
+        significant(chosen.family.stretch),
+        significant(chosen.candidate.collisions_per_step)
+    );
+    Some(reason("time step", format!("{} us", significant(1e6 * step)), why))
 }
 
 /// Why this method, and whether a control volume would do.

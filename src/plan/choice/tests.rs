@@ -1,7 +1,7 @@
 use super::*;
 use crate::plan::forecast::{SeenProbe, SeenSurface};
-use crate::plan::plan;
 use crate::plan::tests::tank;
+use crate::plan::{Plan, plan};
 use crate::scene::{DiameterCap, Face, Probe, Region, Surface, Switch};
 
 /// The published tank with a wall that is measured and a probe before the hole.
@@ -195,4 +195,44 @@ fn a_hole_that_is_not_resolved_could_be_modelled() {
     // The check can fail: a wide hole is resolved.
     let (why, resolving) = said(0.04, 0.2);
     assert!(resolving < 1e5 && !why.contains("[[vent]]"), "{why}");
+}
+
+/// A longer step is taken where it is cheaper, not where the scene has one, and never one that a guard warns of.
+#[test]
+fn steps_are_stretched_where_that_pays() {
+    let planned = |change: &dyn Fn(&mut Scene, &mut Measured)| {
+        let (mut scene, mut measured, outlook) = seen();
+        scene.model.particles = Some(100_000);
+        scene.model.wish.accuracy = Some(0.3);
+        change(&mut scene, &mut measured);
+        let choice = choose(&scene, &measured, &outlook).unwrap();
+        scene.model = choice.request.clone();
+        let mut chosen = plan(&scene, &measured).unwrap();
+        scene.model.time_step = None;
+        let own = plan(&scene, &measured).unwrap();
+        choice.explain(&mut chosen);
+        (choice.request.time_step, chosen.time_step / own.time_step, chosen, own)
+    };
+    let (step, times, chosen, own) = planned(&|_, _| ());
+    assert!(step.is_some() && times > 1.4, "{times}");
+    let reason = chosen.reasons.iter().find(|reason| reason.quantity == "time step").unwrap();
+    assert!(reason.why.contains("times that of a scene without a wish"), "{}", reason.why);
+    assert!(chosen.warnings.iter().all(|warning| !warning.contains("time step")), "{:?}", chosen.warnings);
+    let seconds = |plan: &Plan| plan.forecast.as_ref().unwrap().seconds;
+    let (_, _, usual, _) = planned(&|scene, _| scene.model.time_step = Some(own.time_step));
+    assert!(seconds(&chosen) < seconds(&usual));
+    // Twice the step of dense particles, or of many walls, is beyond a limit; the usual one is not.
+    for (name, change) in [
+        (
+            "rounds",
+            &(|scene: &mut Scene, _: &mut Measured| scene.model.rounds = Some(2)) as &dyn Fn(&mut Scene, &mut Measured),
+        ),
+        ("walls", &|_, measured| measured.wall_area = 60.0),
+    ] {
+        let (step, times, chosen, own) = planned(change);
+        assert!(step.is_none() && times == 1.0, "{name}: {times}");
+        assert_eq!(chosen.warnings, own.warnings, "{name}");
+    }
+    let (step, ..) = planned(&|scene, _| scene.model.time_step = Some(1e-6));
+    assert_eq!(step, Some(1e-6));
 }

@@ -57,6 +57,8 @@ pub enum Cause {
     RigidSpheres,
     /// Fronts as wide as a mean free path.
     Fronts,
+    /// Holes are modelled, and of what is behind them only a constant pressure is left.
+    LeftOut,
     /// A control volume knows the coefficients of its holes to two per cent.
     Coefficients,
     /// A control volume has no waves.
@@ -73,6 +75,7 @@ impl Cause {
             Cause::LostCollisions => "lost collisions",
             Cause::RigidSpheres => "pressure of rigid spheres",
             Cause::Fronts => "width of fronts",
+            Cause::LeftOut => "what is left out behind holes",
             Cause::Coefficients => "discharge coefficients",
             Cause::Transit => "waves that it lacks",
             Cause::Jets => "jets that it lacks",
@@ -114,6 +117,19 @@ impl ColumnForecast {
 /// The column with the largest error of those that count.
 pub fn worst(columns: &[ColumnForecast]) -> Option<&ColumnForecast> {
     columns.iter().filter(|column| column.asked).max_by(|a, b| a.error.total_cmp(&b.error))
+}
+
+/// What a control volume makes of a scene's pressures, in the continuum: by row of the history, of each chamber.
+pub fn pressures(
+    scene: &Scene,
+    measured: &Measured,
+    outlook: &Outlook,
+    species: &[Species],
+    amounts: &Amounts,
+) -> Vec<Vec<f64>> {
+    let course = Course::new(scene, measured, outlook, species, amounts);
+    let rows = course.solve(Collisions::Continuum);
+    rows.iter().map(|row| course.group.iter().map(|&group| row[group].pressure).collect()).collect()
 }
 
 /// All that forecasts of one scene share.
@@ -206,6 +222,12 @@ impl<'a> Forecaster<'a> {
             columns.push(ColumnForecast::new("profile".into(), true, parts));
         }
         columns
+    }
+
+    /// Of the pressure of a group, by its first chamber.
+    fn left_out(&self, group: usize) -> f64 {
+        let first = self.course.group.iter().position(|&own| own == group);
+        first.and_then(|chamber| self.outlook.left_out.get(chamber).copied()).unwrap_or(0.0)
     }
 
     /// Chambers are what a scene asks to know that says nothing else.
@@ -339,6 +361,7 @@ impl<'a> Run<'a> {
             (Cause::Holes, mean(&|group| self.holes[group])),
             (Cause::LostCollisions, mean(&|group| bias::of_lost(self.lost, self.moments[last][group].spin_dof))),
             (Cause::RigidSpheres, rigid),
+            (Cause::LeftOut, mean(&|group| self.forecaster.left_out(group))),
         ]
     }
 

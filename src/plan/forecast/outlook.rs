@@ -14,6 +14,8 @@ pub struct Outlook {
     pub borders: Vec<[usize; 2]>,
     /// Walls that keep a temperature.
     pub heated: Vec<SeenHeat>,
+    /// Where holes are modelled: what that makes of the pressure of each chamber, relative; else empty.
+    pub left_out: Vec<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
