@@ -1,8 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
 // Update, part 2: what the owners of the ghosts did to them.
 //
-// Reads `updates_in`, `cell_start`, `layers`, the lists of `neighbours`, `middles`; writes `sorted` and `flights`, and lets those choose
-// again who may have the ghost in their lists; not if this device has done the same to it, and has let them choose then.
+// Reads `updates_in`, `cell_start`, `layers`, the lists of `neighbours`, `middles`; writes `sorted` and `flights`, and lets the ghost choose
+// again and those who may have it in their lists.
 // One thread per update, each of another ghost, which is found in its cell by its id; one that is not there
 // is counted, and the host stops the run.
 
@@ -44,7 +44,6 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
         return;
     }
     let after = packed_of(updates_in[entry].particle);
-    let flight = packed_flight(updates_in[entry].flight);
     let cell = global_cell(updates_in[entry].cell);
     let bin = local_index(cell);
     let end = cell_start[bin + 1u];
@@ -56,14 +55,9 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
         atomicAdd(&counters[MISSING], 1u);
         return;
     }
-    // A pair across the border is settled on both sides.
-    let before = sorted[s];
-    if (all(before.place == after.place) && all(bitcast<vec4<u32>>(before.motion) == bitcast<vec4<u32>>(after.motion))
-        && all(flights[s] == flight)) {
-        return;
-    }
     sorted[s] = after;
-    flights[s] = flight;
+    flights[s] = packed_flight(updates_in[entry].flight);
+    touch(s);
     if (has_list_at(layers[s] & LAYER)) {
         touch_neighbours(s);
     } else {

@@ -47,7 +47,7 @@ pub struct Work {
 pub struct Measurement {
     pub work: Work,
     pub seconds: f64,
-    /// Those of them in which pairs were sought and collided, where the device tells.
+    /// Those of them that go with the candidates alone, where the device tells.
     pub pair_seconds: Option<f64>,
 }
 

@@ -35,11 +35,11 @@ use crate::geometry::Grid;
 use crate::scene::{Method, Opening};
 use serde::Serialize;
 
-pub use choice::{Alternative, Choice, Forecast, choose, left_out};
+pub use choice::{Alternative, Choice, Forecast, choose, modelling_errors};
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
 pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};
-pub use forecast::{Cause, ColumnForecast, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
+pub use forecast::{Cause, ColumnForecast, Modelled, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 pub use render::significant;
 pub use resolution::{FASTEST_PAIR, LADDER_TAIL, PER_CELL};

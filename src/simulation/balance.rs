@@ -25,7 +25,7 @@ const NOISE: f64 = 0.005;
 pub struct Load {
     /// Device time of the step, s; where the device does not time, from submissions to their ends.
     pub seconds: f64,
-    /// Those of them in which pairs were sought and collided, where the device times.
+    /// Those of them that go with lists of neighbours, where the device times and the method has them.
     pub pair_seconds: Option<f64>,
     /// Ghosts included.
     pub particles: u64,

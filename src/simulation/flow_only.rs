@@ -7,12 +7,14 @@
 use crate::gas::CONTINUUM_COEFFICIENT;
 use crate::geometry::{Vessel, region_bounds};
 use crate::plan::{Measured, significant};
-use crate::scene::{Chamber, Curve, Face, GasSide, Hole, Opening, Scene, Shape, Surface, Vent, VentFlow, Wall};
+use crate::scene::{Curve, GasSide, Hole, Opening, Scene, Shape, Surface, Vent, VentFlow, Wall};
 
-use super::model::chamber_of;
+use super::moving::extent;
+use super::outlook::source;
 
-/// Rounding of lengths and volumes, relative.
+/// Rounding of lengths, and what volumes that are summed along lines may be off, relative.
 const ROUNDING: f64 = 1e-6;
+const MEASURED: f64 = 1e-4;
 
 /// What is inside of a box, with its holes modelled.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +24,8 @@ pub struct Part {
     pub kept: Vec<usize>,
     /// Of each hole its name, and what stands for it.
     pub holes: Vec<(String, String)>,
+    /// The vents that stand for them, by index.
+    pub vents: Vec<usize>,
 }
 
 /// The box of the holes of which only the flow matters, and those holes; `None` if there are none.
@@ -102,15 +106,8 @@ impl Cavity {
     fn walls(&self, scene: &Scene, vessel: &Vessel) -> Result<Vec<usize>, String> {
         let mut kept = Vec::new();
         for (index, wall) in scene.walls.iter().enumerate() {
-            let corners = vessel.triangles.iter().filter(|triangle| triangle.wall as usize == index);
-            let mut bounds = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-            for vertex in corners.flat_map(|triangle| triangle.vertices) {
-                let point = vessel.vertices[vertex as usize];
-                bounds.0 = std::array::from_fn(|k| f64::min(bounds.0[k], point[k]));
-                bounds.1 = std::array::from_fn(|k| f64::max(bounds.1[k], point[k]));
-            }
-            let around =
-                wall.gas == GasSide::Inside && (0..3).all(|k| bounds.0[k] < self.min[k] && bounds.1[k] > self.max[k]);
+            let bounds = extent(vessel, |of, _| of == index);
+            let around = (0..3).all(|k| bounds.0[k] < self.min[k] && bounds.1[k] > self.max[k]);
             if index == self.wall || self.holds(bounds) {
                 kept.push(index);
             } else if !self.is_apart_from(bounds) && !around {
@@ -149,8 +146,7 @@ impl Cavity {
                 _ => return Err(format!("opening \"{}\" leads out of the box as well", opening.name)),
             }
         }
-        // Of a disc in the wall itself the middle lies within rounding of it.
-        part.orifices.retain(|orifice| self.holds((orifice.position, orifice.position)));
+        part.orifices.retain(|orifice| source(scene, vessel, orifice).and_then(chamber).is_some());
         part.surfaces = Vec::new();
         for surface in &scene.surfaces {
             let wall = renumbered(surface.wall)
@@ -169,9 +165,15 @@ impl Cavity {
             part.vents.push(Vent { wall, chamber: empties.transpose()?, ..vent.clone() });
         }
         let wall = renumbered(self.wall).unwrap_or(0);
-        part.vents.extend(self.vents(whole, holes, wall)?);
-        let words: Result<_, _> = holes.iter().map(|hole| self.words(whole, hole)).collect();
-        Ok(Part { scene: part, kept, holes: words? })
+        let first = part.vents.len();
+        for vent in vents(whole, &kept, holes, wall)? {
+            if part.vents[..first].iter().any(|other| other.name == vent.name) {
+                return Err(format!("a vent has the name of hole \"{}\"", vent.name));
+            }
+            part.vents.push(vent);
+        }
+        let words: Result<_, _> = holes.iter().map(|hole| words(whole, &kept, hole)).collect();
+        Ok(Part { vents: (first..part.vents.len()).collect(), scene: part, kept, holes: words? })
     }
 
     /// What is asked for must be inside.
@@ -203,83 +205,69 @@ impl Cavity {
         let channels = of_holes.map(|opening| opening.area).sum::<f64>() * thickness.unwrap_or(0.0);
         let all = inside.gas_volume();
         let volumes = inside.chamber_volumes(&scene.chambers);
-        let kept: Vec<usize> = (0..volumes.len()).filter(|&chamber| volumes[chamber] > ROUNDING * all).collect();
-        let name = |chamber: &Chamber| chamber.name.clone();
+        let kept: Vec<usize> = (0..volumes.len()).filter(|&chamber| volumes[chamber] > MEASURED * all).collect();
         for &chamber in &kept {
-            if measured.chamber_volumes[chamber] > volumes[chamber] + channels + ROUNDING * all {
-                return Err(format!("chamber \"{}\" is on both sides of it", name(&scene.chambers[chamber])));
+            if measured.chamber_volumes[chamber] > volumes[chamber] + channels + MEASURED * all {
+                return Err(format!("chamber \"{}\" is on both sides of it", scene.chambers[chamber].name));
             }
         }
         Ok(kept)
     }
+}
 
-    /// The opening that a hole is, and the chamber behind it.
-    fn behind<'a>(&self, whole: &Whole<'a>, hole: &Hole) -> Result<(&'a Opening, &'a Chamber), String> {
-        let Whole { scene, vessel, measured } = *whole;
-        let opening = measured
-            .openings
-            .iter()
-            .find(|opening| opening.name == hole.name)
-            .ok_or_else(|| format!("hole \"{}\" has the same chamber on both sides", hole.name))?;
-        let before = chamber_of(scene, vessel, self.before(hole));
-        let behind = opening.between[usize::from(Some(opening.between[0]) == before)];
-        Ok((opening, &scene.chambers[behind]))
+/// The opening that a hole is, and the chambers before and behind it.
+fn opening_of<'a>(whole: &Whole<'a>, kept: &[usize], hole: &Hole) -> Result<(&'a Opening, [usize; 2]), String> {
+    let found = whole.measured.openings.iter().find(|opening| opening.name == hole.name);
+    let opening = found.ok_or_else(|| format!("hole \"{}\" does not join two chambers", hole.name))?;
+    let [a, b] = opening.between;
+    match [a, b].map(|chamber| kept.contains(&chamber)) {
+        [true, false] => Ok((opening, [a, b])),
+        [false, true] => Ok((opening, [b, a])),
+        _ => Err(format!("hole \"{}\" does not lead from a chamber inside to one outside", hole.name)),
     }
+}
 
-    /// A vent for each face with holes, spread over it.
-    fn vents(&self, whole: &Whole<'_>, holes: &[&Hole], wall: usize) -> Result<Vec<Vent>, String> {
-        let mut vents: Vec<Vent> = Vec::new();
-        for hole in holes {
-            let (opening, behind) = self.behind(whole, hole)?;
-            match vents.iter_mut().find(|vent| vent.face == Some(hole.face)) {
-                Some(vent) if vent.external_pressure != behind.pressure => {
-                    return Err(format!(
-                        "holes of one face lead to different pressures, one of them \"{}\"",
-                        hole.name
-                    ));
-                }
-                Some(vent) => vent.area = vent.area.map(|area| area + opening.area),
-                None => vents.push(Vent {
-                    name: hole.name.clone(),
-                    wall,
-                    face: Some(hole.face),
-                    chamber: None,
-                    disc: None,
-                    area: Some(opening.area),
-                    flow: VentFlow::Discharge(Curve { points: vec![[0.0, CONTINUUM_COEFFICIENT]] }),
-                    opening_pressure: 0.0,
-                    external_pressure: behind.pressure,
-                }),
+/// A vent for each face with holes, spread over it.
+fn vents(whole: &Whole<'_>, kept: &[usize], holes: &[&Hole], wall: usize) -> Result<Vec<Vent>, String> {
+    let mut vents: Vec<Vent> = Vec::new();
+    for hole in holes {
+        let (opening, [before, behind]) = opening_of(whole, kept, hole)?;
+        let own = Vent {
+            name: hole.name.clone(),
+            wall,
+            face: Some(hole.face),
+            chamber: kept.iter().position(|&chamber| chamber == before),
+            disc: None,
+            area: Some(opening.area),
+            flow: VentFlow::Discharge(Curve { points: vec![[0.0, CONTINUUM_COEFFICIENT]] }),
+            opening_pressure: 0.0,
+            external_pressure: whole.scene.chambers[behind].pressure,
+        };
+        match vents.iter_mut().find(|vent| vent.face == own.face) {
+            None => vents.push(own),
+            Some(vent) if (vent.chamber, vent.external_pressure) == (own.chamber, own.external_pressure) => {
+                vent.area = vent.area.map(|area| area + opening.area);
+            }
+            Some(vent) => {
+                return Err(format!("holes \"{}\" and \"{}\" of one face lead to different gas", vent.name, own.name));
             }
         }
-        Ok(vents)
     }
+    Ok(vents)
+}
 
-    /// What stands for a hole.
-    fn words(&self, whole: &Whole<'_>, hole: &Hole) -> Result<(String, String), String> {
-        let (opening, behind) = self.behind(whole, hole)?;
-        let what = format!(
-            "a [[vent]] of {} m2 over its face, `discharge` = {CONTINUUM_COEFFICIENT}, `external_pressure` = {} Pa, in place of \
-             chamber `{}`",
-            significant(opening.area),
-            significant(behind.pressure),
-            behind.name
-        );
-        Ok((hole.name.clone(), what))
-    }
-
-    /// A point of the gas just inside of a hole.
-    fn before(&self, hole: &Hole) -> [f64; 3] {
-        let Face::Box { axis, positive } = hole.face else { return self.min };
-        let mut across = hole.center.into_iter();
-        std::array::from_fn(|k| {
-            if k != axis {
-                return across.next().unwrap_or(0.5 * (self.min[k] + self.max[k]));
-            }
-            let inwards = 1e-3 * (self.max[k] - self.min[k]);
-            if positive { self.max[k] - inwards } else { self.min[k] + inwards }
-        })
-    }
+/// A hole's name, and what stands for it.
+fn words(whole: &Whole<'_>, kept: &[usize], hole: &Hole) -> Result<(String, String), String> {
+    let (opening, [_, behind]) = opening_of(whole, kept, hole)?;
+    let behind = &whole.scene.chambers[behind];
+    let what = format!(
+        "a [[vent]] of {} m2 over its face, `discharge` = {CONTINUUM_COEFFICIENT}, `external_pressure` = {} Pa, in place of \
+         chamber `{}`",
+        significant(opening.area),
+        significant(behind.pressure),
+        behind.name
+    );
+    Ok((hole.name.clone(), what))
 }
 
 #[cfg(test)]

@@ -2,13 +2,14 @@
 
 use crate::geometry::{GeometryError, Vessel, region_contains};
 use crate::plan::{
-    Choice, Measured, MeasuredVent, Outlook, Plan, PlanError, Reason, choose, left_out, plan, significant,
+    Choice, Limit, Measured, MeasuredVent, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
+    plan, significant,
 };
-use crate::scene::{Opening, Scene};
+use crate::scene::{Method, Opening, Scene};
 use crate::subdomain::Memory;
 
 use super::coats::Coats;
-use super::flow_only;
+use super::flow_only::{self, Part};
 use super::moving::Moving;
 use super::outlook::outlook;
 
@@ -84,14 +85,7 @@ impl Model {
             scene.model = chosen.request.clone();
             choice = Some(chosen);
         }
-        let mut plan = plan(&scene, &seen.measured)?;
-        if choice.is_none() {
-            plan.reasons.extend(flow_only::names(&scene).into_iter().map(|hole| Reason {
-                quantity: format!("hole {hole}"),
-                value: "resolved".into(),
-                why: "`flow_only` lets a plan with an accuracy or a budget model it; this scene has neither".into(),
-            }));
-        }
+        let plan = plan(&scene, &seen.measured)?;
         let Seen { vessel, coats, moving, probe_volumes, .. } = seen;
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
@@ -102,6 +96,12 @@ impl Model {
         let mut plan = self.plan.clone();
         if let Some(choice) = &self.choice {
             choice.explain(&mut plan);
+        } else if plan.method != Method::ControlVolume {
+            plan.reasons.extend(flow_only::names(&self.scene).into_iter().map(|hole| Reason {
+                quantity: format!("hole {hole}"),
+                value: "resolved".into(),
+                why: "`flow_only` lets a plan with an accuracy or a budget model it".into(),
+            }));
         }
         if let Some(memory) = Memory::of(&plan, !self.moving.is_empty()) {
             let value = format!("{} MB", significant(memory.all / 1e6));
@@ -159,20 +159,16 @@ fn chosen(scene: &Scene, seen: &Seen) -> Result<(Choice, Option<(Scene, Seen)>),
         None => return Ok((resolved?, None)),
         Some(part) => part,
     };
-    let modelled = part.and_then(|part| {
-        let seen_of_part = Seen::new(&part.scene).map_err(|error| error.to_string())?;
-        let own = seen_of_part.outlook(&part.scene);
-        let sights = [(scene, &seen.measured, &whole), (&part.scene, &seen_of_part.measured, &own)];
-        let left_out = left_out(sights, &part.kept).map_err(|error| error.to_string())?;
-        let outlook = Outlook { left_out, ..own };
-        let choice = choose(&part.scene, &seen_of_part.measured, &outlook).map_err(|error| format!("then {error}"))?;
-        Ok((choice, part, seen_of_part))
-    });
+    let modelled = part.and_then(|part| model_holes((scene, &seen.measured, &whole), part));
     let wish = &scene.model.wish;
     match (resolved, modelled) {
         (Ok(mut resolved), Err(why)) => {
             resolved.hole_notes(flow_only::names(scene), &format!("; it cannot be modelled: {why}"));
             Ok((resolved, None))
+        }
+        (Err(PlanError::Accuracy { asked, floor, best, remedy }), Err(why)) => {
+            let remedy = format!("{remedy}; the holes that are `flow_only` cannot be modelled: {why}");
+            Err(PlanError::Accuracy { asked, floor, best, remedy }.into())
         }
         (Err(error), Err(_)) => Err(error.into()),
         (Ok(mut resolved), Ok((modelled, ..))) if !modelled.is_better_than(&resolved, wish) => {
@@ -189,6 +185,32 @@ fn chosen(scene: &Scene, seen: &Seen) -> Result<(Choice, Option<(Scene, Seen)>),
             Ok((modelled, Some((part.scene, seen))))
         }
     }
+}
+
+/// The choice for a part of the scene whose holes are modelled, or why it cannot be.
+fn model_holes(whole: (&Scene, &Measured, &Outlook), part: Part) -> Result<(Choice, Part, Seen), String> {
+    let seen = Seen::new(&part.scene).map_err(|error| error.to_string())?;
+    let own = seen.outlook(&part.scene);
+    let sights = [whole, (&part.scene, &seen.measured, &own)];
+    let errors = modelling_errors(sights, &part.kept, &part.vents).map_err(|error| error.to_string())?;
+    let outlook = Outlook { modelled: errors, ..own };
+    let choice = choose(&part.scene, &seen.measured, &outlook).map_err(|error| format!("then {error}"))?;
+    if choice.request.method == Some(Method::None) {
+        return Err("free flight through a hole is not the flow of a vent".into());
+    }
+    let explicit = Scene { model: choice.request.clone(), ..part.scene.clone() };
+    let planned = plan(&explicit, &seen.measured).map_err(|error| format!("then {error}"))?;
+    for vent in part.vents.iter().filter_map(|&vent| planned.vents.get(vent)) {
+        let clipped = |limit: &Limit| !limit.bound.holds(vent.largest_flux);
+        if limit(Quantity::VentFlux, planned.method).is_some_and(clipped) {
+            return Err(format!(
+                "the vent in place of \"{}\" would ask for {} p/sqrt(RT/M) of its face, more than a vent can pass with its enthalpy",
+                vent.name,
+                significant(vent.largest_flux)
+            ));
+        }
+    }
+    Ok((choice, part, seen))
 }
 
 /// What the plan needs to know of the geometry.

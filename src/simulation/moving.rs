@@ -370,7 +370,7 @@ fn body(scene: &Scene, vessel: &Vessel, motion: &Motion) -> Result<Body, ModelEr
 }
 
 /// The corners of some triangles, m.
-fn extent(vessel: &Vessel, own: impl Fn(usize, Option<Face>) -> bool) -> ([f64; 3], [f64; 3]) {
+pub(super) fn extent(vessel: &Vessel, own: impl Fn(usize, Option<Face>) -> bool) -> ([f64; 3], [f64; 3]) {
     let mut corners = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for triangle in vessel.triangles.iter().filter(|triangle| own(triangle.wall as usize, triangle.face)) {
         for vertex in triangle.vertices.map(|vertex| vessel.vertices[vertex as usize]) {

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::geometry::{Vessel, region_bounds, region_volume};
 use crate::plan::{Measured, Outlook, SeenHeat, SeenProbe, SeenSurface};
-use crate::scene::{Opening, Region, Scene};
+use crate::scene::{Opening, Orifice, Region, Scene};
 
 use super::coats::Coats;
 use super::model::chamber_of;
@@ -17,12 +17,6 @@ const POINTS: u32 = 16;
 const OPEN: f64 = 2.0;
 
 pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coats) -> Outlook {
-    let source = |orifice: &crate::scene::Orifice| {
-        // Just off the wall that an orifice may lie on.
-        let radius = (orifice.area / std::f64::consts::PI).sqrt();
-        let point = std::array::from_fn(|axis| orifice.position[axis] + 1e-3 * radius * orifice.direction[axis]);
-        chamber_of(scene, vessel, point)
-    };
     let surfaces = scene.surfaces.iter().map(|surface| {
         // A surface without gas before it is refused by the run itself.
         let faces = facing(scene, vessel, surface).unwrap_or_default();
@@ -38,13 +32,21 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coat
     });
     let heated = coats.coats.iter().filter(|coat| scene.walls[coat.wall].heat.is_some());
     Outlook {
-        sources: scene.orifices.iter().map(source).collect(),
+        sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         surfaces: surfaces.collect(),
         probes: probes.collect(),
         borders: borders(scene, vessel, measured),
         heated: heated.map(|coat| SeenHeat { wall: coat.wall, chamber: coat.chamber, area: coat.area }).collect(),
-        left_out: Vec::new(),
+        modelled: Vec::new(),
     }
+}
+
+/// The chamber that an orifice blows into.
+pub fn source(scene: &Scene, vessel: &Vessel, orifice: &Orifice) -> Option<usize> {
+    // Just off the wall that an orifice may lie on.
+    let radius = (orifice.area / std::f64::consts::PI).sqrt();
+    let point = std::array::from_fn(|axis| orifice.position[axis] + 1e-3 * radius * orifice.direction[axis]);
+    chamber_of(scene, vessel, point)
 }
 
 /// Pairs of chambers that are open to each other over more than the holes of walls between them.

@@ -47,7 +47,7 @@ pub struct Share {
     pub walls: f64,
     /// Time of its passes on the device; zero where the device does not time.
     pub device_seconds: f64,
-    /// Those in which pairs were sought and collided, where the device tells.
+    /// Those of them that go with the candidates alone, where the device tells.
     pub pair_seconds: Option<f64>,
     /// All its own time: device and host.
     pub own_seconds: f64,

@@ -3,10 +3,10 @@
 //! column) is at most what was asked, and the predicted one within a factor of two of it. So are the predicted particle-steps
 //! (what of the cost is no matter of the machine).
 //!
-//! Of the first scenes two wishes and two formulas were changed after first results, so they are no blind test; the last
-//! three are.
+//! Of the first scenes two wishes and two formulas were changed after first results, so they are no blind test; those called
+//! blind and the vessel in a room are.
 //!
-//! The limits are known without particles: gas at rest; two chambers and a hole, a closed vessel that is filled and a tank
+//! The limits are known without particles: gas at rest; a vessel in a room, whose hole is modelled, by the control volume of both; two chambers and a hole, a closed vessel that is filled and a tank
 //! with an inflator by the control volume in the continuum; effusion by that of free flight; a vessel that vents by
 //! isentropic flow; a shock tube by the exact Riemann solution, whose measure is that of the profile.
 //!

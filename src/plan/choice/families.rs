@@ -22,9 +22,9 @@ pub struct Family {
 const FREE_KNUDSEN: f64 = 1.0;
 /// Rounds of pairing that are compared.
 const ROUNDS: [u32; 2] = [8, 4];
-/// Longer steps have larger cells to search, and what a particle-step needs besides counts less often. At 2 the fastest pairs
-/// close in by two diameters, and 4.25 sqrt(kT/m) crosses a cell.
-const STRETCHES: [f64; 3] = [1.0, 1.5, 2.0];
+/// Longer steps have larger cells to search, and what a particle-step needs besides counts less often. (At 2, 4.24 sqrt(kT/m) crosses
+/// a cell: a few fast particles halve the step, and the cells are large in vain.)
+const STRETCHES: [f64; 2] = [1.0, 1.5];
 const USUAL: [f64; 1] = [0.12];
 /// More than the usual one only for sharper fronts.
 const OF_FRONTS: [f64; 3] = [0.12, 0.2, 0.3];
@@ -54,7 +54,7 @@ pub fn families(
             None if method.has_rounds() => ROUNDS.iter().copied().map(Some).collect(),
             _ => vec![None],
         };
-        // The other methods' steps are already as long as cells or collisions allow.
+        // The steps of `cell` and `none` are as long as cells or collisions allow, and rigid spheres are there for comparison.
         let longer = method == Method::ClosestApproach && scene.model.time_step.is_none();
         let stretches = if longer { &STRETCHES[..] } else { &STRETCHES[..1] };
         for &occupancy in &of_method {

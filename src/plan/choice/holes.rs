@@ -8,7 +8,7 @@
 use super::Possible;
 use crate::gas::CONTINUUM_COEFFICIENT;
 use crate::plan::amounts::Amounts;
-use crate::plan::forecast::{Cause, Outlook, pressures};
+use crate::plan::forecast::{Cause, DISCHARGE_UNKNOWN, Modelled, Outlook, pressures};
 use crate::plan::heat::species;
 use crate::plan::render::{grouped, significant};
 use crate::plan::{Measured, OpeningPlan, Plan, PlanError, Quantity, limit};
@@ -55,7 +55,7 @@ impl Holes {
         };
         let name = plan.chambers.get(behind).map_or("", |chamber| chamber.name.as_str());
         Some(format!(
-            "; to resolve it takes {} particles, the statistics {}: if only the flow through it matters, model it: a [[vent]] \
+            "; to resolve it takes {} particles, the statistics {}: if only the flow through it matters, mark it `flow_only`, or model it: a [[vent]] \
              in a closed wall with `area` = {} m2, `discharge` = {CONTINUUM_COEFFICIENT} and `external_pressure` = {} Pa, in \
              place of chamber `{name}`",
             grouped(resolving as u64),
@@ -69,25 +69,39 @@ impl Holes {
 /// What is seen of a scene.
 pub type Sight<'a> = (&'a Scene, &'a Measured, &'a Outlook);
 
-/// What the pressures of a part of a scene, whose holes are modelled, lack: by the control volumes of both, the root mean square
-/// over the rows of the difference, over the mean, of each chamber of the part. `kept`: its chambers in the whole.
+/// What a part of a scene, whose holes are modelled by the vents of these indices, makes of the pressure of each of its chambers
+/// ([`Modelled`]): by control volumes, the root mean square over the rows of the difference, over the mean. `kept`: its
+/// chambers in the whole.
 ///
 /// # Errors
 /// If a gas cannot be modelled.
-pub fn left_out([whole, part]: [Sight<'_>; 2], kept: &[usize]) -> Result<Vec<f64>, PlanError> {
+pub fn modelling_errors(
+    [whole, part]: [Sight<'_>; 2],
+    kept: &[usize],
+    vents: &[usize],
+) -> Result<Vec<Modelled>, PlanError> {
     let solved = |(scene, measured, outlook): Sight<'_>| -> Result<Vec<Vec<f64>>, PlanError> {
         let species = species(scene, measured, &mut Vec::new())?;
         let amounts = Amounts::of(scene, &species, measured)?;
         Ok(pressures(scene, measured, outlook, &species, &amounts))
     };
-    let (whole, part) = (solved(whole)?, solved(part)?);
-    let rows = whole.len().max(1) as f64;
-    let of_chamber = |(own, &chamber): (usize, &usize)| {
-        let mean = whole.iter().map(|row| row[chamber]).sum::<f64>() / rows;
-        let squares = whole.iter().zip(&part).map(|(whole, part)| (whole[chamber] - part[own]).powi(2));
+    let mut wider = part.0.clone();
+    for &vent in vents {
+        let area = wider.vents[vent].area.unwrap_or(part.1.vents[vent].area);
+        wider.vents[vent].area = Some(area * (1.0 + DISCHARGE_UNKNOWN));
+    }
+    let (whole, wider, part) = (solved(whole)?, solved((&wider, part.1, part.2))?, solved(part)?);
+    let rows = part.len().max(1) as f64;
+    let difference = |[a, b]: [&[Vec<f64>]; 2], [i, k]: [usize; 2]| {
+        let mean = a.iter().map(|row| row[i]).sum::<f64>() / rows;
+        let squares = a.iter().zip(b).map(|(a, b)| (a[i] - b[k]).powi(2));
         let error = (squares.sum::<f64>() / rows).sqrt() / mean;
-        // The rest is rounding.
-        if error > 1e-9 { error } else { 0.0 }
+        // Less is rounding.
+        if error <= 1e-9 { 0.0 } else { error }
+    };
+    let of_chamber = |(own, &chamber): (usize, &usize)| Modelled {
+        left_out: difference([&whole, &part], [chamber, own]),
+        coefficients: difference([&part, &wider], [own, own]),
     };
     Ok(kept.iter().enumerate().map(of_chamber).collect())
 }

@@ -59,7 +59,8 @@ impl Choice {
         format!("{method}{particles}, predicted error {}, cost {}", percent(*error), duration(*seconds))
     }
 
-    /// Whether it is better by what was wished: of those that reach an accuracy the cheaper one, else the more accurate one.
+    /// Whether it is better by what was wished: of those that reach the aim for an accuracy the cheaper one, and one of these before one that
+    /// only reaches the accuracy itself; without an accuracy the more accurate one.
     pub fn is_better_than(&self, other: &Choice, wish: &Wish) -> bool {
         let [own, other] = [self, other].map(|choice| {
             let Forecast { error, seconds, .. } = choice.forecast;
@@ -68,8 +69,11 @@ impl Choice {
         own < other
     }
 
-    /// Adds to the reasons of holes that are resolved.
+    /// Adds to the reasons of holes that are resolved. (A control volume models them all.)
     pub fn hole_notes(&mut self, holes: Vec<String>, note: &str) {
+        if self.request.method == Some(Method::ControlVolume) {
+            return;
+        }
         self.hole_notes = holes.into_iter().map(|hole| (hole, note.to_owned())).collect();
     }
 

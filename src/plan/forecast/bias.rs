@@ -21,7 +21,7 @@ const SOD_STEP: f64 = 0.875 / 0.5625;
 /// N^-.26 at a fixed shape is (lambda/L)^.78.
 const SOD_EXPONENT: f64 = 0.78;
 /// By how much the .84 of an orifice may be off: the specification gives it as "about", its table is good to .02.
-const DISCHARGE_UNKNOWN: f64 = 0.02 / 0.84;
+pub const DISCHARGE_UNKNOWN: f64 = 0.02 / 0.84;
 /// Thrust of a choked jet over p A, and of a slow one over (p - p_outside) A; both times the discharge coefficient.
 const CHOKED_THRUST: f64 = 1.27;
 const SLOW_THRUST: f64 = 2.0;

@@ -16,7 +16,8 @@ mod course;
 pub(super) mod noise;
 mod outlook;
 
-pub use outlook::{Outlook, SeenHeat, SeenProbe, SeenSurface};
+pub use bias::DISCHARGE_UNKNOWN;
+pub use outlook::{Modelled, Outlook, SeenHeat, SeenProbe, SeenSurface};
 
 use super::Measured;
 use super::amounts::Amounts;
@@ -59,7 +60,7 @@ pub enum Cause {
     Fronts,
     /// Holes are modelled, and of what is behind them only a constant pressure is left.
     LeftOut,
-    /// A control volume knows the coefficients of its holes to two per cent.
+    /// The coefficients of modelled holes are known to two per cent.
     Coefficients,
     /// A control volume has no waves.
     Transit,
@@ -224,10 +225,10 @@ impl<'a> Forecaster<'a> {
         columns
     }
 
-    /// Of the pressure of a group, by its first chamber.
-    fn left_out(&self, group: usize) -> f64 {
+    /// Of a group, by its first chamber.
+    fn modelled(&self, group: usize) -> Modelled {
         let first = self.course.group.iter().position(|&own| own == group);
-        first.and_then(|chamber| self.outlook.left_out.get(chamber).copied()).unwrap_or(0.0)
+        first.and_then(|chamber| self.outlook.modelled.get(chamber).copied()).unwrap_or_default()
     }
 
     /// Chambers are what a scene asks to know that says nothing else.
@@ -361,7 +362,8 @@ impl<'a> Run<'a> {
             (Cause::Holes, mean(&|group| self.holes[group])),
             (Cause::LostCollisions, mean(&|group| bias::of_lost(self.lost, self.moments[last][group].spin_dof))),
             (Cause::RigidSpheres, rigid),
-            (Cause::LeftOut, mean(&|group| self.forecaster.left_out(group))),
+            (Cause::LeftOut, mean(&|group| self.forecaster.modelled(group).left_out)),
+            (Cause::Coefficients, mean(&|group| self.forecaster.modelled(group).coefficients)),
         ]
     }
 

@@ -14,8 +14,17 @@ pub struct Outlook {
     pub borders: Vec<[usize; 2]>,
     /// Walls that keep a temperature.
     pub heated: Vec<SeenHeat>,
-    /// Where holes are modelled: what that makes of the pressure of each chamber, relative; else empty.
-    pub left_out: Vec<f64>,
+    /// Where vents stand for holes, what that makes of the pressure of each chamber; else empty.
+    pub modelled: Vec<Modelled>,
+}
+
+/// Relative errors of a pressure by vents that stand for holes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Modelled {
+    /// What is behind them is left out, but for the pressure at the start.
+    pub left_out: f64,
+    /// Their discharge coefficient is known to two per cent.
+    pub coefficients: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -181,6 +181,10 @@ fn refined_scene(parent: &Model, times: u64) -> Result<Scene, RefineError> {
     let particles = particles.ok_or(RefineError::TooMany { times, particles: asked, limit })?;
     let mut scene = parent.scene.clone();
     scene.model.particles = Some(particles);
+    if scene.model.diameter.is_none() {
+        // As the spacing of the particles, and with it diameter, free path and cell.
+        scene.model.time_step = scene.model.time_step.map(|step| step / libm::cbrt(times as f64));
+    }
     Ok(scene)
 }
 
@@ -195,4 +199,23 @@ fn shares(model: &Model) -> u64 {
         FlowIntegral::new(&orifice.mass_flow, scene.end_time).total() / molar_mass
     });
     (initial.chain(injected).sum::<f64>() / plan.moles_per_particle).round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Smaller particles have shorter steps, where the step is written down but not the diameter.
+    #[test]
+    fn a_step_that_is_written_down_follows_the_spacing() {
+        let refined = |keys: &str| {
+            let text = include_str!("../../../scenes/box.toml").replace("occupancy = 0.1", keys);
+            let scene = crate::scene::parse(&text, "box.toml", std::path::Path::new("")).unwrap();
+            refined_scene(&Model::new(scene).unwrap(), 8).unwrap().model
+        };
+        let step = refined("occupancy = 0.1\ntime_step = 2e-6").time_step.unwrap();
+        assert!((step / 1e-6 - 1.0).abs() < 1e-12, "{step}");
+        assert_eq!(refined("diameter = 0.003\ntime_step = 2e-6").time_step, Some(2e-6));
+        assert_eq!(refined("occupancy = 0.1").time_step, None);
+    }
 }
