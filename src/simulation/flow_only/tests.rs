@@ -93,6 +93,8 @@ fn the_better_of_both_is_chosen() {
     assert_eq!((why.value.as_str(), model.scene.chambers.len()), ("modelled", 1), "{}", why.why);
     assert!(why.why.contains("resolved: ") && why.why.contains("a [[vent]] of"), "{}", why.why);
     let modelled = model.choice.as_ref().unwrap().forecast.seconds;
+    // The scene that is written down is planned as the run was, so the run can be resumed.
+    assert_eq!(model.plan.to_toml(), Model::new(scene(&to_toml(&model.scene))).unwrap().plan.to_toml());
     let (model, why) = planned(&emptying().replace("flow_only = true\n", ""));
     assert_eq!((why.value.as_str(), model.scene.chambers.len()), ("resolved", 2));
     assert!(model.choice.unwrap().forecast.seconds > 3.0 * modelled);
