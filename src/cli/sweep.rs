@@ -264,8 +264,8 @@ impl SweepPlan {
             text,
             "\n## Modelled: work alone\n\nSubdomains of {} particles{}, measured one at a time on {adapter}: {} intervals \
              of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state, borders exchanged every {} of \
-             collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3} and \
-             a wall test {:.2} of a particle, as fitted to the device times.\n\n{}",
+             collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3}, \
+             a wall test {:.2} and a cell {:.4} of a particle, as fitted to the device times.\n\n{}",
             grouped(*particles),
             if self.raw.runs.weak { " on the fewest devices, as many more as there are more devices" } else { "" },
             raw.intervals,
@@ -276,6 +276,7 @@ impl SweepPlan {
             },
             relative(costs.candidate),
             relative(costs.wall),
+            relative(costs.cell),
             report::work_table(points),
         );
         let _ = write!(

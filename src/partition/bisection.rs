@@ -112,6 +112,15 @@ impl Bisection {
         self.wanted.last().map_or(0, |slice| slice.offset + slice.planes())
     }
 
+    /// Adds the weight of the cells, each the same, to the histogram of this level.
+    pub fn add_cells(&self, weight: u32, histogram: &mut [u64]) {
+        for slice in &self.wanted {
+            let plane = u64::from(weight) * slice.extent.plane_cells(slice.axis);
+            let planes = histogram.iter_mut().skip(slice.offset).take(slice.planes());
+            planes.for_each(|sum| *sum = sum.saturating_add(plane));
+        }
+    }
+
     /// The cuts so far; an open box is [`Node::Open`] with its index in [`Bisection::wanted`].
     pub fn partial_tree(&self) -> &[Node] {
         &self.nodes

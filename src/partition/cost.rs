@@ -10,10 +10,10 @@
 //! ```
 //!
 //! where a row counts FORGET per interval of age. Where the device tells the seconds of the search for pairs apart, a
-//! measurement is two rows: those seconds are of candidates and steps, the others of particles, wall tests and steps.
+//! measurement is two rows: those seconds are of candidates and steps, the others of particles, wall tests, cells and steps.
 //! (In one sum particles and candidates are hard to tell apart, as most particles have much the same number of them.)
 //! The ridge holds what the rows cannot tell apart (a uniform gas) at
-//! the prior. Five unknowns have 32 sets of positive ones: the best is found by trying them.
+//! the prior. Six unknowns have 64 sets of positive ones: the best is found by trying them.
 //!
 //! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of what
 //! the speeds in force leave. It leaves 1 where it is off by more than both a dead band and five standard errors, so
@@ -32,14 +32,23 @@ pub enum By {
     Cost,
 }
 
-/// What a rank did in an interval, each a sum over its steps. Particles include ghosts.
+/// What a rank did in an interval, each a sum over its steps. Particles include ghosts, cells those around the own ones.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
 pub struct Work {
     pub particles: u64,
     /// Entries of the neighbour lists: candidates for collisions.
     pub candidates: u64,
     pub wall_tests: u64,
+    /// Cells of the grid, with or without gas: they are counted, scanned and cleared.
+    pub cells: u64,
     pub steps: u64,
+}
+
+/// What of a rank's [`Work`] is others' by right, in a step.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+pub struct HaloWork {
+    pub ghosts: u64,
+    pub cells: u64,
 }
 
 /// What a rank did and the device seconds that it took.
@@ -51,20 +60,22 @@ pub struct Measurement {
     pub pair_seconds: Option<f64>,
 }
 
-/// Weights for the histogram kernel. A particle of up to 2^17 candidates and as many wall tests weighs less than 2^32,
+/// Weights for the histograms: of particles, which a kernel sums, and of cells. A particle of up to 2^17 candidates and as many wall tests weighs less than 2^32,
 /// and the sum over 2^30 particles less than 2^62.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct IntegerWeights {
     pub particle: u32,
     pub candidate: u32,
     pub wall: u32,
+    /// Of a cell, whatever is in it.
+    pub cell: u32,
 }
 
-/// Particle, candidate, wall test, step apart from the search for pairs, step of that search.
-const FEATURES: usize = 5;
+/// Particle, candidate, wall test, cell, step apart from the search for pairs, step of that search.
+const FEATURES: usize = 6;
 /// Costs before any are measured, relative to a particle.
-const PRIOR: [f64; FEATURES] = [1.0, 0.1, 1.0, 6_000.0, 4_000.0];
-const OF_PAIRS: [bool; FEATURES] = [false, true, false, false, true];
+const PRIOR: [f64; FEATURES] = [1.0, 0.1, 1.0, 0.01, 6_000.0, 4_000.0];
+const OF_PAIRS: [bool; FEATURES] = [false, true, false, false, false, true];
 /// Squared noise of a measurement (0.15) over squared doubt about the prior (1), both relative.
 const RIDGE: f64 = 0.02;
 const FORGET: f64 = 0.95;
@@ -77,7 +88,7 @@ const FOLLOW_ERRORS: f64 = 2.0;
 const NOISE: f64 = 0.2;
 /// Intervals before a speed is judged.
 const FEWEST: u32 = 10;
-/// Of what a rank would have without ghosts.
+/// Of what a rank would have without a halo.
 const LEAST_SHARE: f64 = 0.2;
 /// The largest weight.
 const WEIGHT_ONE: f64 = 16_384.0;
@@ -156,11 +167,11 @@ impl CostModel {
         }
     }
 
-    /// Seconds per particle, candidate, wall test and step on a device of speed 1. Before anything is measured they are
-    /// relative to a particle.
-    pub fn coefficients(&self) -> [f64; 4] {
-        let [particle, candidate, wall, step, search] = std::array::from_fn(|k| self.scaled[k] * PRIOR[k]);
-        [particle, candidate, wall, step + search]
+    /// Seconds per particle, candidate, wall test, cell and step on a device of speed 1. Before anything is measured they
+    /// are relative to a particle.
+    pub fn coefficients(&self) -> [f64; 5] {
+        let [particle, candidate, wall, cell, step, search] = std::array::from_fn(|k| self.scaled[k] * PRIOR[k]);
+        [particle, candidate, wall, cell, step + search]
     }
 
     /// The seconds that the work takes on a device of speed 1.
@@ -183,25 +194,26 @@ impl CostModel {
         }
     }
 
-    /// As [`CostModel::shares`], less for a rank with more ghosts: they cost it time, but are weighed where they are
-    /// owned. `loads`: what each rank did, and how many of its particles were ghosts. With own weight w, cost of
-    /// ghosts g and speed v all times (w + g)/v are to be the same: w = v t - g.
+    /// As [`CostModel::shares`], less for a rank with a larger halo: its ghosts and cells cost it time, but are weighed
+    /// where they are owned. `loads`: what each rank did, and what of it was its halo's. With own weight w, cost of
+    /// the halo h and speed v all times (w + h)/v are to be the same: w = v t - h.
     ///
     /// # Panics
     /// If the number of loads is not that of the ranks.
-    pub fn shares_beside_ghosts(&self, loads: &[(Work, u64)]) -> Vec<f64> {
+    pub fn shares_beside_halos(&self, loads: &[(Work, HaloWork)]) -> Vec<f64> {
         assert_eq!(loads.len(), self.ranks.len(), "one load per rank");
         let speeds = self.shares();
-        let [particle, .., step] = self.coefficients();
+        let [particle, .., cell, step] = self.coefficients();
         let all: f64 = loads.iter().map(|(work, _)| self.cost(work) - step * work.steps as f64).sum();
         if self.by == By::Particles || all <= 0.0 {
             return speeds;
         }
         let count = loads.len() as f64;
         let time = all / count;
-        let wanted = speeds.iter().zip(loads).map(|(speed, (_, ghosts))| {
+        let wanted = speeds.iter().zip(loads).map(|(speed, (_, halo))| {
+            let beside = particle * halo.ghosts as f64 + cell * halo.cells as f64;
             // A rank with hardly anything but ghosts keeps a part.
-            (speed * time - particle * *ghosts as f64).max(LEAST_SHARE * speed * time)
+            (speed * time - beside).max(LEAST_SHARE * speed * time)
         });
         let wanted: Vec<f64> = wanted.collect();
         let mean = wanted.iter().sum::<f64>() / count;
@@ -211,16 +223,23 @@ impl CostModel {
     /// The weights in fixed point: the largest is 2^14, or, by particles, a particle is 1.
     pub fn weights(&self) -> IntegerWeights {
         if self.by == By::Particles {
-            return IntegerWeights { particle: 1, candidate: 0, wall: 0 };
+            return IntegerWeights { particle: 1, candidate: 0, wall: 0, cell: 0 };
         }
-        let [mut particle, mut candidate, mut wall, _] = self.coefficients();
+        let [mut particle, mut candidate, mut wall, mut cell, _] = self.coefficients();
         if particle.max(candidate).max(wall) <= 0.0 {
-            [particle, candidate, wall, ..] = PRIOR;
+            [particle, candidate, wall, cell, ..] = PRIOR;
         }
-        let scale = WEIGHT_ONE / particle.max(candidate).max(wall);
+        let largest = particle.max(candidate).max(wall);
+        let scale = WEIGHT_ONE / largest;
         let integer = |cost: f64| (cost * scale).round() as u32;
         // Each particle weighs something: it takes memory, and a box of free ones is not empty.
-        IntegerWeights { particle: integer(particle).max(1), candidate: integer(candidate), wall: integer(wall) }
+        IntegerWeights {
+            particle: integer(particle).max(1),
+            candidate: integer(candidate),
+            wall: integer(wall),
+            // Boxes are to follow the gas, whatever a fit to little gas says.
+            cell: integer(cell.min(largest)),
+        }
     }
 
     fn fit(&mut self) {
@@ -289,7 +308,7 @@ impl Rank {
 impl Work {
     /// By the prior, of each feature.
     fn units(&self) -> [f64; FEATURES] {
-        let counts = [self.particles, self.candidates, self.wall_tests, self.steps, self.steps];
+        let counts = [self.particles, self.candidates, self.wall_tests, self.cells, self.steps, self.steps];
         std::array::from_fn(|feature| counts[feature] as f64 * PRIOR[feature])
     }
 }

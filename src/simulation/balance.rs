@@ -6,9 +6,9 @@
 use std::time::Instant;
 
 use crate::gpu::Device;
-use crate::partition::{By, CostModel, Decision, Measurement, Trigger, Work};
+use crate::partition::{By, CostModel, Decision, HaloWork, IntegerWeights, Measurement, Trigger, Work};
 use crate::ranks::Communicator;
-use crate::subdomain::{Subdomain, Tallies};
+use crate::subdomain::{GridCells, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -33,8 +33,11 @@ pub struct Load {
     pub candidates: u64,
     /// Particles that may meet a wall.
     pub walls: u64,
-    /// Particles that it owns.
+    /// Cells of its grid, those of its halo included.
+    pub cells: u64,
+    /// Particles and cells that it owns.
     pub owned: u64,
+    pub own_cells: u64,
     /// In the interval: particles that came from another owner, and bytes that were sent.
     pub moved: u64,
     pub bytes: u64,
@@ -44,18 +47,26 @@ pub struct Load {
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 10;
+const LOAD_WORDS: usize = 12;
 
 impl Load {
-    /// `seconds`: all, and those of pairs; `traffic`: that of the interval.
-    pub fn new((seconds, pair_seconds): (f64, Option<f64>), present: u32, own: &Tallies, traffic: &Traffic) -> Load {
+    /// `seconds`: all, and those of pairs; `present`: particles here; `traffic`: that of the interval.
+    pub fn new(
+        (seconds, pair_seconds): (f64, Option<f64>),
+        present: u32,
+        cells: GridCells,
+        own: &Tallies,
+        traffic: &Traffic,
+    ) -> Load {
         Load {
             seconds,
             pair_seconds,
             particles: present.into(),
             candidates: own.counters.candidates.into(),
             walls: own.counters.near_walls.into(),
+            cells: cells.all,
             owned: own.blocks.iter().map(|block| block.number).sum(),
+            own_cells: cells.own,
             moved: own.counters.moved.into(),
             bytes: traffic.bytes,
             wall: traffic.wall_seconds,
@@ -79,6 +90,8 @@ impl Load {
             nanoseconds(self.wall),
             // 0 is no time.
             self.pair_seconds.map_or(0, |seconds| 1 + nanoseconds(seconds)),
+            self.cells,
+            self.own_cells,
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -98,13 +111,25 @@ impl Load {
             rebalancing: 1e-9 * w[7] as f64,
             wall: 1e-9 * w[8] as f64,
             pair_seconds: w[9].checked_sub(1).map(|nanoseconds| 1e-9 * nanoseconds as f64),
+            cells: w[10],
+            own_cells: w[11],
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }
 
     /// Of one step.
     pub fn work(&self) -> Work {
-        Work { particles: self.particles, candidates: self.candidates, wall_tests: self.walls, steps: 1 }
+        Work {
+            particles: self.particles,
+            candidates: self.candidates,
+            wall_tests: self.walls,
+            cells: self.cells,
+            steps: 1,
+        }
+    }
+
+    fn of_halo(&self) -> HaloWork {
+        HaloWork { ghosts: self.particles.saturating_sub(self.owned), cells: self.cells.saturating_sub(self.own_cells) }
     }
 
     fn measurement(&self) -> Measurement {
@@ -267,15 +292,14 @@ impl Balance {
         let (weights, shares) = match self.options.mode {
             BalanceMode::Off | BalanceMode::Initial => return Ok(0.0),
             BalanceMode::Forced { seed } => match forced(seed, step, comm.size()) {
-                Some(shares) => ([1, 1, 1], shares),
+                Some(shares) => (IntegerWeights { particle: 1, candidate: 1, wall: 1, cell: 0 }, shares),
                 None => return Ok(0.0),
             },
             BalanceMode::Dynamic | BalanceMode::AtOnce { .. } => {
                 if !self.due(step) {
                     return Ok(0.0);
                 }
-                let weights = self.model.weights();
-                ([weights.particle, weights.candidate, weights.wall], self.shares())
+                (self.model.weights(), self.shares())
             }
         };
         let start = Instant::now();
@@ -293,8 +317,8 @@ impl Balance {
         let Some(latest) = &self.latest else {
             return self.model.shares();
         };
-        let load = |load: &Load| (load.work(), load.particles.saturating_sub(load.owned));
-        self.model.shares_beside_ghosts(&latest.loads.iter().map(load).collect::<Vec<_>>())
+        let load = |load: &Load| (load.work(), load.of_halo());
+        self.model.shares_beside_halos(&latest.loads.iter().map(load).collect::<Vec<_>>())
     }
 
     /// Whether it is time to look, and what is seen asks for a rebalance.

@@ -5,7 +5,7 @@
 
 use crate::geometry::Grid;
 use crate::gpu::Device;
-use crate::partition::{Bisection, CellBox, Node, TOLERANCE, Tree, bisect, bisect_shared};
+use crate::partition::{Bisection, CellBox, IntegerWeights, Node, TOLERANCE, Tree, bisect, bisect_shared};
 use crate::plan::Plan;
 use crate::ranks::Communicator;
 use crate::subdomain::{Cells, GpuParticle, Place, Subdomain};
@@ -137,7 +137,7 @@ impl Decomposition {
         self.scatter();
     }
 
-    /// The weight of the particles that each rank owns by the tree, where the last step had them. Collective.
+    /// The weight of the particles and cells that each rank owns by the tree, where the last step had them. Collective.
     ///
     /// # Errors
     /// If a device or another rank fails.
@@ -146,7 +146,7 @@ impl Decomposition {
         device: &Device,
         subdomain: &mut Subdomain,
         comm: &dyn Communicator,
-        weights: [u32; 3],
+        weights: IntegerWeights,
     ) -> Result<Vec<u64>, SimulationError> {
         // Planes across the first axis, box after box.
         let mut starts = vec![0];
@@ -158,9 +158,12 @@ impl Decomposition {
             Node::Part(part) | Node::Open(part) => [3, 0, self.tree.boxes()[part].low[0], starts[part] as u32],
         };
         let cuts: Vec<[u32; 4]> = self.tree.nodes().iter().map(entry).collect();
-        let planes = subdomain.histogram(device, weights, &cuts, starts[starts.len() - 1])?;
+        let planes = subdomain.histogram(device, of_particles(weights), &cuts, starts[starts.len() - 1])?;
         let planes = comm.sum(planes)?;
-        Ok(starts.windows(2).map(|bounds| planes[bounds[0]..bounds[1]].iter().sum()).collect())
+        let weight = |(bounds, extent): (&[usize], &CellBox)| {
+            planes[bounds[0]..bounds[1]].iter().sum::<u64>() + u64::from(weights.cell) * extent.cells()
+        };
+        Ok(starts.windows(2).zip(self.tree.boxes()).map(weight).collect())
     }
 
     /// Cuts anew so that each rank has its share of the weights that the devices measured where the last step
@@ -174,14 +177,16 @@ impl Decomposition {
         device: &Device,
         subdomain: &mut Subdomain,
         comm: &dyn Communicator,
-        weights: [u32; 3],
+        weights: IntegerWeights,
         shares: &[f64],
     ) -> Result<(), SimulationError> {
         let mut bisection = Bisection::new(self.tree.root(), shares, Some(&self.tree), TOLERANCE)?;
         while !bisection.wanted().is_empty() {
             let cuts = cuts_of(bisection.partial_tree(), &bisection);
-            let own = subdomain.histogram(device, weights, &cuts, bisection.planes())?;
-            bisection.cut(&comm.sum(own)?)?;
+            let own = subdomain.histogram(device, of_particles(weights), &cuts, bisection.planes())?;
+            let mut planes = comm.sum(own)?;
+            bisection.add_cells(weights.cell, &mut planes);
+            bisection.cut(&planes)?;
         }
         let tree = bisection.finish()?;
         if tree != self.tree {
@@ -189,6 +194,11 @@ impl Decomposition {
         }
         Ok(())
     }
+}
+
+/// Those that the devices sum: the host knows how many cells there are.
+fn of_particles(weights: IntegerWeights) -> [u32; 3] {
+    [weights.particle, weights.candidate, weights.wall]
 }
 
 /// The cells that particles can be in.

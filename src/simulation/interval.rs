@@ -7,7 +7,7 @@ use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, Newborns, Remembered, Scales, Subdomain, Tables, Tallies};
+use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Subdomain, Tables, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -49,6 +49,8 @@ pub struct InFlight {
     pub phases: Vec<&'static str>,
     /// Particles on this rank, ghosts included, in the last step.
     pub present: u32,
+    /// Cells on this rank, in the last step.
+    pub cells: GridCells,
     /// What went between the ranks in it.
     pub traffic: Traffic,
 }
@@ -205,7 +207,7 @@ impl Machine<'_, '_> {
         let last = slots.len() - 1;
         let end = slots[last];
         let mut rec = Recording::new(device);
-        let mut present = 0;
+        let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in slots.into_iter().enumerate() {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k] };
             if k == last {
@@ -218,7 +220,7 @@ impl Machine<'_, '_> {
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);
                 self.subdomain.count_candidates(&mut rec, &slot);
-                present = slot.present();
+                (present, cells) = (slot.present(), self.subdomain.cells());
             } else if (k as u32 + 1).is_multiple_of(self.batch.max(1)) {
                 rec.submit();
             }
@@ -236,6 +238,6 @@ impl Machine<'_, '_> {
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
         self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();
-        Ok(InFlight { before, tallies, phases, present, traffic, interval })
+        Ok(InFlight { before, tallies, phases, present, cells, traffic, interval })
     }
 }

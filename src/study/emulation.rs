@@ -45,6 +45,8 @@ pub struct Share {
     pub candidates: f64,
     /// Particles that may meet a wall.
     pub walls: f64,
+    /// Cells of the grid, those of the halo included.
+    pub cells: f64,
     /// Time of its passes on the device; zero where the device does not time.
     pub device_seconds: f64,
     /// Those of them that go with the candidates alone, where the device tells.
@@ -184,6 +186,7 @@ fn shared_out(ranks: &[Seen], strategy: Strategy, steps: usize, settling: usize)
             share.particles = mean(|load| load.particles);
             share.candidates = mean(|load| load.candidates);
             share.walls = mean(|load| load.walls);
+            share.cells = mean(|load| load.cells);
             share.device_seconds = median(loads.iter().map(|load| load.seconds))?;
             // The same part of the middle time as of all times.
             let all: f64 = loads.iter().map(|load| load.seconds).sum();

@@ -3,13 +3,13 @@
 //! Of a step, over the subdomains r of a state:
 //!
 //! ```text
-//! work      = max_r (c_p particles_r + c_c candidates_r + c_w walls_r) / u
+//! work      = max_r (c_p particles_r + c_c candidates_r + c_w walls_r + c_s cells_r) / u
 //! time      = max_r own_r  +  max_r (stages_r latency + messages_r overhead + bytes_r / bandwidth)
 //! GPU time  = max_r work_r x (time per unit) + passes x (time per pass)
 //!             + max_r (stages_r (latency + wait) + messages_r overhead + bytes_r / bandwidth)
 //! ```
 //!
-//! c are the device seconds per particle, candidate and wall test, fitted to all subdomains of the sweep together with
+//! c are the device seconds per particle, candidate, wall test and cell, fitted to all subdomains of the sweep together with
 //! a constant per step, which is left out: so work is what sharing out can win or lose. The unit u is the work of the
 //! mean particle, so that work counts particles, ghosts among them. States count by the steps of the run that they
 //! stand for. Only own_r, the counts and the messages are measured; network and GPU are assumed.
@@ -41,12 +41,13 @@ pub struct Gpu {
     pub wait: f64,
 }
 
-/// Device seconds per particle, candidate and wall test, and what they count in.
+/// Device seconds per particle, candidate, wall test and cell, and what they count in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Costs {
     pub particle: f64,
     pub candidate: f64,
     pub wall: f64,
+    pub cell: f64,
     /// Per step, whatever is in it.
     pub step: f64,
     /// Of the mean particle.
@@ -68,8 +69,8 @@ impl Costs {
         if !measurements.is_empty() {
             model.observe(&measurements);
         }
-        let [particle, candidate, wall, step] = model.coefficients();
-        let mut costs = Costs { particle, candidate, wall, step, unit: 1.0 };
+        let [particle, candidate, wall, cell, step] = model.coefficients();
+        let mut costs = Costs { particle, candidate, wall, cell, step, unit: 1.0 };
         let particles: f64 = shares.iter().map(|share| share.particles).sum();
         let all: f64 = shares.iter().map(|share| costs.of(share)).sum();
         if all > 0.0 {
@@ -80,7 +81,10 @@ impl Costs {
 
     /// s, or whatever the coefficients are in.
     fn of(&self, share: &Share) -> f64 {
-        self.particle * share.particles + self.candidate * share.candidates + self.wall * share.walls
+        self.particle * share.particles
+            + self.candidate * share.candidates
+            + self.wall * share.walls
+            + self.cell * share.cells
     }
 
     /// In units.
@@ -94,6 +98,7 @@ fn work_of(share: &Share) -> Work {
         particles: share.particles.round() as u64,
         candidates: share.candidates.round() as u64,
         wall_tests: share.walls.round() as u64,
+        cells: share.cells.round() as u64,
         steps: 1,
     }
 }
@@ -195,7 +200,7 @@ mod tests {
         Emulated { strategy: Strategy::Dynamic, shares, passes: 20.0, after: Some(1.02) }
     }
 
-    const COSTS: Costs = Costs { particle: 2e-6, candidate: 0.0, wall: 0.0, step: 0.0, unit: 2e-6 };
+    const COSTS: Costs = Costs { particle: 2e-6, candidate: 0.0, wall: 0.0, cell: 0.0, step: 0.0, unit: 2e-6 };
     const NETWORK: Network = Network { latency: 1e-3, overhead: 1e-4, bandwidth: 1e6 };
     const GPU: Gpu = Gpu { unit: 1e-6, pass: 1e-5, wait: 1e-4 };
 
@@ -240,9 +245,9 @@ mod tests {
     fn costs_are_those_of_the_device_times() {
         let sizes = [1e3, 3e3, 1e4, 4e4, 1e5, 2e5];
         let measured = |candidates: f64, k: f64| {
-            let (particles, candidates, walls) = (k, candidates * k, 0.05 * k.sqrt());
-            let device_seconds = 1e-4 + 1e-7 * particles + 1e-8 * candidates + 1e-7 * walls;
-            Share { particles, candidates, walls, device_seconds, ..Share::default() }
+            let (particles, candidates, walls, cells) = (k, candidates * k, 0.05 * k.sqrt(), 8.0 * k.sqrt());
+            let device_seconds = 1e-4 + 1e-7 * particles + 1e-8 * candidates + 1e-7 * walls + 1e-9 * cells;
+            Share { particles, candidates, walls, cells, device_seconds, ..Share::default() }
         };
         let shares: Vec<Share> =
             sizes.iter().flat_map(|&k| [1.0, 8.0, 30.0].map(|candidates| measured(candidates, k))).collect();

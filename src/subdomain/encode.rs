@@ -382,10 +382,8 @@ impl Subdomain {
         }
     }
 
-    /// Cells with bins.
     fn bins(&self) -> u64 {
-        let (_, size) = self.place.bins(self.domain.plan.grid.cells);
-        size.iter().map(|&n| u64::from(n)).product()
+        self.cells().all
     }
 
     pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {

@@ -40,7 +40,7 @@ pub use layout::{
     GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
-pub use place::{Cells, Ghosts, Place};
+pub use place::{Cells, Ghosts, GridCells, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
 pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
@@ -163,6 +163,10 @@ impl Subdomain {
 
     pub fn place(&self) -> &Place {
         &self.place
+    }
+
+    pub fn cells(&self) -> GridCells {
+        self.place.cells(self.domain.plan.grid.cells)
     }
 
     /// Bytes of the buffers that grow with the particles.

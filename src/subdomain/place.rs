@@ -16,6 +16,14 @@ impl Cells {
     }
 }
 
+/// How many cells of the grid a subdomain has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct GridCells {
+    /// With bins: the own ones, the halo and a layer around it.
+    pub all: u64,
+    pub own: u64,
+}
+
 /// Which of the outermost ghosts that choose partners do so. The choice of a ghost matters only if a particle farther
 /// in has chosen it; all choices are functions of the state, so this changes no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -61,6 +69,12 @@ impl Place {
         let low = self.own.low.map(|low| low.saturating_sub(around));
         let size = std::array::from_fn(|axis| (self.own.high[axis] + around).min(grid[axis]) - low[axis]);
         (low, size)
+    }
+
+    pub(super) fn cells(&self, grid: [u32; 3]) -> GridCells {
+        let number = |size: [u32; 3]| size.iter().map(|&n| u64::from(n)).product();
+        let own = std::array::from_fn(|axis| self.own.high[axis] - self.own.low[axis]);
+        GridCells { all: number(self.bins(grid).1), own: number(own) }
     }
 
     /// The own cells that no other subdomain has in its halo; none of them where particles are scattered.

@@ -205,6 +205,33 @@ fn old_cuts_stay_under_small_changes() {
     }
 }
 
+/// Cells that weigh something have the cuts of as many points, one in each.
+#[test]
+fn cells_weigh_as_a_point_in_each() {
+    let root = grid([20, 14, 9]);
+    let gas = points(root, &positions(Cloud::Clustered, 3_000, 4), 5);
+    for parts in [2, 5, 16] {
+        let shares = vec![1.0; parts];
+        let mut bisection = Bisection::new(root, &shares, None, TOLERANCE).unwrap();
+        while !bisection.wanted().is_empty() {
+            let mut planes = vec![0; bisection.planes()];
+            for slice in bisection.wanted() {
+                for (cell, weight) in gas.iter().filter(|(cell, _)| slice.extent.contains(*cell)) {
+                    planes[slice.offset + (cell[slice.axis] - slice.extent.low[slice.axis]) as usize] += weight;
+                }
+            }
+            bisection.add_cells(7, &mut planes);
+            bisection.cut(&planes).unwrap();
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| root.low[axis]..root.high[axis]);
+        let cells = z.flat_map(|z| y.clone().map(move |y| (y, z)));
+        let cells = cells.flat_map(|(y, z)| x.clone().map(move |x| ([x, y, z], 7)));
+        let tree = bisect(root, &shares, None, gas.iter().copied().chain(cells)).unwrap();
+        assert_eq!(bisection.finish().unwrap(), tree, "{parts} parts");
+        assert_ne!(tree, bisect(root, &shares, None, gas.iter().copied()).unwrap(), "{parts} parts: they do weigh");
+    }
+}
+
 /// Without weight the shares are those of space.
 #[test]
 fn an_empty_grid_is_cut_by_volume() {

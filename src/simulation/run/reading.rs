@@ -23,7 +23,8 @@ impl Simulation<'_> {
             let (mut sums, mut maxima) = own.to_words();
             maxima.push(self.wish.weight());
             let seconds = self.step_seconds(&flight.phases, &stamps, &flight.traffic);
-            sums.extend(Load::new(seconds, flight.present, &own, &flight.traffic).to_words(self.ranks.comm()));
+            let load = Load::new(seconds, flight.present, flight.cells, &own, &flight.traffic);
+            sums.extend(load.to_words(self.ranks.comm()));
             let reduction = self.ranks.comm().start_reduction(sums, maxima)?;
             flight.tallies = Pending::Reducing(Box::new(own), stamps, reduction);
         }
