@@ -12,7 +12,6 @@ override ROUNDS: u32;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
-@group(0) @binding(28) var<storage, read> touched: array<u32>;
 @group(0) @binding(32) var<storage, read> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -26,7 +25,8 @@ fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
         return;
     }
     // Where both have just chosen, the lower id speaks for the pair.
-    let both = touched[other] == step.round + 1u;
+    let other_mark = layers[other];
+    let both = (other_mark & (CHOOSES << step.round)) != 0u;
     let first = id_of(sorted[s].tag) < id_of(sorted[other].tag);
     if (both && !first) {
         return;
@@ -35,7 +35,7 @@ fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
     if (HALO) {
         // Farther from the own cells the choices of this round may lack what other devices know.
         let own_layer = layers[s] & LAYER;
-        let other_layer = layers[other] & LAYER;
+        let other_layer = other_mark & LAYER;
         if (min(own_layer, other_layer) > step.reach) {
             return;
         }

@@ -1,7 +1,7 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl
 // The neighbour lists, as far as they are short (search.wgsl).
 //
-// Reads what the search does and `sorted`; reads and writes `layers` and `touched`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
+// Reads what the search does and `sorted`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
 // nobody has chosen; appends longer lists to the first half of `long_lists`, to its second those with neighbours that may be
 // behind a wall, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
@@ -16,7 +16,6 @@ const KEPT: u32 = 4;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
-@group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
 fn has_list(s: u32) -> bool {

@@ -15,7 +15,6 @@
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
-@group(0) @binding(28) var<storage, read_write> touched: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(44) var<storage, read_write> origins: array<u32>;
@@ -72,7 +71,6 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
     flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
     middles[place] = packed(middle) | flags;
-    touched[place] = 0u;
     neighbour_count[place] = 0u;
     var share = 0u;
     if (CAPPED) {

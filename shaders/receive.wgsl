@@ -11,7 +11,6 @@
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
-@group(0) @binding(32) var<storage, read> layers: array<u32>;
 @group(0) @binding(39) var<storage, read> updates_in: array<Update>;
 
 // Those who choose and may have a particle in their lists that has none itself.
@@ -28,7 +27,7 @@ fn touch_around(s: u32, cell: vec3<u32>) {
             let last = cell_start[row + max(high.x, low.x) - low.x];
             for (var j = cell_start[row]; j < last; j++) {
                 let away = packed_between(middle, middles[j]);
-                if (dot(away, away) < near && (layers[j] & LAYER) < step.depth) {
+                if (dot(away, away) < near && (atomicLoad(&layers[j]) & LAYER) < step.depth) {
                     touch(j);
                 }
             }
@@ -58,7 +57,7 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     sorted[s] = after;
     flights[s] = packed_flight(updates_in[entry].flight);
     touch(s);
-    if (has_list_at(layers[s] & LAYER)) {
+    if (has_list_at(atomicLoad(&layers[s]) & LAYER)) {
         touch_neighbours(s);
     } else {
         touch_around(s, cell);

@@ -5,7 +5,7 @@
 // cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
 // back along the line of their centres.
 //
-// Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `touched`,
+// Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `layers`,
 // and appends the particles that this may make choose otherwise to `rechoose`, and those that other
 // devices must be told of to `changed`. One thread per pair. Pairs are
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
@@ -21,7 +21,6 @@ override FASTEST2: f32;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(16) var<storage, read> pairs: array<vec2<u32>>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(37) var<storage, read_write> changed: array<u32>;
 
 // A unit vector perpendicular to the unit vector u.
@@ -63,15 +62,15 @@ fn turned(sigma2: f32, miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> 
 
 // Notes a particle that other devices have as a ghost.
 fn tell(s: u32) {
-    let mark = layers[s];
-    if ((mark & SHARED) != 0u && (mark & LISTED) == 0u) {
-        layers[s] = mark | LISTED;
+    if ((atomicLoad(&layers[s]) & (SHARED | LISTED)) == SHARED) {
+        // (Others may let it choose meanwhile.)
+        atomicOr(&layers[s], LISTED);
         changed[append(LIST_CHANGED)] = s;
     }
 }
 
 fn is_own(s: u32) -> bool {
-    return (layers[s] & LAYER) == 0u;
+    return (atomicLoad(&layers[s]) & LAYER) == 0u;
 }
 
 @compute @workgroup_size(WORKGROUP)

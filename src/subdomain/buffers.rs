@@ -259,14 +259,14 @@ impl ExchangeBuffers {
 /// Of the buffers that grow with the number of particles, on a device alone.
 pub fn bytes_per_particle(collisions: bool, rounds: bool, tails: u64) -> u64 {
     let particle = size_of::<GpuParticle>() as u64;
-    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `flights`, `cells`, `middles`, `touched`, the lengths of
+    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `flights`, `cells`, `middles`, the lengths of
     // the lists and their tails, and the copy that is kept to run an interval again.
     let mut bytes = particle + 4;
     if collisions {
         bytes += particle + 8 + 8 + 4;
     }
     if rounds {
-        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 + 4 * tails + particle;
+        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails + particle;
     }
     bytes
 }
@@ -296,7 +296,6 @@ pub struct ParticleBuffers {
     pub remembered: wgpu::Buffer,
     pub neighbour_count: wgpu::Buffer,
     pub cells: wgpu::Buffer,
-    pub touched: wgpu::Buffer,
     pub layers: wgpu::Buffer,
     /// On a device among others.
     pub changed: wgpu::Buffer,
@@ -334,7 +333,6 @@ impl ParticleBuffers {
             flights: device.storage::<GpuFlight>("flights", chosen)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
-            touched: device.storage::<u32>("touched", chosen)?,
             neighbours: match apart {
                 true => Some(device.storage::<u32>("neighbours", DIRECT * capacity + tails)?),
                 false => None,
@@ -353,7 +351,7 @@ impl ParticleBuffers {
         self.buffers().iter().map(|buffer| buffer.size()).sum::<u64>() + apart
     }
 
-    fn buffers(&self) -> [&wgpu::Buffer; 16] {
+    fn buffers(&self) -> [&wgpu::Buffer; 15] {
         [
             &self.particles,
             &self.newborns,
@@ -366,7 +364,6 @@ impl ParticleBuffers {
             &self.remembered,
             &self.neighbour_count,
             &self.cells,
-            &self.touched,
             &self.layers,
             &self.changed,
             &self.asked,
@@ -443,7 +440,6 @@ impl<'a> Buffers<'a> {
             (_, "remembered") => &particle.remembered,
             (_, "neighbour_count") => &particle.neighbour_count,
             (_, "cells") => &particle.cells,
-            (_, "touched") => &particle.touched,
             (_, "layers") => &particle.layers,
             (_, "changed") => &particle.changed,
             (_, "asked") => &particle.asked,

@@ -50,7 +50,6 @@ impl Cloud {
         // All of them choose in the first round.
         rig.put("rechoose", &(0..count as u32).collect::<Vec<_>>());
         rig.set_counter(LIST_RECHOOSE, count as u32);
-        rig.put("touched", &vec![0u32; count]);
         rig
     }
 

@@ -208,7 +208,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     rig.put("flights", &vec![GpuFlight::default(); COUNT]);
     rig.put("origins", &vec![0u32; COUNT]);
-    for buffer in ["middles", "cells", "touched", "neighbour_count", "near_walls"] {
+    for buffer in ["middles", "cells", "neighbour_count", "near_walls"] {
         rig.put(buffer, &vec![9u32; COUNT]);
     }
     let (low, high) = (crowd.near.low, crowd.near.high);

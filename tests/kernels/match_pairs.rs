@@ -44,7 +44,10 @@ fn mutual_choices(among_others: bool) {
     let id = |s: usize| particles[s].id();
     for round in [0, 1, ROUNDS] {
         let chose: BTreeSet<u32> = (0..COUNT as u32).filter(|_| stream.below(3) == 0).collect();
-        let touched: Vec<u32> = (0..COUNT as u32).map(|s| if chose.contains(&s) { round + 1 } else { round }).collect();
+        // All chose in the rounds before.
+        let before = (CHOOSES << round) - CHOOSES;
+        let layers: Vec<u32> =
+            (0..COUNT as u32).map(|s| before | if chose.contains(&s) { CHOOSES << round } else { 0 }).collect();
         let mut entries: Vec<u32> = chose.iter().copied().collect();
         stream.shuffle(&mut entries);
         let mut expected: Vec<[u32; 2]> = Vec::new();
@@ -61,7 +64,7 @@ fn mutual_choices(among_others: bool) {
         rig.put("sorted", &particles);
         rig.put("choices", &choices);
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
-        rig.put("touched", &touched);
+        rig.put("layers", &layers);
         rig.put("rechoose", &entries);
         rig.set_counter(LIST_RECHOOSE + round as usize, entries.len() as u32);
         rig.step(GpuStep { count: COUNT as u32, round, ..GpuStep::default() });
@@ -112,9 +115,8 @@ fn pairs_beyond_reach_are_left_to_others_and_each_is_counted_by_one() {
         rig.put("sorted", &particles);
         rig.put("choices", &choices);
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
-        rig.put("touched", &vec![round + 1; COUNT]);
         rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
-        rig.put("layers", &layers);
+        rig.put("layers", &layers.iter().map(|mark| mark | CHOOSES << round).collect::<Vec<_>>());
         rig.set_counter(LIST_RECHOOSE + round as usize, COUNT as u32);
         rig.step(GpuStep { count: COUNT as u32, round, reach, ..GpuStep::default() });
         rig.run("match_pairs", COUNT);

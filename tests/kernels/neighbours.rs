@@ -66,7 +66,6 @@ impl Crowd {
         put_room(&mut self.rig, COUNT, tails);
         self.rig.put("neighbour_count", &vec![0u32; COUNT]);
         self.rig.put("layers", &vec![0u32; COUNT]);
-        self.rig.put("touched", &vec![0u32; COUNT]);
         self.rig.put("rechoose", &vec![NOBODY; COUNT]);
         self.rig.run("neighbours", COUNT);
         lengthen(&self.rig, false);
@@ -205,7 +204,6 @@ fn the_outermost_ghosts_have_no_neighbours() {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
         crowd.rig.put("layers", &layers);
-        crowd.rig.put("touched", &vec![0u32; COUNT]);
         crowd.rig.put("rechoose", &vec![NOBODY; COUNT]);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {

@@ -60,6 +60,7 @@ pub const SOLID: u32 = 3;
 pub const SHARED: u32 = 0x100;
 pub const LISTED: u32 = 0x200;
 pub const NEAR: u32 = 0x400;
+pub const CHOOSES: u32 = 0x10000;
 /// Threads of the largest dispatch over particles.
 const MOST_PARTICLES: usize = 8192;
 

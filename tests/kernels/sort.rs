@@ -141,7 +141,7 @@ fn order_is_canonical() {
         rig.put("slots", &slots);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         rig.put("flights", &vec![GpuFlight::default(); COUNT]);
-        for buffer in ["middles", "cells", "touched", "neighbour_count", "near_walls"] {
+        for buffer in ["middles", "cells", "neighbour_count", "near_walls"] {
             rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
         }
         rig.step(GpuStep {
@@ -170,7 +170,6 @@ fn order_is_canonical() {
         };
         assert_eq!(flights, expected.iter().zip(&canonical).map(new).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
-        assert_eq!(rig.get::<u32>("touched", COUNT), vec![0; COUNT]);
         assert_eq!(rig.get::<u32>("neighbour_count", COUNT + EMPTY), vec![0; COUNT + EMPTY]);
         let middles: Vec<u32> = rig.get("middles", COUNT);
         for (s, p) in expected.iter().enumerate() {

@@ -35,8 +35,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
         "sort" => {
-            // Slot, cell, layer, flight, middle, mark of the rounds and length of the list.
-            let of_rounds = if rounds { FLIGHT + 6.0 * WORD } else { 0.0 };
+            // Slot, cell, layer and marks, flight, middle and length of the list.
+            let of_rounds = if rounds { FLIGHT + 5.0 * WORD } else { 0.0 };
             n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
                 + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
         }
