@@ -1,13 +1,15 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl lists.wgsl asked.wgsl walls.wgsl neighbour_list.wgsl
 // Takes from the neighbour lists near walls those that stand behind a wall where their flights start.
 //
-// Reads `sorted`, `flights` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
+// Reads `sorted`, `flights`, `middles` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
 // per entry of the second half of `long_lists`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
-// and so the start of the step is taken from `particles` and `newborns`. The test of a pair takes the lower id first, so both sides agree.
+// and so the start of the step is taken from `particles` and `newborns`. The test of a pair takes the lower id first, and only pairs near
+// walls are tested, whoever else is in the list: so both sides agree.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(58) var<storage, read> long_lists: array<u32>;
@@ -45,12 +47,17 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let tail = tail_of(s, listed, stride);
     let tag = sorted[s].tag;
     let place = first_place(s);
+    let middle = middles[s];
     var kept = 0u;
     for (var k = 0u; k < listed; k++) {
         let j = neighbours[entry_of(s, k, listed, stride, tail)];
-        let there = first_place(j);
-        let first = id_of(tag) < id_of(sorted[j].tag);
-        if (!blocked(select(there, place, first), select(place, there, first), 0.0)) {
+        var apart = false;
+        if (((middle | middles[j]) & NEAR_WALL) != 0u) {
+            let there = first_place(j);
+            let first = id_of(tag) < id_of(sorted[j].tag);
+            apart = blocked(select(there, place, first), select(place, there, first), 0.0);
+        }
+        if (!apart) {
             neighbours[entry_of(s, kept, listed, stride, tail)] = j;
             kept++;
         }

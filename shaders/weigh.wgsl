@@ -1,6 +1,6 @@
 //! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl add64.wgsl
 // Where the work of the last step was: sums of the particles' weights over the planes of cells of the boxes
-// that are to be cut (recursive coordinate bisection), and the entries of all neighbour lists.
+// that are to be cut (recursive coordinate bisection), and the entries of all neighbour lists, those of ghosts apart.
 //
 // Reads `cells`, `layers`, `neighbour_count` and the tree of cuts so far, `cuts`; writes the integer tally `sums`,
 // two words a plane. One thread per particle, which descends the tree; ghosts are weighed by their owners.
@@ -38,6 +38,10 @@ fn weigh(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let mark = layers[s];
     if (weights.cuts == 0u) {
         atomicAdd(&counters[CANDIDATES], listed);
+        if ((mark & LAYER) != 0u) {
+            atomicAdd(&counters[GHOST_CANDIDATES], listed);
+            atomicAdd(&counters[GHOST_WALLS], select(0u, 1u, (mark & NEAR) != 0u));
+        }
         return;
     }
     if ((mark & LAYER) != 0u) {

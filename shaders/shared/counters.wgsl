@@ -19,4 +19,6 @@ const MISSING: u32 = 46;            // updates of ghosts that are not here
 const CANDIDATES: u32 = 47;         // entries of the neighbour lists at the last step before the read
 const MOVED: u32 = 48;              // particles that came from another owner since the last read
 const FAST_PAIRS: u32 = 49;         // collisions of pairs faster than the plan's fastest since the last read
-const GOES_BACK: u32 = 50;           // whether an interval must run again; the host alone clears it
+const GHOST_CANDIDATES: u32 = 50;    // of CANDIDATES those of ghosts
+const GHOST_WALLS: u32 = 51;         // ghosts that may meet a wall in that step
+const GOES_BACK: u32 = 52;           // whether an interval must run again; the host alone clears it

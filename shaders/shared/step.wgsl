@@ -51,6 +51,8 @@ struct Step {
     slot: u32,
     // The square of the distance, in 1/128 cells, below which two particles of the largest diameter may meet.
     near2: u32,
+    // Layers of cells around the own ones beyond which particles stray; 0 where all other devices are peers.
+    flight: u32,
 }
 
 override WORKGROUP: u32 = 64;

@@ -44,13 +44,6 @@ pub struct Work {
     pub steps: u64,
 }
 
-/// What of a rank's [`Work`] is others' by right, in a step.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
-pub struct HaloWork {
-    pub ghosts: u64,
-    pub cells: u64,
-}
-
 /// What a rank did and the device seconds that it took.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Measurement {
@@ -179,6 +172,11 @@ impl CostModel {
         work.units().iter().zip(&self.scaled).map(|(unit, scaled)| unit * scaled).sum()
     }
 
+    /// The seconds that the work takes on the device of a rank.
+    pub fn seconds(&self, rank: usize, work: &Work) -> f64 {
+        self.cost(work) / libm::exp(self.ranks[rank].speed)
+    }
+
     /// The speeds of the ranks' devices, of mean 1.
     pub fn speeds(&self) -> Vec<f64> {
         let speeds: Vec<f64> = self.ranks.iter().map(|rank| libm::exp(rank.speed)).collect();
@@ -195,15 +193,15 @@ impl CostModel {
     }
 
     /// As [`CostModel::shares`], less for a rank with a larger halo: its ghosts and cells cost it time, but are weighed
-    /// where they are owned. `loads`: what each rank did, and what of it was its halo's. With own weight w, cost of
+    /// where they are owned. `loads`: what each rank did, and what of it was its halo's, without steps. With own weight w, cost of
     /// the halo h and speed v all times (w + h)/v are to be the same: w = v t - h.
     ///
     /// # Panics
     /// If the number of loads is not that of the ranks.
-    pub fn shares_beside_halos(&self, loads: &[(Work, HaloWork)]) -> Vec<f64> {
+    pub fn shares_beside_halos(&self, loads: &[(Work, Work)]) -> Vec<f64> {
         assert_eq!(loads.len(), self.ranks.len(), "one load per rank");
         let speeds = self.shares();
-        let [particle, .., cell, step] = self.coefficients();
+        let [.., step] = self.coefficients();
         let all: f64 = loads.iter().map(|(work, _)| self.cost(work) - step * work.steps as f64).sum();
         if self.by == By::Particles || all <= 0.0 {
             return speeds;
@@ -211,9 +209,8 @@ impl CostModel {
         let count = loads.len() as f64;
         let time = all / count;
         let wanted = speeds.iter().zip(loads).map(|(speed, (_, halo))| {
-            let beside = particle * halo.ghosts as f64 + cell * halo.cells as f64;
             // A rank with hardly anything but ghosts keeps a part.
-            (speed * time - beside).max(LEAST_SHARE * speed * time)
+            (speed * time - self.cost(halo)).max(LEAST_SHARE * speed * time)
         });
         let wanted: Vec<f64> = wanted.collect();
         let mean = wanted.iter().sum::<f64>() / count;

@@ -21,7 +21,7 @@ mod trigger;
 
 pub use bisection::{Bisection, Slice};
 pub use cell_box::CellBox;
-pub use cost::{By, CostModel, HaloWork, IntegerWeights, Measurement, Work};
+pub use cost::{By, CostModel, IntegerWeights, Measurement, Work};
 pub use host::{bisect, bisect_shared, decompose, moved};
 pub use tree::{Node, Tree};
 pub use trigger::{Decision, Trigger};

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use crate::gpu::Device;
-use crate::partition::{By, CostModel, Decision, HaloWork, IntegerWeights, Measurement, Trigger, Work};
+use crate::partition::{By, CostModel, Decision, IntegerWeights, Measurement, Trigger, Work};
 use crate::ranks::Communicator;
 use crate::subdomain::{GridCells, Subdomain, Tallies};
 
@@ -35,6 +35,9 @@ pub struct Load {
     pub walls: u64,
     /// Cells of its grid, those of its halo included.
     pub cells: u64,
+    /// Of candidates and walls those of ghosts.
+    pub ghost_candidates: u64,
+    pub ghost_walls: u64,
     /// Particles and cells that it owns.
     pub owned: u64,
     pub own_cells: u64,
@@ -47,7 +50,7 @@ pub struct Load {
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 12;
+const LOAD_WORDS: usize = 14;
 
 impl Load {
     /// `seconds`: all, and those of pairs; `present`: particles here; `traffic`: that of the interval.
@@ -65,6 +68,8 @@ impl Load {
             candidates: own.counters.candidates.into(),
             walls: own.counters.near_walls.into(),
             cells: cells.all,
+            ghost_candidates: own.counters.ghost_candidates.into(),
+            ghost_walls: own.counters.ghost_walls.into(),
             owned: own.blocks.iter().map(|block| block.number).sum(),
             own_cells: cells.own,
             moved: own.counters.moved.into(),
@@ -92,6 +97,8 @@ impl Load {
             self.pair_seconds.map_or(0, |seconds| 1 + nanoseconds(seconds)),
             self.cells,
             self.own_cells,
+            self.ghost_candidates,
+            self.ghost_walls,
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -113,6 +120,8 @@ impl Load {
             pair_seconds: w[9].checked_sub(1).map(|nanoseconds| 1e-9 * nanoseconds as f64),
             cells: w[10],
             own_cells: w[11],
+            ghost_candidates: w[12],
+            ghost_walls: w[13],
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }
@@ -128,8 +137,15 @@ impl Load {
         }
     }
 
-    fn of_halo(&self) -> HaloWork {
-        HaloWork { ghosts: self.particles.saturating_sub(self.owned), cells: self.cells.saturating_sub(self.own_cells) }
+    /// What of it was of ghosts and of the cells around the own ones.
+    fn of_halo(&self) -> Work {
+        Work {
+            particles: self.particles.saturating_sub(self.owned),
+            candidates: self.ghost_candidates,
+            wall_tests: self.ghost_walls,
+            cells: self.cells.saturating_sub(self.own_cells),
+            steps: 0,
+        }
     }
 
     fn measurement(&self) -> Measurement {
@@ -228,10 +244,7 @@ impl Balance {
         self.model.observe(&measured);
         let predicted: Vec<f64> = match self.options.by {
             By::Particles => loads.iter().map(|load| load.owned as f64).collect(),
-            By::Cost => {
-                let speeds = self.model.speeds();
-                loads.iter().zip(speeds).map(|(load, speed)| self.model.cost(&load.work()) / speed).collect()
-            }
+            By::Cost => loads.iter().enumerate().map(|(rank, load)| self.model.seconds(rank, &load.work())).collect(),
         };
         if self.since.is_none_or(|since| first_step >= since) {
             let unit = self.unit(&loads);
@@ -304,7 +317,13 @@ impl Balance {
         };
         let start = Instant::now();
         let before = decomposition.weights(device, subdomain, comm, weights)?;
-        decomposition.rebalance(device, subdomain, comm, weights, &shares)?;
+        let moved = decomposition.rebalance(device, subdomain, comm, weights, &shares)?;
+        if !moved && self.options.mode == BalanceMode::Dynamic {
+            if let Some(trigger) = &mut self.trigger {
+                trigger.kept();
+            }
+            return Ok(start.elapsed().as_secs_f64());
+        }
         let after = decomposition.weights(device, subdomain, comm, weights)?;
         let over = |weights: &[u64]| imbalance(weights.iter().zip(&shares).map(|(&w, share)| w as f64 / share));
         self.rebalances.push((step, [over(&before), over(&after)]));

@@ -14,7 +14,7 @@ use super::SimulationError;
 use super::exchange::Exchange;
 use super::tuning::Halo;
 
-/// Layers of cells beyond the halo from which a particle may come in a step. A particle that flew farther is
+/// Layers of cells beyond the halo from which a particle may come in a step. One that flew farther is
 /// found by its owner of the step before, and the interval is run again with everyone as a peer.
 const FLIGHT: u32 = 6;
 
@@ -75,6 +75,7 @@ impl Decomposition {
             ghosts: self.halo.ghosts,
             peers: peers.iter().map(|&rank| cells(&boxes[rank])).collect(),
             near,
+            flight: if everyone { 0 } else { FLIGHT },
             scattered: self.scattered,
         };
         (peers, place)
@@ -167,8 +168,8 @@ impl Decomposition {
     }
 
     /// Cuts anew so that each rank has its share of the weights that the devices measured where the last step
-    /// had its particles. Old cuts stay where balance allows. Collective; the histograms are summed over the
-    /// ranks, so that all find the same cuts.
+    /// had its particles. Old cuts stay where balance allows; whether any has moved. Collective; the histograms are summed
+    /// over the ranks, so that all find the same cuts.
     ///
     /// # Errors
     /// If a device or another rank fails.
@@ -179,7 +180,7 @@ impl Decomposition {
         comm: &dyn Communicator,
         weights: IntegerWeights,
         shares: &[f64],
-    ) -> Result<(), SimulationError> {
+    ) -> Result<bool, SimulationError> {
         let mut bisection = Bisection::new(self.tree.root(), shares, Some(&self.tree), TOLERANCE)?;
         while !bisection.wanted().is_empty() {
             let cuts = cuts_of(bisection.partial_tree(), &bisection);
@@ -189,10 +190,11 @@ impl Decomposition {
             bisection.cut(&planes)?;
         }
         let tree = bisection.finish()?;
-        if tree != self.tree {
+        let moves = tree != self.tree;
+        if moves {
             self.replace(tree);
         }
-        Ok(())
+        Ok(moves)
     }
 }
 

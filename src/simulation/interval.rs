@@ -215,7 +215,7 @@ impl Machine<'_, '_> {
             } else {
                 rec.time_alone(self.timer.filter(|_| sampling.lost), LOST);
             }
-            self.subdomain.begin_step(device, &mut slot)?;
+            self.subdomain.begin_step(&mut rec, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);

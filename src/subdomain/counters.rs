@@ -1,7 +1,7 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words that are read.
-pub const WORDS: usize = 50;
+pub const WORDS: usize = 52;
 /// Words of the buffer: `GOES_BACK` is the device's own.
 pub const ALL_WORDS: usize = WORDS + 1;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
@@ -49,6 +49,9 @@ pub struct Counters {
     /// Of the last step: entries of all neighbour lists, and particles that may meet a wall.
     pub candidates: u32,
     pub near_walls: u32,
+    /// Of these on this device those of ghosts.
+    pub ghost_candidates: u32,
+    pub ghost_walls: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
     pub choosers: [u32; MOST_ROUNDS],
 }
@@ -74,6 +77,8 @@ impl Counters {
             fast_pairs: words[49],
             candidates: words[47],
             near_walls: words[NEAR_WALLS],
+            ghost_candidates: words[50],
+            ghost_walls: words[51],
             choosers: std::array::from_fn(|round| words[RECHOOSE + round]),
         }
     }

@@ -126,7 +126,7 @@ impl Subdomain {
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
         let Newborns { of_step, list, first_id, stride } = *newborns;
-        self.make_room(device, list.len() as u64, list.len() as u64, 0)?;
+        self.make_room(&mut Recording::new(device), list.len() as u64, list.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
@@ -198,12 +198,12 @@ impl Subdomain {
     ///
     /// # Errors
     /// If room must be made and the device has none.
-    pub fn begin_step(&mut self, device: &Device, slot: &mut StepSlot) -> Result<(), GpuError> {
+    pub fn begin_step(&mut self, rec: &mut Recording<'_>, slot: &mut StepSlot) -> Result<(), GpuError> {
         if !self.place.is_alone() {
-            self.make_room(device, slot.newborns.into(), 0, 0)?;
+            self.make_room(rec, slot.newborns.into(), 0, 0)?;
             slot.count = self.count;
             slot.total = self.count + slot.newborns;
-            self.write_parameters(device, slot);
+            self.write_parameters(rec.device(), slot);
         }
         Ok(())
     }
@@ -256,6 +256,7 @@ impl Subdomain {
                 tallies_left: slot.tallies_left,
                 slot: slot.slot,
                 near2: slot.near2,
+                flight: self.place.flight,
                 ..GpuStep::default()
             };
             let at = stride * at as usize;

@@ -160,7 +160,7 @@ impl Subdomain {
         let device = rec.device();
         let slots = u64::from(step.count) + u64::from(step.newborns);
         let arrivals = messages.iter().map(|message| message.len() as u64 / PARTICLE).sum::<u64>();
-        self.make_room(device, slots - u64::from(self.count) + arrivals, 0, 0)?;
+        self.make_room(rec, slots - u64::from(self.count) + arrivals, 0, 0)?;
         device.write_joined(&self.particle.particles, slots * PARTICLE, messages)?;
         step.arrivals = arrivals as u32;
         step.total += step.arrivals;

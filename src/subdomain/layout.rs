@@ -33,7 +33,7 @@ pub struct GpuStep {
     pub tallies_left: u32,
     pub slot: u32,
     pub near2: u32,
-    pub pad: u32,
+    pub flight: u32,
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.

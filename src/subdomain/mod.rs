@@ -239,12 +239,13 @@ impl Subdomain {
     }
 
     /// Makes room for `more` particles in the slots after those in use, for `newborns` of an interval, and for
-    /// `tails` entries of the tails of neighbour lists. Particles and bins are copied on the device, in order with the work
-    /// already submitted.
+    /// `tails` entries of the tails of neighbour lists. Particles and bins are copied on the device once what is recorded has
+    /// run, which is submitted with the copy: a step on the way writes to the buffers of before.
     ///
     /// # Errors
     /// If the larger buffers are over the device's limits.
-    pub fn make_room(&mut self, device: &Device, more: u64, newborns: u64, tails: u64) -> Result<(), GpuError> {
+    pub fn make_room(&mut self, rec: &mut Recording<'_>, more: u64, newborns: u64, tails: u64) -> Result<(), GpuError> {
+        let device = rec.device();
         let needed = u64::from(self.count) + more;
         let room_for_newborns = self.particle.newborns.size() / size_of::<GpuNewborn>() as u64;
         let old = &self.particle;
@@ -258,7 +259,7 @@ impl Subdomain {
         let tails = tails.max(grown_tails);
         let newborn_room = room_for_newborns.max(newborns.next_power_of_two());
         let grown = ParticleBuffers::new(device, capacity, newborn_room, tails, self.domain.features)?;
-        let mut encoder = device.encoder();
+        let encoder = rec.encoder();
         for (old, new) in [
             (&self.particle.particles, &grown.particles),
             (&self.particle.bins, &grown.bins),
@@ -267,7 +268,7 @@ impl Subdomain {
         ] {
             encoder.copy_buffer_to_buffer(old, 0, new, 0, old.size().min(new.size()));
         }
-        device.submit(encoder);
+        rec.submit();
         self.particle = grown;
         self.rebind(device)
     }
@@ -277,8 +278,9 @@ impl Subdomain {
     /// # Errors
     /// If it has no room for those that are wanted.
     pub fn make_room_for_tails(&mut self, device: &Device, wanted: u64, more: f64) -> Result<(), GpuError> {
-        match self.make_room(device, 0, 0, wanted + (wanted as f64 * more) as u64) {
-            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(device, 0, 0, wanted),
+        let mut rec = Recording::new(device);
+        match self.make_room(&mut rec, 0, 0, wanted + (wanted as f64 * more) as u64) {
+            Err(GpuError::TooLarge { .. } | GpuError::Memory { .. }) => self.make_room(&mut rec, 0, 0, wanted),
             made => made,
         }
     }

@@ -47,6 +47,9 @@ pub struct Place {
     /// one's halo.
     pub peers: Vec<Cells>,
     pub near: usize,
+    /// Layers of cells around the own ones beyond which no particle of this one's is thought to fly in a step, or one that needs it might
+    /// be no peer; 0 if all others are.
+    pub flight: u32,
     /// Whether the particles may be anywhere (after a rebalance or a restart), not only near their owner.
     pub scattered: bool,
 }
@@ -54,7 +57,15 @@ pub struct Place {
 impl Place {
     /// A subdomain that owns all cells.
     pub fn alone(plan: &Plan) -> Place {
-        Place { own: Cells::inside(plan), depth: 0, ghosts: Ghosts::All, peers: Vec::new(), near: 0, scattered: false }
+        Place {
+            own: Cells::inside(plan),
+            depth: 0,
+            ghosts: Ghosts::All,
+            peers: Vec::new(),
+            near: 0,
+            flight: 0,
+            scattered: false,
+        }
     }
 
     /// Whether there are no others.
@@ -119,7 +130,7 @@ mod tests {
 
     fn place(depth: u32) -> Place {
         let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
-        Place { own, depth, ghosts: Ghosts::Asked, peers: Vec::new(), near: 0, scattered: false }
+        Place { own, depth, ghosts: Ghosts::Asked, peers: Vec::new(), near: 0, flight: 0, scattered: false }
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.

@@ -1,9 +1,10 @@
 //! On one device.
 
+use corpuscle::gpu::{Device, Recording};
 use corpuscle::output::AuditLimits;
 use corpuscle::scene::{DiameterCap, Method, Scene};
-use corpuscle::simulation::{Model, Options, Shuffle};
-use corpuscle::subdomain::GpuParticle;
+use corpuscle::simulation::{Model, Options, Setup, Shuffle, initial_particles};
+use corpuscle::subdomain::{GpuParticle, Newborns, Place, Subdomain, Tables};
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
@@ -53,6 +54,51 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
     let room = initial + (initial / 8).max(1024);
     assert!(model.plan.particles > room + 1000, "the buffers for {room} must grow for {}", model.plan.particles);
     every_way(&model);
+}
+
+/// Room that is made when a step is recorded and has not run yet loses nothing of it: the particles go to the larger buffer as
+/// they are after it.
+#[test]
+fn room_made_between_recorded_steps_loses_none() {
+    let device = Device::open(None).expect("a device");
+    for method in [Method::ClosestApproach, Method::Cell] {
+        let model = by(method, gas_box());
+        let setup = Setup::new(&model, &device, 1, None).expect("a set-up");
+        let particles = initial_particles(&model).expect("particles");
+        let after_two_steps = |room_after: Option<usize>| {
+            let place = Place::alone(&model.plan);
+            let mut subdomain = Subdomain::new(&device, setup.domain.clone(), place, &particles).expect("a subdomain");
+            let first_id = particles.len() as u32;
+            let newborns = Newborns { of_step: &[0, 0], list: &[], first_id, stride: 1 };
+            let dt = model.plan.time_step;
+            let tables = Tables::default();
+            let slots = subdomain.begin_interval(&device, 0, dt, &[false; 2], &newborns, &tables).expect("room");
+            let mut rec = Recording::new(&device);
+            for (k, slot) in slots.iter().enumerate() {
+                subdomain.inject(&mut rec, slot);
+                subdomain.bin(&mut rec, slot);
+                subdomain.scan(&mut rec, slot);
+                subdomain.sort(&mut rec, slot);
+                subdomain.neighbours(&mut rec, slot);
+                subdomain.collide(&mut rec, slot);
+                for round in 0..model.plan.rounds {
+                    subdomain.choose(&mut rec, slot, round);
+                    subdomain.settle(&mut rec, slot, round);
+                }
+                subdomain.advect(&mut rec, slot);
+                if room_after == Some(k) {
+                    subdomain.make_room(&mut rec, 3 * particles.len() as u64, 0, 0).expect("more room");
+                }
+            }
+            rec.submit();
+            subdomain.particles(&device).expect("the particles")
+        };
+        let plain = after_two_steps(None);
+        assert_eq!(plain.len(), particles.len());
+        for k in 0..2 {
+            assert_eq!(after_two_steps(Some(k)), plain, "{method:?}, room after step {k}");
+        }
+    }
 }
 
 /// What the suite's scene of a dense and a thin side shows of capped diameters and rough walls: both change its bits.

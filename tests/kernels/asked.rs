@@ -164,9 +164,11 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
     let cloud = Cloud::new(&mut stream, world, COUNT, 1.0);
     let layers: Vec<u32> = vec![1; COUNT];
     let screened: Vec<u32> = (0..COUNT as u32).collect();
+    let near_walls = vec![1u32 << 31; COUNT];
     let lists = |rig: &Rig| lists(rig, COUNT, tails_of(cloud.lists.iter().map(Vec::len)));
     let mut rig = rig_of(&cloud, &layers);
     put_to_screen(&mut rig, COUNT, &screened);
+    rig.put("middles", &near_walls);
     rig.step(step_of(&cloud, ALL));
     rig.run("screen", COUNT);
     let early = lists(&rig);
@@ -189,6 +191,7 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
         rig.put("sorted", &changed);
         rig.put("flights", &flights);
         put_to_screen(&mut rig, COUNT, &[]);
+        rig.put("middles", &near_walls);
         rig.put("particles", from);
         rig.put("origins", &order);
         rig.put("asked", &screened[..COUNT - 1]);

@@ -97,7 +97,7 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
         strays += u32::from(!theirs && !local.own.holds(cell));
     }
     expected.sort_unstable();
-    for room in [expected.len(), 400] {
+    for (room, flight) in [(expected.len(), 0), (400, 0), (expected.len(), 3)] {
         let mut rig = Rig::new(&world);
         rig.put("particles", &particles);
         rig.put("border", &border.iter().map(|&(i, cell)| [i as u32, local.index(cell)]).collect::<Vec<_>>());
@@ -106,10 +106,15 @@ fn pack_sends_to_those_whose_cells_and_halo_hold_the_cell() {
         rig.put("outbox", &vec![unwritten; COUNT * 4]);
         put_sendings(&mut rig, room);
         rig.set_counter(LIST_BORDER, border.len() as u32);
-        rig.step(GpuStep { count: COUNT as u32, ..local.step() });
+        rig.step(GpuStep { count: COUNT as u32, flight, ..local.step() });
         rig.run("pack", border.len() + 64);
         assert_eq!(rig.counter(LIST_OUTBOX) as usize, expected.len());
-        assert_eq!(rig.counter(STRAYS), strays);
+        // Where not all others are peers, who flew too far strays as well.
+        let unknown = |cell| !local.own.holds(cell) && !local.others.iter().any(|other| other.holds(cell));
+        let strayed = |cell| unknown(cell) || flight > 0 && local.own.away(cell) > flight;
+        let expected_strays = border.iter().filter(|&&(_, cell)| strayed(cell)).count() as u32;
+        assert_eq!(rig.counter(STRAYS), expected_strays);
+        assert!(flight == 0 || expected_strays > strays + 20);
         let starts = message_starts(&rig, local.others.len());
         rig.run("fill_outbox", expected.len() + 64);
         let sent: Vec<GpuParticle> = rig.get("outbox", COUNT * 4);

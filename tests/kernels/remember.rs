@@ -7,7 +7,7 @@ use crate::rig::*;
 
 const COUNT: usize = 300;
 /// Of the device's own word, behind those that the host reads.
-const GOES_BACK: usize = 50;
+const GOES_BACK: usize = 52;
 
 #[test]
 fn the_start_of_the_first_interval_that_must_run_again_is_kept() {

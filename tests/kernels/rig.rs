@@ -45,6 +45,8 @@ pub const FOREIGN: usize = 44;
 pub const STRAYS: usize = 45;
 pub const MISSING: usize = 46;
 pub const CANDIDATES: usize = 47;
+pub const GHOST_CANDIDATES: usize = 50;
+pub const GHOST_WALLS: usize = 51;
 pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 

@@ -62,5 +62,10 @@ fn histograms_are_the_sums_over_planes_of_the_open_boxes() {
     // Without cuts the entries of all lists are counted, and nothing else.
     let counted = rig(GpuWeights { cuts: 0, ..WEIGHTS });
     assert_eq!(counted.counter(CANDIDATES), listed.iter().sum::<u32>());
+    let ghosts = || (0..COUNT).filter(|&s| layers[s] & 0xff != 0);
+    let walls = ghosts().filter(|&s| layers[s] & NEAR != 0).count();
+    assert_eq!(counted.counter(GHOST_CANDIDATES), ghosts().map(|s| listed[s]).sum::<u32>());
+    assert_eq!(counted.counter(GHOST_WALLS) as usize, walls);
+    assert!(walls > 100 && ghosts().count() < COUNT - 100);
     assert_eq!(sums(&counted), vec![0; planes]);
 }

@@ -71,6 +71,11 @@ fn a_slow_device_is_found() {
     assert_eq!((shares[0], shares[0]), (shares[1], shares[3]), "the others are alike to the last bit");
     let candidate = model.coefficients()[1];
     assert!((candidate / TRUE[1] - 1.0).abs() < 0.2, "{candidate}");
+    // What it is thought to take are the seconds that it does.
+    let work = works(1, &mut Random(6))[0];
+    for (rank, speed) in [(0, 1.0), (2, 0.5)] {
+        assert!((model.seconds(rank, &work) / (seconds(&work) / speed) - 1.0).abs() < 0.1, "rank {rank}");
+    }
 }
 
 /// With the shares that it is given, each rank's own work and its halo take the same time, and a rank without one
@@ -80,19 +85,18 @@ fn a_halo_leaves_a_rank_less_of_the_weight() {
     let mut model = CostModel::new(By::Cost, 4);
     observe(&mut model, &[1.0; 4], 60, 0.02, &mut Random(31));
     let work = |owned: u64, ghosts: u64| {
-        let halo = HaloWork { ghosts, cells: 6 * ghosts };
+        let halo = Work { particles: ghosts, candidates: 4 * ghosts, wall_tests: 0, cells: 6 * ghosts, steps: 0 };
+        let candidates = 10 * owned + halo.candidates;
         let cells = 4 * owned + halo.cells;
-        (Work { particles: owned + ghosts, candidates: 10 * owned, wall_tests: 0, cells, steps: 1 }, halo)
+        (Work { particles: owned + ghosts, candidates, wall_tests: 0, cells, steps: 1 }, halo)
     };
     let loads = [work(2000, 0), work(3000, 2000), work(2500, 1000), work(2500, 1800)];
     let shares = model.shares_beside_halos(&loads);
     let [particle, candidate, _, cell, _] = model.coefficients();
-    let beside = |halo: &HaloWork| particle * halo.ghosts as f64 + cell * halo.cells as f64;
     let all =
         |work: &Work| particle * work.particles as f64 + candidate * work.candidates as f64 + cell * work.cells as f64;
-    let own: f64 = loads.iter().map(|(work, halo)| all(work) - beside(halo)).sum();
-    let times: Vec<f64> =
-        shares.iter().zip(&loads).map(|(share, (_, halo))| share * own / 4.0 + beside(halo)).collect();
+    let own: f64 = loads.iter().map(|(work, halo)| all(work) - all(halo)).sum();
+    let times: Vec<f64> = shares.iter().zip(&loads).map(|(share, (_, halo))| share * own / 4.0 + all(halo)).collect();
     let mean = times.iter().sum::<f64>() / 4.0;
     assert!(times.iter().all(|time| (time / mean - 1.0).abs() < 1e-9), "{times:?}");
     assert!((shares.iter().sum::<f64>() - 4.0).abs() < 1e-9 && shares[0] > 1.05 * shares[1], "{shares:?}");
