@@ -257,7 +257,6 @@ impl Subdomain {
                 slot: slot.slot,
                 near2: slot.near2,
                 flight: self.place.flight,
-                ..GpuStep::default()
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));

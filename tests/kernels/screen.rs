@@ -49,7 +49,7 @@ fn lists_lose_exactly_those_behind_a_wall() {
     rig.put("sorted", &particles);
     rig.put("flights", &flights);
     put_lists(&mut rig, &lists);
-    let marked = |s: usize| s % 8 != 0;
+    let marked = |s: usize| !s.is_multiple_of(8);
     let middles: Vec<u32> = (0..COUNT).map(|s| u32::from(marked(s)) << 31).collect();
     rig.put("middles", &middles);
     // All but the last are to be screened.
