@@ -7,7 +7,8 @@
 //! integral of the first term is exact by the divergence theorem, V_B (1 - cavities) + sum of cavity volumes -
 //! sum of solid volumes; the second, the overlap of solids, is zero unless solids overlap, and is then summed
 //! along lines. So walls that do not overlap leave an exact volume, and a plate let into a wall costs an error
-//! of its hidden rim only.
+//! of its hidden rim only. Gas is in all cavities: solids beyond the box that all cavities share count for nothing, and where solids overlap by
+//! more than a little the gas in that box is summed along lines instead.
 //!
 //! Invariants: every wall is watertight and consistently oriented, normals point into the gas, the gas is
 //! bounded and its volume positive.
@@ -26,6 +27,8 @@ pub(super) const VOLUME_LINES: u64 = 1 << 18;
 
 /// Volumes and lengths below this fraction of the vessel's are rounding.
 const ROUNDING: f64 = 1e-12;
+/// Of the gas: where solids overlap by more, the gas is summed and not the overlap.
+const LITTLE: f64 = 0.01;
 
 #[derive(Debug, Clone)]
 pub struct Vessel {
@@ -247,21 +250,40 @@ impl Vessel {
     }
 
     fn measure(&mut self) -> Result<(), GeometryError> {
-        let (min, max) = self.bounds;
-        let size: [f64; 3] = std::array::from_fn(|axis| max[axis] - min[axis]);
-        let all = size[0] * size[1] * size[2];
+        let of_walls: Vec<Extent> = (0..self.walls.len()).map(|wall| self.extent_of(wall)).collect();
+        let shared = self.walls.iter().zip(&of_walls).filter(|(wall, _)| wall.cavity).map(|(_, extent)| *extent);
+        let shared = shared.fold(self.bounds, |all, one| meet(&all, &one));
+        if !has_room(&shared) {
+            return Err(GeometryError::NoGas);
+        }
+        // A wall that is left out has no volume.
+        let counts = |wall: usize| {
+            let info = &self.walls[wall];
+            info.cavity || info.volume > 0.0 && has_room(&meet(&of_walls[wall], &shared))
+        };
+        let counted: Vec<bool> = (0..self.walls.len()).map(counts).collect();
+        let counting = || of_walls.iter().zip(&counted).filter(|(_, counts)| **counts).map(|(extent, _)| *extent);
+        let around = counting().reduce(|all, one| join(&all, &one)).unwrap_or(self.bounds);
+        let all = volume_of(&around);
         let overlap = |lines: u64| {
-            let [length] = sum(lines, |i, line| {
-                let [y, z] = self.place(i);
-                self.crossings(y, z, &mut line.crossings);
-                [self.overlap_length(&line.crossings)]
-            });
-            size[1] * size[2] * length / lines as f64
+            self.along_lines(&around, lines, |line| {
+                line.crossings.retain(|crossing| counted[crossing.wall as usize]);
+                self.overlap_length(&line.crossings, &around)
+            })
         };
         let seen = overlap(SEARCH_LINES);
         let overlap = if seen > ROUNDING * all { overlap(VOLUME_LINES) } else { 0.0 };
-        let total = |cavity: bool| self.walls.iter().filter(|w| w.cavity == cavity).map(|w| w.volume).sum::<f64>();
-        let volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
+        let total = |cavity: bool| {
+            let walls = self.walls.iter().zip(&counted).filter(|(wall, counts)| **counts && wall.cavity == cavity);
+            walls.map(|(wall, _)| wall.volume).sum::<f64>()
+        };
+        let mut volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
+        if overlap > LITTLE * volume {
+            volume = self.along_lines(&shared, VOLUME_LINES, |line| {
+                intervals(&line.crossings, self.cavities, |depth| depth == 0, &mut line.gas);
+                line.gas.iter().map(|(from, to)| to - from).sum()
+            });
+        }
         if volume.is_nan() || volume <= ROUNDING * all {
             return Err(GeometryError::NoGas);
         }
@@ -270,9 +292,29 @@ impl Vessel {
         Ok(())
     }
 
-    /// Integral of max(depth - 1, 0) along a line through the bounds.
-    fn overlap_length(&self, crossings: &[Crossing]) -> f64 {
-        let (min, max) = (self.bounds.0[0], self.bounds.1[0]);
+    /// The integral over a box of what `length` makes of the crossings of each of so many lines through it.
+    fn along_lines(&self, extent: &Extent, lines: u64, length: impl Fn(&mut Line) -> f64 + Sync) -> f64 {
+        let (min, max) = extent;
+        let size: [f64; 3] = std::array::from_fn(|axis| max[axis] - min[axis]);
+        let [sum] = sum(lines, |i, line| {
+            let [u, v] = r2(i);
+            self.crossings(min[1] + u * size[1], min[2] + v * size[2], &mut line.crossings);
+            [length(line)]
+        });
+        size[1] * size[2] * sum / lines as f64
+    }
+
+    fn extent_of(&self, wall: usize) -> Extent {
+        let own = self.triangles.iter().filter(|triangle| triangle.wall as usize == wall);
+        let corners: Vec<DVec3> =
+            own.flat_map(|triangle| triangle.vertices).map(|v| DVec3::from(self.vertices[v as usize])).collect();
+        let (min, max) = bounds_of(&corners);
+        (min.to_array(), max.to_array())
+    }
+
+    /// Integral of max(depth - 1, 0) along a line through a box.
+    fn overlap_length(&self, crossings: &[Crossing], extent: &Extent) -> f64 {
+        let (min, max) = (extent.0[0], extent.1[0]);
         let mut depth = self.cavities;
         let mut from = min;
         let mut length = 0.0;
@@ -283,6 +325,25 @@ impl Vessel {
         }
         length + f64::from((depth - 1).max(0)) * (max - from)
     }
+}
+
+/// Low and high corner of a box, m.
+type Extent = ([f64; 3], [f64; 3]);
+
+fn meet(a: &Extent, b: &Extent) -> Extent {
+    (std::array::from_fn(|k| a.0[k].max(b.0[k])), std::array::from_fn(|k| a.1[k].min(b.1[k])))
+}
+
+fn join(a: &Extent, b: &Extent) -> Extent {
+    (std::array::from_fn(|k| a.0[k].min(b.0[k])), std::array::from_fn(|k| a.1[k].max(b.1[k])))
+}
+
+fn has_room(extent: &Extent) -> bool {
+    (0..3).all(|axis| extent.0[axis] < extent.1[axis])
+}
+
+fn volume_of(extent: &Extent) -> f64 {
+    (0..3).map(|axis| extent.1[axis] - extent.0[axis]).product()
 }
 
 /// How errors name a wall.

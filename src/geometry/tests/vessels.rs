@@ -162,6 +162,44 @@ fn overlapping_spheres_leave_the_volume_of_their_union() {
     assert!(lens > 1e-2);
 }
 
+/// What is beyond the space that all cavities share changes nothing, to the last bit, wherever it is.
+#[test]
+fn bodies_outside_leave_the_volume() {
+    let alone = Vessel::build(&[tank([0.1; 3])]).unwrap().gas_volume();
+    for far in [0.3, 4.0, 7.0] {
+        let body = sphere("far", [far; 3], 0.05, 2, GasSide::Outside);
+        let vessel = Vessel::build(&[tank([0.1; 3]), body]).unwrap();
+        assert_eq!(vessel.gas_volume(), alone, "at {far} m");
+    }
+}
+
+/// Of what sticks out of a tank only the part inside counts, however long it is; of cavities only what they share.
+#[test]
+fn what_sticks_out_and_cavities_that_meet_leave_what_is_inside() {
+    let block = |min: [f64; 3], max: [f64; 3], gas: GasSide| {
+        let middle = std::array::from_fn(|k| (min[k] + max[k]) / 2.0);
+        let shape = Shape::Plane {
+            center: middle,
+            normal: [1.0, 0.0, 0.0],
+            u: [0.0, 1.0, 0.0],
+            size: [max[1] - min[1], max[2] - min[2]],
+            thickness: max[0] - min[0],
+            holes: vec![],
+        };
+        wall("rod", shape, gas)
+    };
+    let rod = block([-0.01, 0.04, 0.04], [20.0, 0.06, 0.06], GasSide::Both);
+    let vessel = Vessel::build(&[tank([0.1; 3]), rod]).unwrap();
+    assert!((vessel.gas_volume() / 0.96e-3 - 1.0).abs() < 1e-4, "{}", vessel.gas_volume());
+    let other = |min: [f64; 3], max: [f64; 3]| {
+        let shape = Shape::Box { min, max, thickness: None, holes: vec![] };
+        wall("other", shape, GasSide::Inside)
+    };
+    let vessel = Vessel::build(&[tank([0.1; 3]), other([0.05; 3], [0.3; 3])]).unwrap();
+    assert!((vessel.gas_volume() / 0.125e-3 - 1.0).abs() < 1e-4, "{}", vessel.gas_volume());
+    assert_eq!(build_error(&[tank([0.1; 3]), other([0.2; 3], [0.3; 3])]), GeometryError::NoGas);
+}
+
 #[test]
 fn malformed_walls_are_refused_by_name() {
     let ball = |gas| sphere("ball", [0.5; 3], 0.2, 1, gas);
