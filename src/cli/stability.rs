@@ -66,15 +66,13 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
 }
 
 fn chosen(names: &[String]) -> Result<Vec<&'static Axis>, CliError> {
-    if names.iter().any(|name| name == ALL) {
-        return Ok(AXES.iter().collect());
-    }
     let known = || AXES.iter().map(|axis| axis.name).chain([ALL]).map(str::to_owned).collect();
     let of_name = |name: &String| {
         let unknown = || CliError::UnknownCase { asked: name.clone(), known: known() };
         AXES.iter().find(|axis| axis.name == name).ok_or_else(unknown)
     };
-    names.iter().map(of_name).collect()
+    let named = names.iter().filter(|name| *name != ALL).map(of_name).collect::<Result<Vec<_>, _>>()?;
+    Ok(if named.len() < names.len() { AXES.iter().collect() } else { named })
 }
 
 /// As it would be typed.

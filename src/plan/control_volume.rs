@@ -20,6 +20,7 @@ pub fn plan(
     amounts: &Amounts,
     mut reasons: Vec<Reason>,
 ) -> Result<Plan, PlanError> {
+    measured.no_empty_space("the method `control-volume`")?;
     super::motion::reasons(scene, measured, &mut reasons);
     let mut because = |quantity: &str, value: &str, why: &str| {
         reasons.push(Reason { quantity: quantity.into(), value: value.into(), why: why.into() });

@@ -74,6 +74,14 @@ pub enum PlanError {
         "leave out `method` in [model]: the plan takes one whose error is predicted; or leave out the wish"
     ))]
     WishOfControlVolume { why: &'static str },
+    #[error(
+        "{asked}: {} % of the gas space belong to no chamber and are empty at the start (chambers of {} m3 in {} m3)",
+        significant(100.0 * (1.0 - chambers / gas)), significant(*chambers), significant(*gas)
+    )]
+    #[diagnostic(help(
+        "give that space a chamber, of however little gas, or leave out what is asked for: particles fill it"
+    ))]
+    EmptySpace { asked: &'static str, chambers: f64, gas: f64 },
     #[error("an accuracy or a budget together with `switch`: what a switch saves is not predicted yet")]
     #[diagnostic(help("leave out the wish, or `switch` in [model]"))]
     WishOfSwitch,

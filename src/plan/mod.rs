@@ -70,6 +70,23 @@ pub struct Measured {
     pub motion: Option<MeasuredMotion>,
 }
 
+/// The part of the gas space that may be in no chamber, as the inside of holes is.
+const IN_HOLES: f64 = 0.01;
+
+impl Measured {
+    /// That all gas space has gas at the start: what flows into empty space no control volume knows, and no forecast.
+    ///
+    /// # Errors
+    /// If chambers leave more of it out than holes have.
+    fn no_empty_space(&self, asked: &'static str) -> Result<(), PlanError> {
+        let (chambers, gas) = (self.chamber_volumes.iter().sum::<f64>(), self.gas_volume);
+        match chambers < (1.0 - IN_HOLES) * gas {
+            true => Err(PlanError::EmptySpace { asked, chambers, gas }),
+            false => Ok(()),
+        }
+    }
+}
+
 /// What moving walls do to the gas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredMotion {

@@ -72,6 +72,10 @@ fn beyond_control_volumes(scene: &Scene, forecaster: &Forecaster<'_>) -> Option<
     let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
     if forecaster.is_release() {
         Some("a release without a wall is no control volume")
+    } else if forecaster.has_open_borders() {
+        Some(
+            "gas passes where chambers touch without a wall, and between control volumes there it does not",
+        )
     } else if !scene.vents.is_empty() || rough {
         Some("its error beside vents, rough walls and walls that keep a temperature is not predicted yet")
     } else {
@@ -98,6 +102,7 @@ fn methods(
     amounts: &Amounts,
     forecaster: &Forecaster<'_>,
 ) -> Result<(Vec<Method>, String), PlanError> {
+    measured.no_empty_space("an accuracy or a budget")?;
     let beyond = beyond_control_volumes(scene, forecaster);
     if let Some(method) = scene.model.method {
         return match beyond.filter(|_| method == Method::ControlVolume) {

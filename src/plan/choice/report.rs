@@ -299,8 +299,14 @@ fn method_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
         return reason("method", name, "asked for".into());
     }
     let uniform = chooser.families.iter().find(|family| family.method == Method::ControlVolume);
+    let accuracy = chooser.scene.model.wish.accuracy;
+    let does = |possible: &Possible| accuracy.is_none_or(|asked| possible.error <= asked);
     let why = match uniform.and_then(|family| chooser.possible(family, chooser.range[0])) {
-        Some(_) if method == Method::ControlVolume => "suffices: pressures are uniform enough".into(),
+        Some(_) if method == Method::ControlVolume && accuracy.is_some() => {
+            "suffices: pressures are uniform enough".into()
+        }
+        Some(_) if method == Method::ControlVolume => "the least error within the budget".into(),
+        Some(uniform) if does(&uniform) => "the cheapest of those compared".into(),
         Some(uniform) => {
             let column = worst(&uniform.columns);
             let cause = column.and_then(ColumnForecast::main_cause).map_or("", Cause::name);

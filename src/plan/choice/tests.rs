@@ -44,6 +44,35 @@ fn smaller_errors_cost_more() {
     }
 }
 
+/// Gas that flows into space of no chamber is in no forecast, and in no control volume; chambers that touch are none.
+#[test]
+fn empty_space_and_open_borders_are_no_control_volume() {
+    let (mut scene, mut measured, mut outlook) = seen();
+    scene.probes.clear();
+    outlook.probes.clear();
+    scene.model.wish.accuracy = Some(0.06);
+    let method = |scene: &Scene, measured: &Measured, outlook: &Outlook| {
+        choose(scene, measured, outlook).map(|choice| choice.request.method)
+    };
+    assert_eq!(method(&scene, &measured, &outlook), Ok(Some(Method::ControlVolume)));
+    // Of the same gas on both sides.
+    outlook.borders = vec![[0, 1]];
+    let first = scene.chambers[0].clone();
+    scene.chambers[1] = crate::scene::Chamber { name: "other".into(), region: None, ..first.clone() };
+    assert_eq!(method(&scene, &measured, &outlook), Ok(Some(Method::ClosestApproach)));
+    outlook.borders.clear();
+    // What holes have is in no chamber either.
+    measured.gas_volume = measured.chamber_volumes.iter().sum::<f64>() / 0.995;
+    assert_eq!(method(&scene, &measured, &outlook), Ok(Some(Method::ControlVolume)));
+    measured.gas_volume *= 1.02;
+    let refused = method(&scene, &measured, &outlook).unwrap_err();
+    assert!(refused.to_string().starts_with("an accuracy or a budget: 2.45"), "{refused}");
+    scene.model = ModelRequest { method: Some(Method::ControlVolume), ..ModelRequest::default() };
+    assert!(matches!(plan(&scene, &measured), Err(PlanError::EmptySpace { .. })));
+    scene.model.method = Some(Method::ClosestApproach);
+    assert!(plan(&scene, &measured).is_ok());
+}
+
 #[test]
 fn the_next_plans_are_cheaper_and_better() {
     let choice = wished(0.06);

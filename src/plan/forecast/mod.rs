@@ -165,6 +165,11 @@ impl<'a> Forecaster<'a> {
         self.density_step() > 0.0
     }
 
+    /// Whether chambers touch without a wall.
+    pub fn has_open_borders(&self) -> bool {
+        !self.outlook.borders.is_empty()
+    }
+
     /// Largest difference of the densities of chambers that touch, over the mean; 0 if their pressures agree.
     fn density_step(&self) -> f64 {
         let density = |chamber: usize| {

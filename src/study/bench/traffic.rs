@@ -126,7 +126,7 @@ mod tests {
         let floor = |phase, method| bytes(phase, method, &work).unwrap();
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
         assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
-        assert_eq!([floor("sort", rounds), floor("sort", cell)], [112.0, 72.0]);
+        assert_eq!([floor("sort", rounds), floor("sort", cell)], [108.0, 72.0]);
         assert_eq!(floor("neighbours", rounds), 16.0);
         assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
         assert_eq!(["tally", "blocks", "remember"].map(|phase| floor(phase, cell)), [32.0, 32.0, 64.0]);
