@@ -73,9 +73,7 @@ fn beyond_control_volumes(scene: &Scene, forecaster: &Forecaster<'_>) -> Option<
     if forecaster.is_release() {
         Some("a release without a wall is no control volume")
     } else if forecaster.has_open_borders() {
-        Some(
-            "gas passes where chambers touch without a wall, and between control volumes there it does not",
-        )
+        Some("gas passes where chambers touch without a wall, and between control volumes there it does not")
     } else if !scene.vents.is_empty() || rough {
         Some("its error beside vents, rough walls and walls that keep a temperature is not predicted yet")
     } else {
