@@ -29,6 +29,8 @@ pub(super) const VOLUME_LINES: u64 = 1 << 18;
 const ROUNDING: f64 = 1e-12;
 /// Of the gas: where solids overlap by more, the gas is summed and not the overlap.
 const LITTLE: f64 = 0.01;
+/// And where the box that solids reach, around that of the gas, is larger than it by more than this.
+const FAR: f64 = 8.0;
 
 #[derive(Debug, Clone)]
 pub struct Vessel {
@@ -271,14 +273,18 @@ impl Vessel {
                 self.overlap_length(&line.crossings, &around)
             })
         };
+        // Of solids that reach far out few lines meet the gas.
+        let solids = of_walls.iter().enumerate().filter(|(wall, _)| counted[*wall] && !self.walls[*wall].cavity);
+        let reached = solids.fold(shared, |all, (_, one)| join(&all, one));
+        let far = volume_of(&reached) > FAR * volume_of(&shared);
         let seen = overlap(SEARCH_LINES);
-        let overlap = if seen > ROUNDING * all { overlap(VOLUME_LINES) } else { 0.0 };
+        let overlap = if seen > ROUNDING * all && !far { overlap(VOLUME_LINES) } else { seen };
         let total = |cavity: bool| {
             let walls = self.walls.iter().zip(&counted).filter(|(wall, counts)| **counts && wall.cavity == cavity);
             walls.map(|(wall, _)| wall.volume).sum::<f64>()
         };
         let mut volume = all * f64::from(1 - self.cavities) + total(true) - total(false) + overlap;
-        if overlap > LITTLE * volume {
+        if far || overlap > LITTLE * volume {
             volume = self.along_lines(&shared, VOLUME_LINES, |line| {
                 intervals(&line.crossings, self.cavities, |depth| depth == 0, &mut line.gas);
                 line.gas.iter().map(|(from, to)| to - from).sum()

@@ -34,6 +34,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let species = species(scene, measured, &mut reasons)?;
     jets(scene, &species)?;
     switch(scene, method, &mut reasons)?;
+    if scene.model.switch.is_some() {
+        measured.no_empty_space("`switch`")?;
+    }
     let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);

@@ -75,11 +75,11 @@ pub enum PlanError {
     ))]
     WishOfControlVolume { why: &'static str },
     #[error(
-        "{asked}: {} % of the gas space belong to no chamber and are empty at the start (chambers of {} m3 in {} m3)",
+        "{asked}: {} % of the gas space belongs to no chamber and is empty at the start (chambers of {} m3 in {} m3)",
         significant(100.0 * (1.0 - chambers / gas)), significant(*chambers), significant(*gas)
     )]
     #[diagnostic(help(
-        "give that space a chamber, of however little gas, or leave out what is asked for: particles fill it"
+        "give that space a chamber of little gas (each chamber takes a particle at least), or leave out what is asked for: particles fill it"
     ))]
     EmptySpace { asked: &'static str, chambers: f64, gas: f64 },
     #[error("an accuracy or a budget together with `switch`: what a switch saves is not predicted yet")]

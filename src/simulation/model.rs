@@ -162,6 +162,8 @@ fn chosen(scene: &Scene, seen: &Seen) -> Result<(Choice, Option<(Scene, Seen)>),
     let modelled = part.and_then(|part| model_holes((scene, &seen.measured, &whole), part));
     let wish = &scene.model.wish;
     match (resolved, modelled) {
+        // What flows into empty space behind a hole no forecast knows either.
+        (Err(error @ PlanError::EmptySpace { .. }), _) => Err(error.into()),
         (Ok(mut resolved), Err(why)) => {
             resolved.hole_notes(flow_only::names(scene), &format!("; it cannot be modelled: {why}"));
             Ok((resolved, None))

@@ -243,14 +243,16 @@ mod tests {
     /// Device times that follow a law give the law back, and its constant is not in the work.
     #[test]
     fn costs_are_those_of_the_device_times() {
+        /// Candidates and cells for each particle.
+        const OF_GAS: [(f64, f64); 4] = [(1.0, 200.0), (1.0, 2.0), (8.0, 20.0), (30.0, 1.0)];
         let sizes = [1e3, 3e3, 1e4, 4e4, 1e5, 2e5];
-        let measured = |candidates: f64, k: f64| {
-            let (particles, candidates, walls, cells) = (k, candidates * k, 0.05 * k.sqrt(), 8.0 * k.sqrt());
+        let measured = |candidates: f64, around: f64, k: f64| {
+            let (particles, candidates, walls, cells) = (k, candidates * k, 0.05 * k.sqrt(), around * k);
             let device_seconds = 1e-4 + 1e-7 * particles + 1e-8 * candidates + 1e-7 * walls + 1e-9 * cells;
             Share { particles, candidates, walls, cells, device_seconds, ..Share::default() }
         };
         let shares: Vec<Share> =
-            sizes.iter().flat_map(|&k| [1.0, 8.0, 30.0].map(|candidates| measured(candidates, k))).collect();
+            sizes.iter().flat_map(|&k| OF_GAS.map(|(candidates, around)| measured(candidates, around, k))).collect();
         let costs = Costs::fit(shares.iter());
         for share in shares.iter().filter(|share| share.particles >= 1e4) {
             let law = share.device_seconds - 1e-4;

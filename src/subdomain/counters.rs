@@ -38,7 +38,7 @@ pub struct Counters {
     pub bounces: u32,
     /// Pairs parted by a wall where they would have met.
     pub blocked: u32,
-    /// Particles whose owner was none of the peers: the interval must be run again with more peers.
+    /// Particles whose owner, or who may need them as ghosts, was none of the peers: the interval must be run again with more peers.
     pub strays: u32,
     /// Collisions of pairs faster than the plan's fastest.
     pub fast_pairs: u32,

@@ -37,7 +37,7 @@ pub struct Alternative {
 pub struct Choice {
     pub request: ModelRequest,
     pub forecast: Forecast,
-    reasons: Vec<Reason>,
+    pub(super) reasons: Vec<Reason>,
     holes: Holes,
     /// Of holes that are resolved, in place of an advice: the name, and what to add to its reason.
     hole_notes: Vec<(String, String)>,
@@ -299,24 +299,24 @@ fn method_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
         return reason("method", name, "asked for".into());
     }
     let uniform = chooser.families.iter().find(|family| family.method == Method::ControlVolume);
-    let accuracy = chooser.scene.model.wish.accuracy;
-    let does = |possible: &Possible| accuracy.is_none_or(|asked| possible.error <= asked);
-    let why = match uniform.and_then(|family| chooser.possible(family, chooser.range[0])) {
-        Some(_) if method == Method::ControlVolume && accuracy.is_some() => {
-            "suffices: pressures are uniform enough".into()
+    let wished = chooser.scene.model.wish.accuracy.is_some();
+    let uniform = uniform.and_then(|family| chooser.possible(family, chooser.range[0]));
+    let off = |uniform: &Possible| {
+        let column = worst(&uniform.columns);
+        let cause =
+            column.and_then(ColumnForecast::main_cause).map_or(String::new(), |cause| format!(" ({})", cause.name()));
+        format!("{} off in {}{cause}", percent(uniform.error), column.map_or("", |column| column.name.as_str()))
+    };
+    let why = match (uniform, wished) {
+        (Some(_), true) if method == Method::ControlVolume => "suffices: pressures are uniform enough".into(),
+        (Some(uniform), true) if uniform.cost.seconds < chosen.cost.seconds => {
+            format!("a control volume does not suffice: {}", off(&uniform))
         }
-        Some(_) if method == Method::ControlVolume => "the least error within the budget".into(),
-        Some(uniform) if does(&uniform) => "the cheapest of those compared".into(),
-        Some(uniform) => {
-            let column = worst(&uniform.columns);
-            let cause = column.and_then(ColumnForecast::main_cause).map_or("", Cause::name);
-            format!(
-                "a control volume does not suffice: {} off in {} ({cause})",
-                percent(uniform.error),
-                column.map_or("", |column| column.name.as_str())
-            )
+        (_, true) => "the cheapest of those compared".into(),
+        (Some(uniform), false) if method != Method::ControlVolume => {
+            format!("the least error within the budget; a control volume is {}", off(&uniform))
         }
-        None => "the cheapest of those compared".into(),
+        (_, false) => "the least error within the budget".into(),
     };
     reason("method", name, why)
 }

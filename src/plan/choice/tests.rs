@@ -73,6 +73,17 @@ fn empty_space_and_open_borders_are_no_control_volume() {
     assert!(plan(&scene, &measured).is_ok());
 }
 
+/// Why a method was taken is what it was taken for: its cost within an accuracy, its error within a budget.
+#[test]
+fn the_reason_for_the_method_is_the_one_that_counted() {
+    let why = |choice: Choice| choice.reasons.into_iter().find(|reason| reason.quantity == "method").unwrap().why;
+    let within = why(chosen(|model| model.wish.particle_budget = Some(200_000)).unwrap());
+    assert!(within.starts_with("the least error within the budget"), "{within}");
+    let accurate = why(wished(0.06));
+    assert!(accurate.starts_with("a control volume does not suffice: "), "{accurate}");
+    assert!(!accurate.contains("()"), "{accurate}");
+}
+
 #[test]
 fn the_next_plans_are_cheaper_and_better() {
     let choice = wished(0.06);
