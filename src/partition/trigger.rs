@@ -185,11 +185,6 @@ impl Trigger {
         self.observations = 0;
     }
 
-    /// Says that a rebalance was tried and no cut could be better: what is seen of the loads goes on.
-    pub fn kept(&mut self) {
-        self.before = Some(self.imbalance());
-    }
-
     /// The averaged imbalance; 1 before the first observation.
     pub fn imbalance(&self) -> f64 {
         self.loads.iter().copied().fold(1.0, f64::max)
