@@ -61,10 +61,10 @@ fn twins() -> Vec<Twin> {
             near_peers,
             capacity,
             stride,
-            // The tail padding is not named in the shader.
             tallies_left,
             slot,
-            near2
+            near2,
+            flight
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         twin!("Packed", Packed, place, motion),
