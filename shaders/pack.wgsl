@@ -41,7 +41,7 @@ fn pack(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         }
     }
     // Who is farther away than particles are thought to fly may be needed as a ghost by one that is no peer.
-    if (!owned || (step.depth > 0u && step.flight > 0u && layer_of(cell) > step.flight)) {
+    if (!owned || (step.flight > 0u && layer_of(cell) > step.flight)) {
         atomicAdd(&counters[STRAYS], 1u);
     }
 }

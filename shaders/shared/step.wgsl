@@ -51,7 +51,7 @@ struct Step {
     slot: u32,
     // The square of the distance, in 1/128 cells, below which two particles of the largest diameter may meet.
     near2: u32,
-    // Layers of cells around the own ones beyond which particles stray; 0 where all other devices are peers.
+    // Layers of cells around the own ones beyond which particles stray; 0 where all other devices are peers, or none has ghosts.
     flight: u32,
 }
 

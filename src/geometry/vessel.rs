@@ -254,7 +254,8 @@ impl Vessel {
     fn measure(&mut self) -> Result<(), GeometryError> {
         let of_walls: Vec<Extent> = (0..self.walls.len()).map(|wall| self.extent_of(wall)).collect();
         let shared = self.walls.iter().zip(&of_walls).filter(|(wall, _)| wall.cavity).map(|(_, extent)| *extent);
-        let shared = shared.fold(self.bounds, |all, one| meet(&all, &one));
+        let bounds = (DVec3::from(self.bounds.0), DVec3::from(self.bounds.1));
+        let shared = shared.fold(bounds, |all, one| meet(&all, &one));
         if !has_room(&shared) {
             return Err(GeometryError::NoGas);
         }
@@ -265,7 +266,7 @@ impl Vessel {
         };
         let counted: Vec<bool> = (0..self.walls.len()).map(counts).collect();
         let counting = || of_walls.iter().zip(&counted).filter(|(_, counts)| **counts).map(|(extent, _)| *extent);
-        let around = counting().reduce(|all, one| join(&all, &one)).unwrap_or(self.bounds);
+        let around = counting().reduce(|all, one| join(&all, &one)).unwrap_or(bounds);
         let all = volume_of(&around);
         let overlap = |lines: u64| {
             self.along_lines(&around, lines, |line| {
@@ -300,27 +301,25 @@ impl Vessel {
 
     /// The integral over a box of what `length` makes of the crossings of each of so many lines through it.
     fn along_lines(&self, extent: &Extent, lines: u64, length: impl Fn(&mut Line) -> f64 + Sync) -> f64 {
-        let (min, max) = extent;
-        let size: [f64; 3] = std::array::from_fn(|axis| max[axis] - min[axis]);
+        let (min, size) = (extent.0, extent.1 - extent.0);
         let [sum] = sum(lines, |i, line| {
             let [u, v] = r2(i);
-            self.crossings(min[1] + u * size[1], min[2] + v * size[2], &mut line.crossings);
+            self.crossings(min.y + u * size.y, min.z + v * size.z, &mut line.crossings);
             [length(line)]
         });
-        size[1] * size[2] * sum / lines as f64
+        size.y * size.z * sum / lines as f64
     }
 
     fn extent_of(&self, wall: usize) -> Extent {
         let own = self.triangles.iter().filter(|triangle| triangle.wall as usize == wall);
         let corners: Vec<DVec3> =
             own.flat_map(|triangle| triangle.vertices).map(|v| DVec3::from(self.vertices[v as usize])).collect();
-        let (min, max) = bounds_of(&corners);
-        (min.to_array(), max.to_array())
+        bounds_of(&corners)
     }
 
     /// Integral of max(depth - 1, 0) along a line through a box.
     fn overlap_length(&self, crossings: &[Crossing], extent: &Extent) -> f64 {
-        let (min, max) = (extent.0[0], extent.1[0]);
+        let (min, max) = (extent.0.x, extent.1.x);
         let mut depth = self.cavities;
         let mut from = min;
         let mut length = 0.0;
@@ -334,22 +333,22 @@ impl Vessel {
 }
 
 /// Low and high corner of a box, m.
-type Extent = ([f64; 3], [f64; 3]);
+type Extent = (DVec3, DVec3);
 
 fn meet(a: &Extent, b: &Extent) -> Extent {
-    (std::array::from_fn(|k| a.0[k].max(b.0[k])), std::array::from_fn(|k| a.1[k].min(b.1[k])))
+    (a.0.max(b.0), a.1.min(b.1))
 }
 
 fn join(a: &Extent, b: &Extent) -> Extent {
-    (std::array::from_fn(|k| a.0[k].min(b.0[k])), std::array::from_fn(|k| a.1[k].max(b.1[k])))
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 fn has_room(extent: &Extent) -> bool {
-    (0..3).all(|axis| extent.0[axis] < extent.1[axis])
+    extent.0.cmplt(extent.1).all()
 }
 
 fn volume_of(extent: &Extent) -> f64 {
-    (0..3).map(|axis| extent.1[axis] - extent.0[axis]).product()
+    (extent.1 - extent.0).element_product()
 }
 
 /// How errors name a wall.

@@ -80,10 +80,10 @@ impl Measured {
     /// If chambers leave more of it out than holes have.
     fn no_empty_space(&self, asked: &'static str) -> Result<(), PlanError> {
         let (chambers, gas) = (self.chamber_volumes.iter().sum::<f64>(), self.gas_volume);
-        match chambers < (1.0 - IN_HOLES) * gas {
-            true => Err(PlanError::EmptySpace { asked, chambers, gas }),
-            false => Ok(()),
+        if chambers < (1.0 - IN_HOLES) * gas {
+            return Err(PlanError::EmptySpace { asked, chambers, gas });
         }
+        Ok(())
     }
 }
 

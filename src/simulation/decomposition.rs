@@ -75,7 +75,7 @@ impl Decomposition {
             ghosts: self.halo.ghosts,
             peers: peers.iter().map(|&rank| cells(&boxes[rank])).collect(),
             near,
-            flight: if peers.len() + 1 == boxes.len() { 0 } else { FLIGHT },
+            flight: if self.depth() == 0 || peers.len() + 1 == boxes.len() { 0 } else { FLIGHT },
             scattered: self.scattered,
         };
         (peers, place)

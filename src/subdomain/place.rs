@@ -48,7 +48,7 @@ pub struct Place {
     pub peers: Vec<Cells>,
     pub near: usize,
     /// Layers of cells around the own ones beyond which no particle of this one's is thought to fly in a step, or one that needs it might
-    /// be no peer; 0 if all others are.
+    /// be no peer; 0 if all others are, or none needs ghosts.
     pub flight: u32,
     /// Whether the particles may be anywhere (after a rebalance or a restart), not only near their owner.
     pub scattered: bool,

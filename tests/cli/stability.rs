@@ -35,6 +35,7 @@ fn what_is_no_axis_is_2() {
         "{err}"
     );
     assert_eq!(outcome(&["stability"]).0, 2);
+    assert_eq!(outcome(&["stability", "all", "temperature"]).0, 2, "beside all, too");
     let list = printed(&["stability", "--list"]);
     assert!(list.lines().count() >= 10 && list.contains("mass-ratio         heavier over lighter gas"), "{list}");
 }

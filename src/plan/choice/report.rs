@@ -37,7 +37,7 @@ pub struct Alternative {
 pub struct Choice {
     pub request: ModelRequest,
     pub forecast: Forecast,
-    pub(super) reasons: Vec<Reason>,
+    reasons: Vec<Reason>,
     holes: Holes,
     /// Of holes that are resolved, in place of an advice: the name, and what to add to its reason.
     hole_notes: Vec<(String, String)>,

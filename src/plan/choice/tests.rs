@@ -44,7 +44,7 @@ fn smaller_errors_cost_more() {
     }
 }
 
-/// Gas that flows into space of no chamber is in no forecast, and in no control volume; chambers that touch are none.
+/// Gas that flows into space of no chamber is in no forecast and in no control volume; nor is what passes between chambers that touch.
 #[test]
 fn empty_space_and_open_borders_are_no_control_volume() {
     let (mut scene, mut measured, mut outlook) = seen();
@@ -71,12 +71,20 @@ fn empty_space_and_open_borders_are_no_control_volume() {
     assert!(matches!(plan(&scene, &measured), Err(PlanError::EmptySpace { .. })));
     scene.model.method = Some(Method::ClosestApproach);
     assert!(plan(&scene, &measured).is_ok());
+    scene.model.switch = Some(Switch::At(0.5 * scene.end_time));
+    assert!(matches!(plan(&scene, &measured), Err(PlanError::EmptySpace { asked: "`switch`", .. })));
 }
 
 /// Why a method was taken is what it was taken for: its cost within an accuracy, its error within a budget.
 #[test]
 fn the_reason_for_the_method_is_the_one_that_counted() {
-    let why = |choice: Choice| choice.reasons.into_iter().find(|reason| reason.quantity == "method").unwrap().why;
+    let why = |choice: Choice| {
+        let (mut scene, measured, _) = seen();
+        scene.model = choice.request.clone();
+        let mut planned = plan(&scene, &measured).unwrap();
+        choice.explain(&mut planned);
+        planned.reasons.into_iter().find(|reason| reason.quantity == "method").unwrap().why
+    };
     let within = why(chosen(|model| model.wish.particle_budget = Some(200_000)).unwrap());
     assert!(within.starts_with("the least error within the budget"), "{within}");
     let accurate = why(wished(0.06));

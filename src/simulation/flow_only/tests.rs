@@ -1,7 +1,7 @@
 use super::*;
 use crate::plan::Cause;
 use crate::scene::{Face, Method, parse, to_toml};
-use crate::simulation::Model;
+use crate::simulation::{Model, ModelError};
 
 /// A litre at three bar that empties through a round hole into air.
 fn emptying() -> String {
@@ -128,10 +128,21 @@ fn what_no_vent_can_do_is_resolved() {
     assert!(wide.value == "resolved" && wide.why.contains("p/sqrt(RT/M)"), "{}", wide.why);
     let asked = emptying() + "[[surface]]\nname = \"far\"\nwall = \"outer\"\nface = \"+x\"\n";
     let neither = Model::new(scene(&asked.replace("accuracy = 0.05", "accuracy = 0.0002"))).err().unwrap();
-    let crate::simulation::ModelError::Plan(crate::plan::PlanError::Accuracy { remedy, .. }) = neither else {
+    let ModelError::Plan(crate::plan::PlanError::Accuracy { remedy, .. }) = neither else {
         panic!("{neither}");
     };
     assert!(remedy.contains("surface \"far\" is behind it"), "{remedy}");
+}
+
+/// Where space behind the hole is in no chamber, no plan of the whole knows what flows there, and so none of the part.
+#[test]
+fn empty_space_behind_a_hole_is_refused() {
+    let mut half = scene(&emptying());
+    let behind = half.chambers.last_mut().unwrap();
+    assert!(behind.region.is_none(), "all that is left");
+    behind.region = Some(crate::scene::Region::Box { min: [0.06, -0.3, -0.3], max: [0.3, 0.3, 0.3] });
+    let refused = Model::new(half).err().unwrap();
+    assert!(matches!(refused, ModelError::Plan(crate::plan::PlanError::EmptySpace { .. })), "{refused}");
 }
 
 /// What the part lacks of a pressure is a part of its forecast.
