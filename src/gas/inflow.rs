@@ -171,6 +171,12 @@ impl Inflow {
         self.by_gas(|stream| stream.count)
     }
 
+    /// Flows too small for a particle: orifice, gas, and the part of a particle that flows.
+    pub fn without_particle(&self) -> Vec<(usize, usize, f64)> {
+        let none = self.streams.iter().filter(|stream| stream.count == 0);
+        none.map(|stream| (stream.source, stream.gas, stream.flow.total() / stream.mass_per_particle)).collect()
+    }
+
     /// Particles taken so far, by gas.
     pub fn entered_by_gas(&self) -> Vec<u64> {
         self.by_gas(|stream| stream.taken)

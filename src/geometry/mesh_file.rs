@@ -9,14 +9,24 @@ use std::path::Path;
 
 const STL_HEADER: usize = 84;
 const STL_TRIANGLE: usize = 50;
+/// That some editors begin a text with.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+/// Of a word that is quoted, characters.
+const LONGEST_WORD: usize = 20;
 
 /// The triangles of a file, in file units x `scale`, as they are: closedness and orientation are not looked at.
 pub(super) fn read(path: &Path, scale: f64, subject: &str) -> Result<WallMesh, GeometryError> {
     let unreadable = |reason: String| GeometryError::Unreadable { wall: subject.into(), reason };
-    let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
+    let mut bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
+    if bytes.is_empty() {
+        return Err(unreadable("the file is empty".into()));
+    }
+    if bytes.starts_with(BYTE_ORDER_MARK) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let corners = match extension.as_deref() {
-        Some("stl") => read_stl(bytes).map_err(|e| unreadable(e.to_string()))?,
+        Some("stl") => read_stl(bytes).map_err(unreadable)?,
         Some("obj") => read_obj(&bytes).map_err(unreadable)?,
         other => {
             return Err(unreadable(format!("`{}` is neither `stl` nor `obj`", other.unwrap_or(""))));
@@ -44,38 +54,109 @@ fn weld(corners: &[[f32; 3]], scale: f64) -> WallMesh {
 }
 
 /// Three corners per triangle.
-fn read_stl(mut bytes: Vec<u8>) -> std::io::Result<Vec<[f32; 3]>> {
+fn read_stl(mut bytes: Vec<u8>) -> Result<Vec<[f32; 3]>, String> {
+    let size = bytes.len();
     if is_binary(&bytes) {
         // Many programs begin a binary header with "solid", which the reader takes for ASCII.
         bytes[..5].fill(b' ');
-    } else if bytes.starts_with(b"solid") && bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r' | b'\t')) {
+    } else if bytes.starts_with(b"SOLID") {
+        // The reader knows small letters only.
+        bytes.make_ascii_lowercase();
+    } else if !bytes.starts_with(b"solid") {
+        return Err(no_stl(&bytes));
+    }
+    if bytes.starts_with(b"solid") && bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r' | b'\t')) {
         // A name is optional, but the reader wants a space.
         bytes.insert(5, b' ');
     }
     let mut cursor = Cursor::new(bytes);
     let mut corners = Vec::new();
-    for triangle in stl_io::create_stl_reader(&mut cursor)? {
-        corners.extend(triangle?.vertices.map(|v| v.0));
+    let reason = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => format!("the file of {size} bytes ends within a triangle"),
+        _ => error.to_string(),
+    };
+    for triangle in stl_io::create_stl_reader(&mut cursor).map_err(reason)? {
+        corners.extend(triangle.map_err(reason)?.vertices.map(|v| v.0));
     }
     Ok(corners)
 }
 
-fn is_binary(bytes: &[u8]) -> bool {
-    let Some(count) = bytes.get(STL_HEADER - 4..STL_HEADER) else {
-        return false;
-    };
-    let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize;
-    count.checked_mul(STL_TRIANGLE).and_then(|n| n.checked_add(STL_HEADER)) == Some(bytes.len())
+/// Of a binary file: how many triangles its header says, and how many bytes they take.
+fn announced(bytes: &[u8]) -> Option<(usize, Option<usize>)> {
+    let count: [u8; 4] = bytes.get(STL_HEADER - 4..STL_HEADER)?.try_into().ok()?;
+    let count = u32::from_le_bytes(count) as usize;
+    Some((count, count.checked_mul(STL_TRIANGLE).and_then(|n| n.checked_add(STL_HEADER))))
 }
+
+fn is_binary(bytes: &[u8]) -> bool {
+    announced(bytes).is_some_and(|(_, size)| size == Some(bytes.len()))
+}
+
+/// Why what does not begin as a text is no binary file either.
+fn no_stl(bytes: &[u8]) -> String {
+    let size = bytes.len();
+    let text = "no text that begins with `solid`";
+    match announced(bytes) {
+        None => format!("{text}, and {size} bytes are too few for a binary STL file"),
+        Some((count, Some(wanted))) => format!(
+            "{text}, and no binary STL file: the {count} triangles of its header take {wanted} bytes, the file has {size}"
+        ),
+        Some((count, None)) => {
+            format!("{text}, and no binary STL file: no file has the {count} triangles of its header")
+        }
+    }
+}
+
+/// First words of the lines of OBJ files that say nothing of where a wall is.
+const BESIDE: [&str; 19] = [
+    "vt",
+    "vn",
+    "vp",
+    "o",
+    "g",
+    "s",
+    "mg",
+    "l",
+    "p",
+    "mtllib",
+    "usemtl",
+    "maplib",
+    "usemap",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+];
 
 fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
     let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
     // Positions and faces are all that matters here: no material files, normals or texture coordinates.
-    let kept: String = text
-        .lines()
-        .filter(|line| matches!(line.split_whitespace().next(), Some("v" | "f")))
-        .flat_map(|line| [line, "\n"])
-        .collect();
+    let mut kept = String::new();
+    // Whether the line before ends with a backslash, and so goes on in this one; then, whether it is kept.
+    let mut goes_on = None;
+    for (index, line) in text.lines().enumerate() {
+        let (line, more) = line.strip_suffix('\\').map_or((line, false), |line| (line, true));
+        let keep = match (goes_on, line.split_whitespace().next()) {
+            (Some(keep), _) => keep,
+            (None, Some("v" | "f")) => {
+                kept.push('\n');
+                true
+            }
+            (None, Some(word)) if !word.starts_with('#') && !BESIDE.contains(&word) => {
+                let word: String = word.chars().take(LONGEST_WORD).collect();
+                let word = word.escape_debug();
+                return Err(format!("line {}: no statement `{word}` is read; walls are of `v` and `f`", index + 1));
+            }
+            (None, _) => false,
+        };
+        if keep {
+            kept.extend([line, " "]);
+        }
+        goes_on = more.then_some(keep);
+    }
+    kept.push('\n');
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let (models, _) = tobj::load_obj_buf(&mut kept.as_bytes(), &options, |_| Err(tobj::LoadError::OpenFileFailed))

@@ -1,5 +1,6 @@
 //! The gas of the whole run in moles and joules, before it is cut into particles.
 
+use super::population::delivers;
 use super::{Measured, PlanError};
 use crate::gas::{FlowIntegral, Species, flow_times_of_temperature, flow_times_temperature, moles_at, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture, Orifice, Scene};
@@ -153,7 +154,7 @@ pub fn highest_temperature(scene: &Scene, measured: &Measured) -> (f64, String) 
             candidates.push((filled, format!("gamma T of chamber `{}`, which flows into thinner gas", chamber.name)));
         }
     }
-    for orifice in &scene.orifices {
+    for orifice in scene.orifices.iter().filter(|orifice| delivers(orifice, scene.end_time)) {
         let hottest = orifice.temperature.points.iter().map(|point| point[1]).fold(0.0, f64::max);
         let why = format!("gamma T0 of orifice `{}` (filling reaches gamma T0)", orifice.name);
         candidates.push((gamma(&orifice.mixture, hottest) * hottest, why));

@@ -2,7 +2,7 @@
 
 use super::amounts::{Amounts, highest_temperature};
 use super::decide::{LADDER_LEVELS, STEPS_PER_INTERVAL, TALLY_EVERY};
-use super::population::openings;
+use super::population::{openings, silent_orifices};
 use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::Species;
 use crate::geometry::Grid;
@@ -117,5 +117,6 @@ fn warnings(scene: &Scene, measured: &Measured, species: &[Species], openings: &
         )
     });
     let heat = super::vents::heat(scene, species, Method::ControlVolume, measured);
-    closed.chain(rough).chain(heat).chain(super::motion::covered(scene, measured)).collect()
+    let silent = silent_orifices(scene);
+    closed.chain(rough).chain(silent).chain(heat).chain(super::motion::covered(scene, measured)).collect()
 }

@@ -7,7 +7,7 @@ use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
 use super::longest::{Basis, possible_step};
 use super::motion;
-use super::population::{Population, openings, wanted};
+use super::population::{Population, openings, silent_orifices, wanted};
 use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
@@ -91,6 +91,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     };
     let mut warnings = warnings(scene, measured, &decided);
     warnings.extend(shortened);
+    warnings.extend(silent_orifices(scene));
+    warnings.extend(population.warnings);
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, method, &vents, measured));
     warnings.extend(motion::warnings(scene, &species, method, measured));

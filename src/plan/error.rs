@@ -16,7 +16,7 @@ pub enum PlanError {
     #[diagnostic(help("give a chamber a pressure, or an orifice a mass flow within the run"))]
     NoGas,
     #[error("chamber `{chamber}` has {moles:e} mol of gas but no particle at {moles_per_particle:e} mol each")]
-    #[diagnostic(help("give the chamber a particle: set `particles` in [model] to at least {needed}"))]
+    #[diagnostic(help("{}", for_a_particle(*needed)))]
     EmptyChamber { chamber: String, moles: f64, moles_per_particle: f64, needed: u64 },
     #[error("chamber `{chamber}` has a volume of {volume} m3")]
     #[diagnostic(help("its region must overlap the gas space enclosed by the walls"))]
@@ -115,8 +115,8 @@ pub enum PlanError {
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },
-    #[error("a collision number of {found} is less than the {least:.4} that gas `{gas}` can relax with")]
-    #[diagnostic(help("set `collision_number` in [model] to at least {least:.4}, or leave it out"))]
+    #[error("a collision number of {found} is less than the {:.4} that gas `{gas}` can relax with", enough(*least))]
+    #[diagnostic(help("set `collision_number` in [model] to at least {:.4}, or leave it out", enough(*least)))]
     CollisionNumber { gas: String, found: f64, least: f64 },
     #[error("the cell grid does not fit: {0}")]
     #[diagnostic(help(
@@ -127,4 +127,20 @@ pub enum PlanError {
     #[error("the cell grid has {cells} cells, more than the {limit} that can be numbered")]
     #[diagnostic(help("use fewer particles or a larger `diameter` in [model], or a smaller vessel"))]
     TooManyCells { cells: usize, limit: usize },
+}
+
+/// Rounded up to the four decimals that are shown: what is shown must do.
+fn enough(least: f64) -> f64 {
+    (1e4 * least - 1e-6).ceil() / 1e4
+}
+
+/// Where even the most particles of a run give a chamber none, only another scene does.
+fn for_a_particle(needed: u64) -> String {
+    if needed > MOST_PARTICLES {
+        return format!(
+            "even the most particles that a run may have, {MOST_PARTICLES}, give it none: leave its gas out (`pressure = \
+             0`), or give it more"
+        );
+    }
+    format!("give the chamber a particle: set `particles` in [model] to at least {needed}")
 }

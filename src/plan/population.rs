@@ -6,8 +6,8 @@ use super::limits::{Quantity, limit};
 use super::render::{grouped, significant};
 use super::resolution::cell_edge;
 use super::{Measured, PlanError, Reason};
-use crate::gas::{Inflow, Species, kinetics};
-use crate::scene::{Method, Scene};
+use crate::gas::{FlowIntegral, Inflow, Species, kinetics};
+use crate::scene::{Method, Orifice, Scene};
 
 /// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
 const NOISE: f64 = 0.05;
@@ -92,6 +92,8 @@ pub struct Population {
     pub initial: Vec<Vec<u64>>,
     /// By gas.
     pub injected: Vec<u64>,
+    /// What gas is less than half a particle, so that the run is without it.
+    pub warnings: Vec<String>,
 }
 
 impl Population {
@@ -113,7 +115,8 @@ impl Population {
             }
         }
         let inflow = Inflow::new(&scene.orifices, species, moles_per_particle, scene.seed, 0, scene.end_time);
-        let population = Self { moles_per_particle, initial, injected: inflow.total_by_gas() };
+        let warnings = unrepresented(scene, amounts, moles_per_particle, &initial, &inflow);
+        let population = Self { moles_per_particle, initial, injected: inflow.total_by_gas(), warnings };
         let particles = population.initial_total() + population.injected_total();
         if particles > limit { Err(PlanError::TooManyParticles { particles, limit }) } else { Ok(population) }
     }
@@ -129,6 +132,63 @@ impl Population {
     pub fn of_gas(&self, gas: usize) -> u64 {
         self.injected[gas] + self.initial.iter().map(|chamber| chamber[gas]).sum::<u64>()
     }
+}
+
+/// "K times the particles", where a run can have so many.
+pub fn more_particles(times: f64, particles: f64) -> Option<String> {
+    (times * particles <= MOST_PARTICLES as f64).then(|| format!("{} times the particles", significant(times)))
+}
+
+/// Gas of chambers and inflow that rounds to no particle.
+fn unrepresented(
+    scene: &Scene,
+    amounts: &Amounts,
+    moles_per_particle: f64,
+    initial: &[Vec<u64>],
+    inflow: &Inflow,
+) -> Vec<String> {
+    let wanted = amounts.total() / moles_per_particle;
+    let none = |gas: usize, place: String, part: f64| {
+        // Rounded up: with that many it must have one.
+        let remedy = match more_particles((5.0 / part).ceil() / 10.0, wanted) {
+            Some(more) => format!("{more}, or leave it out"),
+            None => "leave it out".to_string(),
+        };
+        let (gas, part) = (&scene.gases[gas].name, significant(part));
+        format!("gas `{gas}` of {place}: {part} of a particle, less than a half, so none of it is in the run; {remedy}")
+    };
+    let mut found = Vec::new();
+    for (chamber, (moles, counts)) in scene.chambers.iter().zip(amounts.initial.iter().zip(initial)) {
+        for (gas, (moles, count)) in moles.iter().zip(counts).enumerate() {
+            if *moles > 0.0 && *count == 0 {
+                found.push(none(gas, format!("chamber `{}`", chamber.name), moles / moles_per_particle));
+            }
+        }
+    }
+    for (orifice, gas, part) in inflow.without_particle() {
+        if part > 0.0 {
+            found.push(none(gas, format!("orifice `{}`", scene.orifices[orifice].name), part));
+        }
+    }
+    found
+}
+
+/// Orifices from which nothing flows in the run, by all methods.
+pub fn silent_orifices(scene: &Scene) -> Vec<String> {
+    let silent = scene.orifices.iter().filter(|orifice| !delivers(orifice, scene.end_time));
+    let warning = |orifice: &Orifice| {
+        format!(
+            "orifice `{}`: its mass flow is 0 until the end of the run, at {} ms; an earlier flow, or a later `end_time`",
+            orifice.name,
+            significant(1e3 * scene.end_time)
+        )
+    };
+    silent.map(warning).collect()
+}
+
+/// Whether any of its gas enters before the end, s.
+pub fn delivers(orifice: &Orifice, end_time: f64) -> bool {
+    FlowIntegral::new(&orifice.mass_flow, end_time).total() > 0.0
 }
 
 #[cfg(test)]

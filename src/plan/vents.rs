@@ -3,7 +3,7 @@
 
 use super::limits::{Quantity, Warning};
 use super::{Measured, MeasuredVent, VentPlan};
-use crate::gas::vent::{LocalGas, flux};
+use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::gas::{Species, moles_at};
 use crate::scene::{Method, Scene, VentFlow};
@@ -48,7 +48,7 @@ pub fn planned(scene: &Scene, species: &[Species], measured: &Measured) -> Vec<V
             chamber: place.chamber,
             area,
             place: place.area,
-            initial_mass_flow: if vent.opening_pressure > 0.0 { 0.0 } else { initial },
+            initial_mass_flow: if opens(vent, false, scene.chambers[place.chamber].pressure) { initial } else { 0.0 },
             largest_flux: largest_share(scene, species, index, place),
         }
     };

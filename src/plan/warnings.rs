@@ -1,6 +1,7 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
 use super::limits::{Bound, Quantity, Warning, step_limit};
+use super::population::more_particles;
 use super::render::significant;
 use super::resolution::Resolution;
 use super::{ChamberPlan, Measured, OpeningPlan};
@@ -62,7 +63,8 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
             let wanted = super::limits::limit(Quantity::Knudsen, method).map_or(f64::NAN, |l| l.bound.value());
             // lambda ~ d at fixed occupancy, d ~ N^(-1/3).
             let times = (opening.knudsen / wanted).powi(3);
-            let remedy = format!("{times:.1} times the particles, or a modelled vent");
+            let more = more_particles((10.0 * times).ceil() / 10.0, particles as f64);
+            let remedy = more.map_or("a modelled vent".to_string(), |more| format!("{more}, or a modelled vent"));
             table(Quantity::Knudsen, &format!("opening `{}`", opening.name), opening.knudsen, &remedy)
         }));
         found.push(dense(decided));
@@ -110,7 +112,7 @@ fn dense(decided: &Decided<'_>) -> Option<Warning> {
 
 /// The thinnest gas of those that have less pressure than another.
 fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
-    let Decided { method, resolution, chambers, .. } = *decided;
+    let Decided { method, particles, resolution, chambers, .. } = *decided;
     let highest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(0.0, f64::max);
     let of_chamber = |(chamber, plan): (&Chamber, &ChamberPlan)| {
         let density = plan.particles.iter().sum::<u64>() as f64 / plan.volume;
@@ -121,7 +123,8 @@ fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
     let subject = format!("chamber `{name}` at the start");
     // As lambda ~ N^(-1/3) at fixed occupancy.
     let bound = super::limits::limit(Quantity::ThinGas, method).map_or(f64::NAN, |limit| limit.bound.value());
-    let remedy = format!("{} times the particles", significant((path / bound).powi(3)));
+    let more = more_particles((path / bound).powi(3), particles as f64);
+    let remedy = more.unwrap_or_else(|| "more gas there: no run has particles enough".to_string());
     Some(Warning::by_table(Quantity::ThinGas, method, &subject, path, &remedy))
 }
 

@@ -17,7 +17,7 @@ use super::types::Method;
 #[schemars(title = "corpuscle scene")]
 pub struct RawScene {
     /// What the scene shows; the name of the file unless given.
-    pub title: Option<String>,
+    pub title: Option<At<String>>,
     /// Unit system of every number in the file; SI unless given.
     pub units: Option<RawUnits>,
     /// Simulated time at the end of the run; the start is 0.

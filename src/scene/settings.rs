@@ -29,14 +29,8 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
             "at most one of them: each follows from the other",
         ));
     }
-    if let (Some(method), Some(rounds)) = (raw.method, &raw.rounds)
-        && method == Method::Cell
-    {
-        return Err(Problem::value(
-            &rounds.span,
-            rounds.value.to_string(),
-            "no `rounds` with the method `cell`, whose particles collide within their cells",
-        ));
+    if let Some(method) = raw.method {
+        heeded(raw, method)?;
     }
     let length = |at: &Option<At<f64>>| at.as_ref().map(|at| positive(at, Quantity::Length, units)).transpose();
     Ok(ModelRequest {
@@ -48,7 +42,7 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
             .as_ref()
             .map(|f| bounded(f, Quantity::Pure, units, "a number above 0 and at most 0.5", |f| f > 0.0 && f <= 0.5))
             .transpose()?,
-        diameter_cap: raw.diameter_cap.as_ref().map(|at| diameter_cap(at, raw, units)).transpose()?,
+        diameter_cap: raw.diameter_cap.as_ref().map(|at| diameter_cap(at, units)).transpose()?,
         time_step: raw.time_step.as_ref().map(|t| positive(t, Quantity::Time, units)).transpose()?,
         rounds: raw.rounds.as_ref().map(|n| small_count(n, 1..=8)).transpose()?,
         collision_number: raw.collision_number.as_ref().map(|z| positive(z, Quantity::Pure, units)).transpose()?,
@@ -57,13 +51,30 @@ pub(super) fn model(raw: &RawModel, units: UnitSystem) -> Result<ModelRequest, P
     })
 }
 
-fn diameter_cap(asked: &At<RawCap>, raw: &RawModel, units: UnitSystem) -> Result<DiameterCap, Problem> {
-    let RawCap::Spacings(value) = asked.value else { return Ok(DiameterCap::Off) };
-    if let Some(method) = raw.method.filter(|&method| method != Method::ClosestApproach) {
-        let found = format!("`diameter_cap` with the method `{}`", method.name());
-        let allowed = "it only beside `closest-approach`, whose pressure does not depend on the diameter";
-        return Err(Problem::value(&asked.span, found, allowed));
+/// A key that a run of the method would not heed is refused. (`diameter_cap = "off"` asks for nothing.)
+fn heeded(raw: &RawModel, method: Method) -> Result<(), Problem> {
+    let span = |at: &Option<At<f64>>| at.as_ref().map(|at| at.span.clone());
+    let cap = raw.diameter_cap.as_ref().filter(|cap| matches!(cap.value, RawCap::Spacings(_)));
+    let given = [
+        ("diameter", span(&raw.diameter)),
+        ("occupancy", span(&raw.occupancy)),
+        ("diameter_cap", cap.map(|at| at.span.clone())),
+        ("time_step", span(&raw.time_step)),
+        ("rounds", raw.rounds.as_ref().map(|at| at.span.clone())),
+        ("collision_number", span(&raw.collision_number)),
+    ];
+    let (without, why) = method.has_no();
+    for (key, span) in given {
+        if let Some(span) = span.filter(|_| without.contains(&key)) {
+            let allowed = format!("no `{key}` with the method `{}`, {why}", method.name());
+            return Err(Problem::value(&span, format!("`{key}`"), allowed));
+        }
     }
+    Ok(())
+}
+
+fn diameter_cap(asked: &At<RawCap>, units: UnitSystem) -> Result<DiameterCap, Problem> {
+    let RawCap::Spacings(value) = asked.value else { return Ok(DiameterCap::Off) };
     let at = At { value, span: asked.span.clone() };
     Ok(DiameterCap::Spacings(positive(&at, Quantity::Pure, units)?))
 }
@@ -148,9 +159,11 @@ pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<Ra
             continue;
         }
         let least = least_collision_number(zeta);
-        let allowed = format!("at least {least:.4} for the {zeta:.3} internal degrees of freedom of {:?}", gas.name);
+        // Rounded up: what is shown must do.
+        let shown = (1e4 * least - 1e-6).ceil() / 1e4;
+        let allowed = format!("at least {shown:.4} for the {zeta:.3} internal degrees of freedom of {:?}", gas.name);
         match &raw.collision_number {
-            Some(z) if z.value < least => {
+            Some(z) if z.value < least * (1.0 - 1e-9) => {
                 return Err(Problem::value(&z.span, show(z.value), allowed));
             }
             None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {

@@ -354,6 +354,19 @@ impl Method {
             Method::Cell | Method::None | Method::ControlVolume => false,
         }
     }
+
+    /// The keys of `[model]` that a run of it would not heed, and why.
+    pub fn has_no(self) -> (&'static [&'static str], &'static str) {
+        let of_collisions = &["diameter", "occupancy", "diameter_cap", "rounds", "collision_number"];
+        let of_particles = &["diameter", "occupancy", "diameter_cap", "time_step", "rounds", "collision_number"];
+        match self {
+            Method::ClosestApproach => (&[], ""),
+            Method::HardSphere => (&["diameter_cap"], "whose pressure depends on the diameter"),
+            Method::Cell => (&["diameter_cap", "rounds"], "whose particles collide within their cells"),
+            Method::None => (of_collisions, "whose particles do not collide"),
+            Method::ControlVolume => (of_particles, "which has no particles"),
+        }
+    }
 }
 
 /// What the plan decides unless the scene says it.
@@ -374,6 +387,23 @@ pub struct ModelRequest {
     pub collision_number: Option<f64>,
     pub switch: Option<Switch>,
     pub wish: Wish,
+}
+
+impl ModelRequest {
+    /// Without what its method has no use for.
+    pub fn heeded(self) -> ModelRequest {
+        let Some((keys, _)) = self.method.map(Method::has_no) else { return self };
+        let has = |key: &str| !keys.contains(&key);
+        ModelRequest {
+            diameter: self.diameter.filter(|_| has("diameter")),
+            occupancy: self.occupancy.filter(|_| has("occupancy")),
+            diameter_cap: self.diameter_cap.filter(|&cap| cap == DiameterCap::Off || has("diameter_cap")),
+            time_step: self.time_step.filter(|_| has("time_step")),
+            rounds: self.rounds.filter(|_| has("rounds")),
+            collision_number: self.collision_number.filter(|_| has("collision_number")),
+            ..self
+        }
+    }
 }
 
 /// What holds the collision diameter down where gas is dense.

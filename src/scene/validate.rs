@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::errors::Problem;
+use super::errors::{Problem, quote};
 use super::names::Names;
 use super::numbers::{count, positive};
 use super::raw::{RawScene, RawUnits};
@@ -35,6 +35,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     Names::collect("vent", raw.vent.iter().map(|v| &v.value.name), &mut problems);
     Names::collect("surface", raw.surface.iter().map(|s| &s.value.name), &mut problems);
 
+    let title = keep(title(raw, stem), &mut problems);
     let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
     let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
     let gases = each(&raw.gas, &mut problems, |gas, _| gases::gas(gas, units));
@@ -57,9 +58,9 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
         keep(settings::collision_number(&raw.model, &gases, &raw.gas), &mut problems);
     }
 
-    match (end_time, seed, model, output) {
-        (Some(end_time), Some(seed), Some(model), Some(output)) if problems.is_empty() => Ok(Scene {
-            title: raw.title.clone().unwrap_or_else(|| stem.to_string()),
+    match (title, end_time, seed, model, output) {
+        (Some(title), Some(end_time), Some(seed), Some(model), Some(output)) if problems.is_empty() => Ok(Scene {
+            title,
             units,
             end_time,
             seed,
@@ -77,6 +78,21 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
         }),
         _ => Err(problems),
     }
+}
+
+/// What stands above tables and charts; the latter are XML, in which most control characters cannot be.
+fn title(raw: &RawScene, stem: &str) -> Result<String, Problem> {
+    match &raw.title {
+        None => Ok(stem.chars().filter(|&c| !unwritable(c)).collect()),
+        Some(title) if title.value.chars().any(unwritable) => {
+            Err(Problem::value(&title.span, quote(&title.value), "a text without control characters"))
+        }
+        Some(title) => Ok(title.value.clone()),
+    }
+}
+
+fn unwritable(c: char) -> bool {
+    (c.is_control() && !matches!(c, '\t' | '\n' | '\r')) || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
 fn refuse_wrong_numbers_of_entries(raw: &RawScene, problems: &mut Vec<Problem>) {

@@ -198,7 +198,7 @@ fn write_motion(out: &mut Lines, motion: &Motion, scene: &Scene) {
 }
 
 fn write_settings(out: &mut Lines, scene: &Scene) {
-    let model = &scene.model;
+    let model = &scene.model.clone().heeded();
     out.header("[model]");
     if let Some(method) = model.method {
         out.text("method", method.name());

@@ -211,15 +211,16 @@ impl Moving {
                 }
             }
             for vent in &scene.vents {
-                let place = match &vent.disc {
-                    Some(disc) => {
-                        let away = |sign: f64| disc.center.map(|c| c + sign * 0.5 * disc.diameter);
-                        (away(-1.0), away(1.0))
+                let own = |wall, face| wall == vent.wall && (vent.face.is_none() || vent.face == face);
+                let (mut low, mut high) = extent(vessel, own);
+                // What of the wall lies in the sphere, the corners of both.
+                if let Some(disc) = &vent.disc {
+                    for axis in 0..3 {
+                        low[axis] = low[axis].max(disc.center[axis] - 0.5 * disc.diameter);
+                        high[axis] = high[axis].min(disc.center[axis] + 0.5 * disc.diameter);
                     }
-                    None => {
-                        extent(vessel, |wall, face| wall == vent.wall && (vent.face.is_none() || vent.face == face))
-                    }
-                };
+                }
+                let place = (low, high);
                 if overlap(&swept, &place) {
                     let what = format!("vent \"{}\"", vent.name);
                     return Err(ModelError::Swept { what, wall: body.name.clone() });

@@ -84,7 +84,7 @@ fn what_has_no_seeds_or_no_end_is_not_repeated() {
     refused(&["--repeat", "2", "--stop-after", "1h"], "--stop-after");
     refused(&["--repeat", "1"], "--repeat");
     refused(&["--repeat", "3", "--seed", "72057594037927934"], "seeds are below");
-    scene(folder.path(), "particles = 8000", "method = \"control-volume\"\nparticles = 8000");
+    scene(folder.path(), "occupancy = 0.1", "method = \"control-volume\"");
     refused(&["--repeat", "2"], "control-volume");
     scene(folder.path(), "particles = 8000", "switch = 2e-4\nparticles = 8000");
     refused(&["--repeat", "2"], "`switch`");

@@ -90,6 +90,9 @@ fn all_formats_give_the_same_vessel() {
         folder.file("c.stl", &ascii_stl(&corners, "solid ball")),
         folder.file("d.stl", &ascii_stl(&corners, "solid")),
         folder.file("e.obj", &obj(&corners)),
+        folder.file("f.stl", ascii_stl(&corners, "solid BALL").to_ascii_uppercase().as_slice()),
+        folder.file("g.obj", &[b"\xef\xbb\xbf".as_slice(), &obj(&corners)].concat()),
+        folder.file("h.obj", String::from_utf8(obj(&corners)).unwrap().replace("/1/1 ", "/1/1 \\\n").as_bytes()),
     ];
     let first = Vessel::build(&[mesh(&files[0], 0.1, GasSide::Inside)]).unwrap();
     // Inscribed in a ball of 0.025 m.
@@ -202,6 +205,18 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
     }
     for (name, bytes) in [("empty.obj", b"# nothing\n".as_slice()), ("line.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n")] {
         assert!(matches!(error_of(name, bytes), GeometryError::Empty { .. }), "{name}");
+    }
+    // What is said helps.
+    let longer = [whole.as_slice(), b"xx"].concat();
+    for (name, bytes, part) in [
+        ("empty.stl", b"".as_slice(), "the file is empty"),
+        ("zeros.stl", &[0; 20], "20 bytes are too few for a binary STL file"),
+        ("longer.stl", &longer, "the 320 triangles of its header take 16084 bytes, the file has 16086"),
+        ("cut.stl", &whole[..whole.len() - 30], "the file has 16054"),
+        ("surface.obj", b"v 0 0 0\nsurf 0 1 0 1 1 2\n", "line 2: no statement `surf` is read"),
+    ] {
+        let text = error_of(name, bytes).to_string();
+        assert!(text.contains(part), "{name}: {text}");
     }
     let missing = build_error(&[mesh(Path::new("no/such/file.stl"), 1.0, GasSide::Inside)]);
     assert!(missing.to_string().contains("no/such/file.stl"), "{missing}");

@@ -17,6 +17,7 @@ use super::decide::mean_states;
 use super::error::{MOST_CELLS, MOST_PARTICLES};
 use super::forecast::{Candidate, Cause, ColumnForecast, Forecaster, Outlook, worst};
 use super::heat::species;
+use super::longest::{Basis, possible_step};
 use super::resolution::{Extreme, MeanState, Resolution};
 use super::warnings::wall_hits;
 use super::{Measured, PlanError, Quantity, limit};
@@ -264,19 +265,23 @@ impl Chooser<'_> {
     /// `None` if it is impossible. With the step of a scene that asks for none where a longer one is more than collisions or
     /// walls allow.
     fn resolution(&self, family: &Family, particles: f64, states: [MeanState; 2]) -> Option<(Resolution, bool)> {
+        let end = self.scene.end_time;
+        let (method, measured, extreme) = (family.method, self.measured, self.extreme);
         let request = self.request(family, particles as u64);
-        let choose = |request: &ModelRequest| {
-            let end = self.scene.end_time;
-            Resolution::choose(family.method, request, states, self.extreme, end, &mut Vec::new()).ok()
-        };
+        // As the plan shortens a step that is far too long.
+        let basis =
+            Basis { method, request: &request, measured, states, extreme, particles: particles as u64, end_time: end };
+        let (request, _) = possible_step(&basis).ok()?;
+        let choose =
+            |request: &ModelRequest| Resolution::choose(method, request, states, extreme, end, &mut Vec::new()).ok();
         let own = choose(&request)?;
         if family.stretch <= 1.0 {
             return Some((own, false));
         }
         let longer = choose(&ModelRequest { time_step: Some(family.stretch * own.time_step), ..request })?;
         let density = states[1].number_density;
-        let hits = wall_hits(self.measured, density, &longer);
-        let few_hits = limit(Quantity::WallHits, family.method).is_none_or(|limit| limit.bound.holds(hits));
+        let hits = wall_hits(measured, density, &longer);
+        let few_hits = limit(Quantity::WallHits, method).is_none_or(|limit| limit.bound.holds(hits));
         Some(if longer.has_room(density) && few_hits { (longer, true) } else { (own, false) })
     }
 
@@ -293,13 +298,13 @@ impl Chooser<'_> {
         ModelRequest {
             method: Some(family.method),
             particles: if uniform { asked.particles } else { Some(particles) },
-            diameter: if uniform { None } else { asked.diameter },
             occupancy: family.occupancy,
             rounds: family.rounds,
             switch: None,
             wish: Wish::default(),
             ..asked.clone()
         }
+        .heeded()
     }
 }
 

@@ -283,4 +283,11 @@ fn steps_are_stretched_where_that_pays() {
     }
     let (step, ..) = planned(&|scene, _| scene.model.time_step = Some(1e-6));
     assert_eq!(step, Some(1e-6));
+    // One that the plan shortens costs what the shortened one does.
+    let (_, _, chosen, _) = planned(&|scene, _| scene.model.time_step = Some(1.0));
+    let steps = chosen.end_time / chosen.time_step;
+    let mean = 0.5 * (chosen.initial_particles + chosen.particles) as f64;
+    let told = chosen.forecast.as_ref().unwrap().particle_steps;
+    assert!(chosen.warnings.iter().any(|text| text.contains("the shorter one is taken")), "{:?}", chosen.warnings);
+    assert!(told >= 0.999 * mean * steps, "{told} of {}", mean * steps);
 }

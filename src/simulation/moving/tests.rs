@@ -73,6 +73,15 @@ fn what_cannot_move_is_refused() {
     assert!(model("velocity = 20.0", &orifice(0.08)).is_ok());
     let vent = "[[vent]]\nname = \"out\"\nwall = \"box\"\nface = \"-y\"\nchamber = \"right\"\ndischarge = 0.1\n";
     told("velocity = 20.0", vent, "sweeps over vent \"out\"");
+    // A place is a part of its wall, not the ball around its middle.
+    let place = |face: &str, position: [f64; 3]| {
+        format!(
+            "[[vent]]\nname = \"out\"\nwall = \"box\"\nface = \"{face}\"\nchamber = \"right\"\ndischarge = 0.1\n\
+             position = {position:?}\ndiameter = 0.09\n"
+        )
+    };
+    assert!(model("velocity = 20.0", &place("+x", [0.1, 0.05, 0.05])).is_ok());
+    told("velocity = 20.0", &place("-y", [0.1, 0.0, 0.05]), "sweeps over vent \"out\"");
 }
 
 /// As a control volume: each chamber keeps p V^gamma, and the work of the plate is the gain of energy.
