@@ -11,8 +11,8 @@ const STL_HEADER: usize = 84;
 const STL_TRIANGLE: usize = 50;
 /// That some editors begin a text with.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-/// Of a word that is quoted, characters.
-const LONGEST_WORD: usize = 20;
+/// Of a text that is quoted, characters.
+const LONGEST_QUOTE: usize = 40;
 
 /// The triangles of a file, in file units x `scale`, as they are: closedness and orientation are not looked at.
 pub(super) fn read(path: &Path, scale: f64, subject: &str) -> Result<WallMesh, GeometryError> {
@@ -134,29 +134,20 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
     let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
     // Positions and faces are all that matters here: no material files, normals or texture coordinates.
     let mut kept = String::new();
-    // Whether the line before ends with a backslash, and so goes on in this one; then, whether it is kept.
-    let mut goes_on = None;
-    for (index, line) in text.lines().enumerate() {
-        let (line, more) = line.strip_suffix('\\').map_or((line, false), |line| (line, true));
-        let keep = match (goes_on, line.split_whitespace().next()) {
-            (Some(keep), _) => keep,
-            (None, Some("v" | "f")) => {
-                kept.push('\n');
-                true
+    for (first, line) in statements(text) {
+        match line.split_whitespace().next() {
+            Some("v" | "f") => {
+                let mended = |wanted: &str| format!("line {first}: found `{}`, allowed: {wanted}", shortened(&line));
+                sound(&line).map_err(mended)?;
+                kept.extend([line.as_str(), "\n"]);
             }
-            (None, Some(word)) if !word.starts_with('#') && !BESIDE.contains(&word) => {
-                let word: String = word.chars().take(LONGEST_WORD).collect();
-                let word = word.escape_debug();
-                return Err(format!("line {}: no statement `{word}` is read; walls are of `v` and `f`", index + 1));
+            Some(word) if !BESIDE.contains(&word) => {
+                let word = shortened(word);
+                return Err(format!("line {first}: no statement `{word}` is read; walls are of `v` and `f`"));
             }
-            (None, _) => false,
-        };
-        if keep {
-            kept.extend([line, " "]);
+            _ => {}
         }
-        goes_on = more.then_some(keep);
     }
-    kept.push('\n');
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let (models, _) = tobj::load_obj_buf(&mut kept.as_bytes(), &options, |_| Err(tobj::LoadError::OpenFileFailed))
@@ -171,4 +162,36 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
         }
     }
     Ok(corners)
+}
+
+/// The statements of an OBJ file, each with its line, from 1; one that ends with a backslash goes on in the next line.
+fn statements(text: &str) -> Vec<(usize, String)> {
+    let mut all: Vec<(usize, String)> = Vec::new();
+    let mut goes_on = false;
+    for (index, line) in text.lines().enumerate() {
+        let (line, more) = line.strip_suffix('\\').map_or((line, false), |line| (line, true));
+        let line = line.split('#').next().unwrap_or_default();
+        match all.last_mut().filter(|_| goes_on) {
+            Some((_, statement)) => statement.extend([" ", line]),
+            None => all.push((index + 1, line.to_string())),
+        }
+        goes_on = more;
+    }
+    all
+}
+
+/// Whether a `v` or `f` can be read, or what it should be.
+fn sound(line: &str) -> Result<(), &'static str> {
+    let mut words = line.split_whitespace();
+    if words.next() == Some("v") {
+        let numbers = words.take(3).filter(|word| word.parse::<f32>().is_ok_and(f32::is_finite)).count();
+        return if numbers == 3 { Ok(()) } else { Err("three numbers") };
+    }
+    let named = |word: &str| word.split('/').next().and_then(|index| index.parse::<i32>().ok()).is_some_and(|i| i != 0);
+    if words.all(named) { Ok(()) } else { Err("numbers of vertices, from 1, or from the last with -1") }
+}
+
+fn shortened(text: &str) -> String {
+    let quoted: String = text.chars().take(LONGEST_QUOTE).collect();
+    quoted.trim_end().escape_debug().to_string()
 }

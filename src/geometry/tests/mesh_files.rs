@@ -213,6 +213,8 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
         ("zeros.stl", &[0; 20], "20 bytes are too few for a binary STL file"),
         ("longer.stl", &longer, "the 320 triangles of its header take 16084 bytes, the file has 16086"),
         ("cut.stl", &whole[..whole.len() - 30], "the file has 16054"),
+        ("two.obj", b"# two\n v 0 0\n", "line 2: found ` v 0 0`, allowed: three numbers"),
+        ("half.obj", b"v 0 0 0\nf 1 \\\n1.5 1\n", "line 2: found `f 1  1.5 1`, allowed: numbers of vertices"),
         ("surface.obj", b"v 0 0 0\nsurf 0 1 0 1 1 2\n", "line 2: no statement `surf` is read"),
     ] {
         let text = error_of(name, bytes).to_string();
