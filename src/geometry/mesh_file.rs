@@ -21,7 +21,7 @@ pub(super) fn read(path: &Path, scale: f64, subject: &str) -> Result<WallMesh, G
     if bytes.is_empty() {
         return Err(unreadable("the file is empty".into()));
     }
-    if bytes.starts_with(BYTE_ORDER_MARK) {
+    if bytes.starts_with(BYTE_ORDER_MARK) && !is_binary(&bytes) {
         bytes.drain(..BYTE_ORDER_MARK.len());
     }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
@@ -55,30 +55,37 @@ fn weld(corners: &[[f32; 3]], scale: f64) -> WallMesh {
 
 /// Three corners per triangle.
 fn read_stl(mut bytes: Vec<u8>) -> Result<Vec<[f32; 3]>, String> {
-    let size = bytes.len();
     if is_binary(&bytes) {
         // Many programs begin a binary header with "solid", which the reader takes for ASCII.
         bytes[..5].fill(b' ');
-    } else if bytes.starts_with(b"SOLID") {
-        // The reader knows small letters only.
-        bytes.make_ascii_lowercase();
-    } else if !bytes.starts_with(b"solid") {
+    } else if is_text(&bytes) {
+        bytes = readable(&bytes);
+    } else {
         return Err(no_stl(&bytes));
-    }
-    if bytes.starts_with(b"solid") && bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r' | b'\t')) {
-        // A name is optional, but the reader wants a space.
-        bytes.insert(5, b' ');
     }
     let mut cursor = Cursor::new(bytes);
     let mut corners = Vec::new();
-    let reason = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::UnexpectedEof => format!("the file of {size} bytes ends within a triangle"),
-        _ => error.to_string(),
-    };
-    for triangle in stl_io::create_stl_reader(&mut cursor).map_err(reason)? {
-        corners.extend(triangle.map_err(reason)?.vertices.map(|v| v.0));
+    for triangle in stl_io::create_stl_reader(&mut cursor).map_err(|e| e.to_string())? {
+        corners.extend(triangle.map_err(|e| e.to_string())?.vertices.map(|v| v.0));
     }
     Ok(corners)
+}
+
+/// Whether it begins as a text and has no byte that no text has.
+fn is_text(bytes: &[u8]) -> bool {
+    bytes.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && !bytes.contains(&0)
+}
+
+/// A text as the reader takes it for one: UTF-8, in small letters if it is in capitals, a space after the first word.
+fn readable(bytes: &[u8]) -> Vec<u8> {
+    let mut text = String::from_utf8_lossy(bytes).into_owned();
+    if !text.starts_with("solid") {
+        text.make_ascii_lowercase();
+    }
+    if text.as_bytes().get(5) != Some(&b' ') {
+        text.insert(5, ' ');
+    }
+    text.into_bytes()
 }
 
 /// Of a binary file: how many triangles its header says, and how many bytes they take.
@@ -92,10 +99,10 @@ fn is_binary(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|(_, size)| size == Some(bytes.len()))
 }
 
-/// Why what does not begin as a text is no binary file either.
+/// Why what is no text is no binary file either.
 fn no_stl(bytes: &[u8]) -> String {
     let size = bytes.len();
-    let text = "no text that begins with `solid`";
+    let text = "no ASCII STL text";
     match announced(bytes) {
         None => format!("{text}, and {size} bytes are too few for a binary STL file"),
         Some((count, Some(wanted))) => format!(
@@ -169,8 +176,8 @@ fn statements(text: &str) -> Vec<(usize, String)> {
     let mut all: Vec<(usize, String)> = Vec::new();
     let mut goes_on = false;
     for (index, line) in text.lines().enumerate() {
-        let (line, more) = line.strip_suffix('\\').map_or((line, false), |line| (line, true));
         let line = line.split('#').next().unwrap_or_default();
+        let (line, more) = line.strip_suffix('\\').map_or((line, false), |line| (line, true));
         match all.last_mut().filter(|_| goes_on) {
             Some((_, statement)) => statement.extend([" ", line]),
             None => all.push((index + 1, line.to_string())),

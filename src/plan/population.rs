@@ -134,8 +134,10 @@ impl Population {
     }
 }
 
-/// "K times the particles", where a run can have so many.
+/// "K times the particles", where a run can have so many; rounded up to what is shown, so that they do.
 pub fn more_particles(times: f64, particles: f64) -> Option<String> {
+    let digit = libm::pow(10.0, libm::log10(times).floor() - 3.0);
+    let times = (times / digit - 1e-9).ceil() * digit;
     (times * particles <= MOST_PARTICLES as f64).then(|| format!("{} times the particles", significant(times)))
 }
 
@@ -150,7 +152,7 @@ fn unrepresented(
     let wanted = amounts.total() / moles_per_particle;
     let none = |gas: usize, place: String, part: f64| {
         // Rounded up: with that many it must have one.
-        let remedy = match more_particles((5.0 / part).ceil() / 10.0, wanted) {
+        let remedy = match more_particles((5.0 / part + 1e-3).ceil() / 10.0, wanted) {
             Some(more) => format!("{more}, or leave it out"),
             None => "leave it out".to_string(),
         };

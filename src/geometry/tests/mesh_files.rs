@@ -89,6 +89,9 @@ fn all_formats_give_the_same_vessel() {
         folder.file("b.STL", &binary_stl(&corners, b"solid but binary")),
         folder.file("c.stl", &ascii_stl(&corners, "solid ball")),
         folder.file("d.stl", &ascii_stl(&corners, "solid")),
+        folder.file("i.stl", &[b"solid Geh\xe4use".as_slice(), &ascii_stl(&corners, "")].concat()),
+        folder.file("j.stl", &ascii_stl(&corners, "solidball")),
+        folder.file("k.stl", &binary_stl(&corners, b"SOLID but binary")),
         folder.file("e.obj", &obj(&corners)),
         folder.file("f.stl", ascii_stl(&corners, "solid BALL").to_ascii_uppercase().as_slice()),
         folder.file("g.obj", &[b"\xef\xbb\xbf".as_slice(), &obj(&corners)].concat()),
@@ -208,11 +211,14 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
     }
     // What is said helps.
     let longer = [whole.as_slice(), b"xx"].concat();
+    let with = |header: &str| [binary_stl(&ball(0.0), header.as_bytes()).as_slice(), b"xx"].concat();
     for (name, bytes, part) in [
         ("empty.stl", b"".as_slice(), "the file is empty"),
         ("zeros.stl", &[0; 20], "20 bytes are too few for a binary STL file"),
         ("longer.stl", &longer, "the 320 triangles of its header take 16084 bytes, the file has 16086"),
         ("cut.stl", &whole[..whole.len() - 30], "the file has 16054"),
+        ("solid.stl", &with("solid x"), "the 320 triangles of its header take 16084 bytes, the file has 16086"),
+        ("capitals.stl", &with("SOLID x"), "take 16084 bytes, the file has 16086"),
         ("two.obj", b"# two\n v 0 0\n", "line 2: found ` v 0 0`, allowed: three numbers"),
         ("half.obj", b"v 0 0 0\nf 1 \\\n1.5 1\n", "line 2: found `f 1  1.5 1`, allowed: numbers of vertices"),
         ("surface.obj", b"v 0 0 0\nsurf 0 1 0 1 1 2\n", "line 2: no statement `surf` is read"),
