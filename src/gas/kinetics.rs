@@ -131,7 +131,7 @@ pub fn exchange_probability(spin_dof: f64, collision_number: f64) -> Option<f64>
     let p0 = (1.0 + spin_dof / 4.0) / collision_number;
     // Z exactly at its least value may miss 1 by rounding.
     let probability = (1.0 - (1.0 - 2.0 * a * p0).max(0.0).sqrt()) / a;
-    (collision_number >= least_collision_number(spin_dof) * (1.0 - 1e-9)).then_some(probability.min(1.0))
+    (collision_number >= least_collision_number(spin_dof) * (1.0 - 1e-12)).then_some(probability.min(1.0))
 }
 
 #[cfg(test)]

@@ -144,8 +144,8 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
     for (first, line) in statements(text) {
         match line.split_whitespace().next() {
             Some("v" | "f") => {
-                let mended = |wanted: &str| format!("line {first}: found `{}`, allowed: {wanted}", shortened(&line));
-                sound(&line).map_err(mended)?;
+                let wrong = |wanted: &str| format!("line {first}: found `{}`, allowed: {wanted}", shortened(&line));
+                sound(&line).map_err(wrong)?;
                 kept.extend([line.as_str(), "\n"]);
             }
             Some(word) if !BESIDE.contains(&word) => {

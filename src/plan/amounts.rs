@@ -1,6 +1,5 @@
 //! The gas of the whole run in moles and joules, before it is cut into particles.
 
-use super::population::delivers;
 use super::{Measured, PlanError};
 use crate::gas::{FlowIntegral, Species, flow_times_of_temperature, flow_times_temperature, moles_at, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture, Orifice, Scene};
@@ -135,6 +134,11 @@ impl<'a> Heat<'a> {
         }
         thermo::temperature(&self.moles, self.species, self.energy)
     }
+}
+
+/// Whether any of its gas enters before the end, s.
+pub fn delivers(orifice: &Orifice, end_time: f64) -> bool {
+    FlowIntegral::new(&orifice.mass_flow, end_time).total() > 0.0
 }
 
 /// The highest temperature the scene can reach, K, and why: a chamber's own, that of a wall, or that of gas which flows

@@ -2,6 +2,7 @@
 
 use super::render::significant;
 use crate::geometry::GridError;
+use crate::scene::shown_collision_number;
 
 /// A particle's id and its gas share one 32-bit word on the device: 28 bits of id, 4 of gas.
 pub const MOST_PARTICLES: u64 = (1 << 28) - 1;
@@ -115,8 +116,8 @@ pub enum PlanError {
     #[error("{found} rounds of pairing per step; from 1 to {limit} are possible")]
     #[diagnostic(help("leave `rounds` in [model] out for the cheapest number"))]
     Rounds { found: u32, limit: u32 },
-    #[error("a collision number of {found} is less than the {:.4} that gas `{gas}` can relax with", enough(*least))]
-    #[diagnostic(help("set `collision_number` in [model] to at least {:.4}, or leave it out", enough(*least)))]
+    #[error("a collision number of {found} is less than the {:.4} that gas `{gas}` can relax with", shown_collision_number(*least))]
+    #[diagnostic(help("set `collision_number` in [model] to at least {:.4}, or leave it out", shown_collision_number(*least)))]
     CollisionNumber { gas: String, found: f64, least: f64 },
     #[error("the cell grid does not fit: {0}")]
     #[diagnostic(help(
@@ -127,11 +128,6 @@ pub enum PlanError {
     #[error("the cell grid has {cells} cells, more than the {limit} that can be numbered")]
     #[diagnostic(help("use fewer particles or a larger `diameter` in [model], or a smaller vessel"))]
     TooManyCells { cells: usize, limit: usize },
-}
-
-/// Rounded up to the four decimals that are shown: what is shown must do.
-fn enough(least: f64) -> f64 {
-    (1e4 * least - 1e-6).ceil() / 1e4
 }
 
 /// Where even the most particles of a run give a chamber none, only another scene does.

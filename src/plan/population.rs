@@ -1,12 +1,12 @@
 //! How many particles, and how many of them in which chamber and of which gas.
 
-use super::amounts::Amounts;
+use super::amounts::{Amounts, delivers};
 use super::error::MOST_PARTICLES;
 use super::limits::{Quantity, limit};
 use super::render::{grouped, significant};
 use super::resolution::cell_edge;
 use super::{Measured, PlanError, Reason};
-use crate::gas::{FlowIntegral, Inflow, Species, kinetics};
+use crate::gas::{Inflow, Species, kinetics};
 use crate::scene::{Method, Orifice, Scene};
 
 /// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
@@ -134,9 +134,9 @@ impl Population {
     }
 }
 
-/// "K times the particles", where a run can have so many; rounded up to what is shown, so that they do.
+/// "K times the particles", rounded up to two digits, where a run can have so many.
 pub fn more_particles(times: f64, particles: f64) -> Option<String> {
-    let digit = libm::pow(10.0, libm::log10(times).floor() - 3.0);
+    let digit = libm::pow(10.0, libm::log10(times).floor() - 1.0);
     let times = (times / digit - 1e-9).ceil() * digit;
     (times * particles <= MOST_PARTICLES as f64).then(|| format!("{} times the particles", significant(times)))
 }
@@ -151,8 +151,8 @@ fn unrepresented(
 ) -> Vec<String> {
     let wanted = amounts.total() / moles_per_particle;
     let none = |gas: usize, place: String, part: f64| {
-        // Rounded up: with that many it must have one.
-        let remedy = match more_particles((5.0 / part + 1e-3).ceil() / 10.0, wanted) {
+        // A little more than a half: an orifice's particle enters before the end.
+        let remedy = match more_particles(0.501 / part, wanted) {
             Some(more) => format!("{more}, or leave it out"),
             None => "leave it out".to_string(),
         };
@@ -188,14 +188,72 @@ pub fn silent_orifices(scene: &Scene) -> Vec<String> {
     silent.map(warning).collect()
 }
 
-/// Whether any of its gas enters before the end, s.
-pub fn delivers(orifice: &Orifice, end_time: f64) -> bool {
-    FlowIntegral::new(&orifice.mass_flow, end_time).total() > 0.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::plan;
+    use crate::plan::tests::tank;
+    use crate::scene::{Mixture, ModelRequest};
+
+    #[test]
+    fn as_many_particles_are_named_as_do_and_as_can_be() {
+        let named = |times: f64| more_particles(times, 1e4).unwrap();
+        assert_eq!(named(1.627), "1.7 times the particles");
+        assert_eq!(named(2.0), "2 times the particles");
+        assert_eq!(named(1234.3), "1300 times the particles");
+        assert!(more_particles(3e4, 1e4).is_none() && more_particles(2e4, 1e4).is_some());
+    }
+
+    /// Gas that rounds to no particle is warned of, by chamber and by orifice, with a number of particles that do; so is an
+    /// orifice from which nothing flows, whose gas then is not the hottest.
+    #[test]
+    fn gas_that_no_particle_stands_for_is_told() {
+        let told = |change: &dyn Fn(&mut Scene)| {
+            let (mut scene, measured) = tank();
+            change(&mut scene);
+            let plan = plan(&scene, &measured).unwrap();
+            let about: Vec<String> = plan
+                .warnings
+                .iter()
+                .filter(|text| text.starts_with("gas `") || text.starts_with("orifice"))
+                .cloned()
+                .collect();
+            (plan, about)
+        };
+        let trace = |scene: &mut Scene, particles: f64| {
+            scene.chambers[1].mixture = Mixture(vec![(0, 1.0 - 1e-5), (1, 1e-5)]);
+            scene.model.particles = Some(particles as u64);
+        };
+        let (plan, about) = told(&|scene| trace(scene, 1e5));
+        assert!(plan.chambers[1].particles[1] == 0 && about.len() == 1, "{about:?}");
+        let text = &about[0];
+        assert!(text.contains("of chamber `tank`: 0.") && text.contains("less than a half"), "{text}");
+        let times: f64 = text.split("; ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
+        let (plan, about) = told(&|scene| trace(scene, times * 1e5));
+        assert!(plan.chambers[1].particles[1] == 1 && about.is_empty(), "{about:?}");
+        let never = |scene: &mut Scene| {
+            trace(scene, 1e5);
+            scene.chambers[1].mixture = Mixture(vec![(0, 1.0 - 1e-12), (1, 1e-12)]);
+        };
+        assert!(told(&never).1[0].ends_with("; leave it out"));
+
+        let (_, about) = told(&|scene| scene.orifices[0].mixture = Mixture(vec![(1, 1.0 - 1e-8), (0, 1e-8)]));
+        assert!(about.len() == 1 && about[0].contains("of orifice `inflator`"), "{about:?}");
+
+        let late = |scene: &mut Scene| {
+            scene.orifices[0].mass_flow.points.iter_mut().for_each(|point| point[1] = 0.0);
+            scene.orifices[0].temperature.points.iter_mut().for_each(|point| point[1] = 3000.0);
+        };
+        for method in [None, Some(Method::ControlVolume)] {
+            let (plan, about) = told(&|scene| {
+                late(scene);
+                scene.model = ModelRequest { method, ..Default::default() };
+            });
+            assert!(about.len() == 1 && about[0].contains("its mass flow is 0 until the end"), "{about:?}");
+            assert!(plan.temperature_max < 500.0, "{}", plan.temperature_max);
+        }
+        assert!(told(&|_| ()).1.is_empty());
+    }
 
     /// The guard's at the occupancy of plans; less in cells that are longer beside the free path.
     #[test]

@@ -317,55 +317,6 @@ fn what_cannot_be_planned_is_refused() {
     assert_eq!(refused(&rigid), SwitchOfRigidSpheres);
 }
 
-/// Gas that rounds to no particle is warned of, by chamber and by orifice, with a number of particles that do; so is an
-/// orifice from which nothing flows, whose gas then is not the hottest.
-#[test]
-fn gas_that_no_particle_stands_for_is_told() {
-    let told = |change: &dyn Fn(&mut Scene)| {
-        let plan = planned(|scene, _| change(scene)).unwrap();
-        let about: Vec<String> = plan
-            .warnings
-            .iter()
-            .filter(|text| text.starts_with("gas `") || text.starts_with("orifice"))
-            .cloned()
-            .collect();
-        (plan, about)
-    };
-    let trace = |scene: &mut Scene, particles: f64| {
-        scene.chambers[1].mixture = Mixture(vec![(0, 1.0 - 1e-5), (1, 1e-5)]);
-        scene.model.particles = Some(particles as u64);
-    };
-    let (plan, about) = told(&|scene| trace(scene, 1e5));
-    assert!(plan.chambers[1].particles[1] == 0 && about.len() == 1, "{about:?}");
-    let text = &about[0];
-    assert!(text.contains("of chamber `tank`: 0.") && text.contains("less than a half"), "{text}");
-    let times: f64 = text.split("; ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
-    let (plan, about) = told(&|scene| trace(scene, times * 1e5));
-    assert!(plan.chambers[1].particles[1] == 1 && about.is_empty(), "{about:?}");
-    let never = |scene: &mut Scene| {
-        trace(scene, 1e5);
-        scene.chambers[1].mixture = Mixture(vec![(0, 1.0 - 1e-12), (1, 1e-12)]);
-    };
-    assert!(told(&never).1[0].ends_with("; leave it out"));
-
-    let (_, about) = told(&|scene| scene.orifices[0].mixture = Mixture(vec![(1, 1.0 - 1e-8), (0, 1e-8)]));
-    assert!(about.len() == 1 && about[0].contains("of orifice `inflator`"), "{about:?}");
-
-    let late = |scene: &mut Scene| {
-        scene.orifices[0].mass_flow.points.iter_mut().for_each(|point| point[1] = 0.0);
-        scene.orifices[0].temperature.points.iter_mut().for_each(|point| point[1] = 3000.0);
-    };
-    for method in [None, Some(Method::ControlVolume)] {
-        let (plan, about) = told(&|scene| {
-            late(scene);
-            scene.model = crate::scene::ModelRequest { method, ..Default::default() };
-        });
-        assert!(about.len() == 1 && about[0].contains("its mass flow is 0 until the end"), "{about:?}");
-        assert!(plan.temperature_max < 500.0, "{}", plan.temperature_max);
-    }
-    assert!(told(&|_| ()).1.is_empty());
-}
-
 /// A switch is told with when.
 #[test]
 fn a_switch_is_among_the_reasons() {

@@ -63,7 +63,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
             let wanted = super::limits::limit(Quantity::Knudsen, method).map_or(f64::NAN, |l| l.bound.value());
             // lambda ~ d at fixed occupancy, d ~ N^(-1/3).
             let times = (opening.knudsen / wanted).powi(3);
-            let more = more_particles((10.0 * times).ceil() / 10.0, particles as f64);
+            let more = more_particles(times, particles as f64);
             let remedy = more.map_or("a modelled vent".to_string(), |more| format!("{more}, or a modelled vent"));
             table(Quantity::Knudsen, &format!("opening `{}`", opening.name), opening.knudsen, &remedy)
         }));

@@ -110,6 +110,11 @@ pub(super) fn least_collision_number(zeta: f64) -> f64 {
     (1.0 + zeta / 4.0) / (1.0 - 0.5 * zeta / (zeta + 4.0))
 }
 
+/// It rounded up to the four decimals of messages: what they show does, but for the rounding of the number itself.
+pub fn shown_collision_number(least: f64) -> f64 {
+    (1e4 * least * (1.0 - 1e-12)).ceil() / 1e4
+}
+
 /// Mole fractions by gas index, in the order of the indices.
 pub(super) fn mixture(raw: &At<RawMixture>, gases: &Names) -> Result<Mixture, Problem> {
     let fractions = match &raw.value {

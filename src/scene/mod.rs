@@ -30,6 +30,7 @@ use std::path::Path;
 
 pub use errors::{InvalidScene, Problem, SceneError};
 pub use flows::FASTEST_JET;
+pub use gases::shown_collision_number;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use types::*;

@@ -1,7 +1,7 @@
 //! What the scene asks of the plan and of the output.
 
 use super::errors::Problem;
-use super::gases::least_collision_number;
+use super::gases::{least_collision_number, shown_collision_number};
 use super::numbers::{bounded, positive, show, small_count};
 use super::raw::{RawCap, RawGas, RawModel, RawOutput, RawSwitch, When};
 use super::raw_values::At;
@@ -159,11 +159,10 @@ pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<Ra
             continue;
         }
         let least = least_collision_number(zeta);
-        // Rounded up: what is shown must do.
-        let shown = (1e4 * least - 1e-6).ceil() / 1e4;
+        let shown = shown_collision_number(least);
         let allowed = format!("at least {shown:.4} for the {zeta:.3} internal degrees of freedom of {:?}", gas.name);
         match &raw.collision_number {
-            Some(z) if z.value < least * (1.0 - 1e-9) => {
+            Some(z) if z.value < least * (1.0 - 1e-12) => {
                 return Err(Problem::value(&z.span, show(z.value), allowed));
             }
             None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {

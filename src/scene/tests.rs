@@ -375,3 +375,28 @@ fn the_schema_names_every_key_with_a_description() {
     }
     assert!(properties.get("viscosity").is_none());
 }
+
+/// Whatever a request says beside its method, what is written of it is read again; and what methods have is kept.
+#[test]
+fn what_a_method_has_no_use_for_is_not_written() {
+    let mut scene = repository_scene("box.toml");
+    let methods =
+        [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None, Method::ControlVolume].map(Some);
+    for method in methods {
+        for diameter in [None, Some(1e-3)] {
+            scene.model = ModelRequest {
+                method,
+                diameter,
+                occupancy: if diameter.is_none() { Some(0.1) } else { None },
+                diameter_cap: Some(DiameterCap::Spacings(0.7)),
+                time_step: Some(1e-6),
+                rounds: Some(3),
+                collision_number: Some(5.0),
+                ..ModelRequest::default()
+            };
+            let heeded = scene.model.clone().heeded();
+            assert_eq!(parsed(&to_toml(&scene)).model, heeded, "{method:?}");
+            assert_eq!(heeded == scene.model, method == Some(Method::ClosestApproach), "{method:?}");
+        }
+    }
+}

@@ -331,6 +331,20 @@ mod tests {
         assert_eq!(warned(piston, particles, &cold, "of the coldest gas"), 1);
     }
 
+    /// The plan's mass flow of a vent is that of the start: of one that the pressure of the start opens, and of no other.
+    #[test]
+    fn a_vent_that_is_open_at_the_start_flows_then() {
+        let flow = |opening: f64| {
+            let mut scene =
+                parse(include_str!("../../scenes/vent.toml"), "test.toml", std::path::Path::new("")).unwrap();
+            scene.chambers.iter_mut().for_each(|chamber| chamber.pressure = 3e5);
+            scene.vents[0].opening_pressure = opening;
+            Model::new(scene).unwrap().plan.vents[0].initial_mass_flow
+        };
+        assert!(flow(0.0) > 0.0);
+        assert_eq!((flow(1.0), flow(1e9)), (flow(0.0), 0.0));
+    }
+
     /// What the plan says is left out is what the kernels are compiled without, scene by scene.
     #[test]
     fn kernels_are_compiled_without_what_the_scene_lacks() {
