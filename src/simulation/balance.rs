@@ -18,7 +18,7 @@ use super::exchange::Traffic;
 const STEPS_OF_A_REBALANCE: f64 = 2.0;
 /// Relative noise of the loads that the trigger sees, before it has learnt it. They are formed from counts of work, with the same costs for
 /// all ranks: timers' noise is in what ranks whose gas differs cost beside each other, not in a rank's load.
-const NOISE: f64 = 0.005;
+const NOISE: f64 = 0.002;
 
 /// What a rank had to do in the last step of an interval, and what it did besides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

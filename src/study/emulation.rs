@@ -70,8 +70,8 @@ pub struct Emulated {
     pub after: Option<f64>,
 }
 
-/// Rebalances before a measurement: the second knows the costs better.
-const REBALANCES: u32 = 2;
+/// Rebalances before a measurement: the second knows the costs better, and each the halos that cuts like its own have.
+const REBALANCES: u32 = 4;
 /// Intervals until a rebalance's first loads are read, and until the cuts are those asked for.
 const LATE: usize = 2;
 
