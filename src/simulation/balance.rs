@@ -17,7 +17,8 @@ use super::exchange::Traffic;
 /// Steps that a rebalance is thought to cost at most before one was measured.
 const STEPS_OF_A_REBALANCE: f64 = 2.0;
 /// Relative noise of the loads that the trigger sees, before it has learnt it. They are formed from counts of work, with the same costs for
-/// all ranks: timers' noise is in what ranks whose gas differs cost beside each other, not in a rank's load.
+/// all ranks: timers' noise is in what ranks whose gas differs cost beside each other, not in a rank's load. (Twice the .001 by which `imbalance_work` of the corner's two ranks
+/// scatters about its drift, as the trigger forms it from second differences.)
 const NOISE: f64 = 0.002;
 
 /// What a rank had to do in the last step of an interval, and what it did besides.
@@ -404,6 +405,23 @@ mod tests {
         assert!(after_two_intervals(0.2, 0.0).due(64));
         assert!(!after_two_intervals(0.05, 0.0).due(64));
         assert!(!after_two_intervals(-0.05, 0.0).due(64));
+    }
+
+    /// Loads that drift apart by half a per cent an interval are seen two intervals before they would be if they were thought as noisy
+    /// as half a per cent, and not before they are above the threshold.
+    #[test]
+    fn what_is_counted_is_trusted_early() {
+        let threshold = 1.02;
+        let due = |noise: f64| {
+            let mut trigger = Trigger::new(threshold, 0.0, noise);
+            (1..40).find(|&k| {
+                let excess = 0.005 * f64::from(k);
+                trigger.observe(&[1.0 + excess, 1.0 - excess], &[1.0, 1.0]);
+                // A check is every second interval.
+                k % 2 == 0 && trigger.check(64).rebalances()
+            })
+        };
+        assert_eq!((due(NOISE), due(0.005)), (Some(6), Some(8)));
     }
 
     /// What is saved until the next check must be more than that; and it is no more than two steps, however long the first took.
