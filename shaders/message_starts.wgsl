@@ -19,13 +19,17 @@ fn message_starts(@builtin(local_invocation_index) thread: u32) {
     }
     shares[thread] = sum;
     workgroupBarrier();
+    if (begin >= end) {
+        // Not to look at all that is before a share of nothing.
+        return;
+    }
     var before = shares_before(thread);
     for (var p = begin; p < end; p++) {
         peer_starts[p] = before;
         before += peer_counts[p];
         peer_counts[p] = 0u;
     }
-    if (thread == SCAN_THREADS - 1u) {
+    if (end == step.peers) {
         peer_starts[step.peers] = before;
     }
 }

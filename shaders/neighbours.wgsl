@@ -18,8 +18,19 @@ const KEPT: u32 = 4;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
-fn has_list(s: u32) -> bool {
-    return !HALO || step.depth == 0u || has_list_at(atomicLoad(&layers[s]) & LAYER);
+// Who has a list: of all its neighbours, or only of those who have it in theirs.
+struct Listed {
+    all: bool,
+    some: bool,
+}
+
+fn listed_of(s: u32) -> Listed {
+    if (!HALO || step.depth == 0u) {
+        return Listed(true, true);
+    }
+    let layer = atomicLoad(&layers[s]) & LAYER;
+    let all = has_list_at(layer);
+    return Listed(all, all || notes_at(layer));
 }
 
 fn enter(list: u32, k: u32, entry: u32, stride: u32) {
@@ -27,6 +38,14 @@ fn enter(list: u32, k: u32, entry: u32, stride: u32) {
         neighbours[k * stride + list] = entry;
     } else if (k == DIRECT) {
         long_lists[append(LIST_LONG)] = list;
+    }
+}
+
+// As much as there is room for without a tail.
+fn note(list: u32, entry: u32, stride: u32) {
+    let k = atomicAdd(&neighbour_count[list], 1u);
+    if (k < DIRECT) {
+        neighbours[k * stride + list] = entry;
     }
 }
 
@@ -64,7 +83,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     let e3 = e2 + r3.y;
     let e4 = e3 + r4.y;
     let turns = max(e4, FEWEST_TURNS);
-    let listed = has_list(s);
+    let own = listed_of(s);
     var k = 0u;
     while (k < turns) {
         var found = 0u;
@@ -92,7 +111,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         }
         let velocity = sorted[s].motion.xyz;
         var own_place = 0u;
-        if (listed) {
+        if (own.all) {
             own_place = atomicAdd(&neighbour_count[s], found);
         }
         for (var p = 0u; p < found; p++) {
@@ -102,7 +121,8 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             places = places.yzww;
             let near_wall = ((middle | other) & NEAR_WALL) != 0u;
             let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
-            if (listed) {
+            let theirs = listed_of(j);
+            if (own.all) {
                 enter(s, own_place + p, j, stride);
                 if (near_wall) {
                     to_screen(s);
@@ -110,8 +130,10 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                 if (collide) {
                     to_choose(s, 0u);
                 }
+            } else if (own.some && theirs.all) {
+                note(s, j, stride);
             }
-            if (has_list(j)) {
+            if (theirs.all) {
                 enter(j, atomicAdd(&neighbour_count[j], 1u), s, stride);
                 if (near_wall) {
                     to_screen(j);
@@ -119,6 +141,8 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                 if (collide) {
                     to_choose(j, 0u);
                 }
+            } else if (theirs.some && own.all) {
+                note(j, s, stride);
             }
         }
     }

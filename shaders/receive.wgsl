@@ -13,7 +13,7 @@
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(39) var<storage, read> updates_in: array<Update>;
 
-// Those who choose and may have a particle in their lists that has none itself.
+// Those who choose and may have a particle in their lists that has none itself, or not all of it.
 fn touch_around(s: u32, cell: vec3<u32>) {
     let middle = middles[s];
     let near = near2(FULL_SHARE);
@@ -57,7 +57,8 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     sorted[s] = after;
     flights[s] = packed_flight(updates_in[entry].flight);
     touch(s);
-    if (has_list_at(atomicLoad(&layers[s]) & LAYER)) {
+    let layer = atomicLoad(&layers[s]) & LAYER;
+    if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
         touch_neighbours(s);
     } else {
         touch_around(s, cell);

@@ -34,8 +34,9 @@ fn weigh(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (s >= step.total) {
         return;
     }
-    let listed = neighbour_count[s];
     let mark = layers[s];
+    // Of the outermost ghosts these are no candidates (asked.wgsl).
+    let listed = select(neighbour_count[s], 0u, step.depth > 0u && (mark & LAYER) >= step.depth);
     if (weights.cuts == 0u) {
         atomicAdd(&counters[CANDIDATES], listed);
         if ((mark & LAYER) != 0u) {

@@ -24,6 +24,12 @@ fn has_list_at(layer: u32) -> bool {
     return layer < step.depth && !waits(layer);
 }
 
+// Whether particles of this layer list those who have them in their lists, as far as there is room without a tail: the outermost
+// ghosts, so that what others did to them is told to whom it concerns (receive.wgsl).
+fn notes_at(layer: u32) -> bool {
+    return step.ghosts == GHOSTS_ALL && layer == step.depth;
+}
+
 // The particle of a thread in the pass over those that were asked, or NOBODY.
 fn asked_of(thread: u32) -> u32 {
     if (thread >= atomicLoad(&counters[LIST_ASKED])) {

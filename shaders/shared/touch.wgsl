@@ -1,11 +1,13 @@
-// Lets particles choose in a round, or again in the next one: each once (local.wgsl).
+// Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
+// have not all their neighbours here.
 
 @group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 
 fn to_choose(s: u32, round: u32) {
     let chooses = CHOOSES << round;
-    if ((atomicOr(&layers[s], chooses) & chooses) == 0u) {
+    let mark = atomicOr(&layers[s], chooses);
+    if ((mark & chooses) == 0u && (mark & LAYER) < max(step.depth, 1u)) {
         rechoose[append(LIST_RECHOOSE + round)] = s;
     }
 }

@@ -17,6 +17,7 @@ mod cell_box;
 mod cost;
 mod host;
 mod tree;
+mod trend;
 mod trigger;
 
 pub use bisection::{Bisection, Slice};

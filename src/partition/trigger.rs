@@ -1,11 +1,12 @@
 //! When it pays to cut anew.
 //!
 //! Observations of the ranks' seconds per step are averaged, the newest counting the more the less noise they have (from a
-//! quarter to all), and a check compares the averages. Imbalance is the longest over the mean, where the mean is what all
+//! quarter to all), and a check compares the averages. Loads that drift, as gas does, are not averaged but followed to the step of the
+//! check, on straight lines (`trend.rs`): an average of a drift is late. Imbalance is the longest over the mean, where the mean is what all
 //! would take if each had its share of the work: sum of share x seconds over sum of shares. A rebalance is due if
 //!
-//! 1. the averaged imbalance is above the threshold, by two of its standard errors if they are small,
-//! 2. the longest is above the mean by more than four standard errors of the averaged loads and what the largest of n
+//! 1. the imbalance is above the threshold, by two of its standard errors if they are small,
+//! 2. the longest is above the mean by more than four standard errors of the loads and what the largest of n
 //!    ranks' noise is expected to be, sqrt(2 ln n) (the noise is learnt from the observations and kept over rebalances),
 //! 3. (longest - mean) x steps until the next check is above the averaged seconds of a rebalance.
 //!
@@ -16,6 +17,8 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+
+use super::trend::Trend;
 
 /// What a new observation counts in the averages at least.
 const NEW: f64 = 0.25;
@@ -43,6 +46,8 @@ pub struct Trigger {
     before_loads: [Vec<f64>; 2],
     mean: f64,
     spread: f64,
+    /// The same observations on lines.
+    trend: Trend,
     /// Since the last rebalance.
     observations: u32,
     /// A sixth of the averaged square of the second difference of successive loads, in which a drift is no noise, and how
@@ -123,6 +128,7 @@ impl Trigger {
             before_loads: Default::default(),
             mean: 0.0,
             spread: 0.0,
+            trend: Trend::default(),
             observations: 0,
             noise: 0.0,
             noise_of: 0.0,
@@ -131,27 +137,26 @@ impl Trigger {
         }
     }
 
-    /// Takes in the seconds per step of each rank, measured or predicted. What is not finite or nothing is left out.
+    /// Takes in the seconds per step of each rank at a step, measured or predicted. What is not finite or nothing is left out.
     ///
     /// # Panics
     /// If there are not as many shares as ranks.
-    pub fn observe(&mut self, seconds: &[f64], shares: &[f64]) {
+    pub fn observe(&mut self, step: u64, seconds: &[f64], shares: &[f64]) {
         assert_eq!(seconds.len(), shares.len(), "one share per rank");
         let whole: f64 = shares.iter().sum();
         let mean = seconds.iter().zip(shares).map(|(seconds, share)| seconds * share).sum::<f64>() / whole;
         if mean.is_finite() && mean > 0.0 {
-            self.average(seconds, mean);
+            self.average(step, seconds, mean);
         }
     }
 
-    /// Decides by what was observed. `steps_to_next`: steps until the next check.
-    pub fn check(&mut self, steps_to_next: u64) -> Decision {
+    /// Decides at a step by what was observed until then. `steps_to_next`: steps until the next check.
+    pub fn check(&mut self, step: u64, steps_to_next: u64) -> Decision {
         if self.loads.len() < 2 || self.observations == 0 {
             return Decision::Idle;
         }
-        let imbalance = self.imbalance();
+        let (imbalance, error) = self.imbalance_at(step);
         self.judge_last(imbalance);
-        let error = (self.variance() * self.spread).sqrt();
         let threshold = 1.0 + (self.threshold - 1.0) * self.demand;
         if imbalance <= threshold {
             return Decision::Balanced { imbalance, threshold };
@@ -183,11 +188,21 @@ impl Trigger {
         }
         self.before = (self.observations > 0).then(|| self.imbalance());
         self.observations = 0;
+        self.trend = Trend::default();
     }
 
-    /// The averaged imbalance; 1 before the first observation.
+    /// The imbalance of the averages; 1 before the first observation.
     pub fn imbalance(&self) -> f64 {
         self.loads.iter().copied().fold(1.0, f64::max)
+    }
+
+    /// At a step, and its standard error: as it is by the averages or, if the loads drift, on their lines.
+    fn imbalance_at(&self, step: u64) -> (f64, f64) {
+        let variance = self.variance();
+        match self.trend.at(step, variance) {
+            Some((loads, spread)) => (loads.into_iter().fold(1.0, f64::max), (variance * spread).sqrt()),
+            None => (self.imbalance(), (variance * self.spread).sqrt()),
+        }
     }
 
     /// Averaged seconds of a rebalance.
@@ -195,10 +210,11 @@ impl Trigger {
         self.cost
     }
 
-    fn average(&mut self, seconds: &[f64], mean: f64) {
+    fn average(&mut self, step: u64, seconds: &[f64], mean: f64) {
         if self.loads.len() != seconds.len() {
             self.loads = vec![1.0; seconds.len()];
             self.observations = 0;
+            self.trend = Trend::default();
         }
         self.observations = self.observations.saturating_add(1);
         let part = (1.0 / f64::from(self.observations)).max(self.newest());
@@ -215,6 +231,7 @@ impl Trigger {
             self.noise_of = (self.noise_of + freedoms).min(NOISE_MEMORY.max(freedoms));
             self.noise += freedoms / self.noise_of * (off_square - self.noise);
         }
+        self.trend.observe(step, &loads);
         self.before_loads.swap(0, 1);
         self.before_loads[0] = loads;
         self.mean += part * (mean - self.mean);

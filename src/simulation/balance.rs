@@ -264,7 +264,7 @@ impl Balance {
                 let estimate = if first > 0.0 { most.min(first / unit) } else { most };
                 Trigger::new(self.options.threshold, estimate, NOISE)
             });
-            trigger.observe(&predicted, &self.model.shares());
+            trigger.observe(first_step + u64::from(steps), &predicted, &self.model.shares());
         }
         let rebalanced = self.rebalances.iter().find(|(step, _)| *step == first_step).map(|(_, imbalance)| *imbalance);
         self.latest = Some(BalanceRecord { step: first_step + u64::from(steps), time, loads, predicted, rebalanced });
@@ -352,7 +352,7 @@ impl Balance {
         }
         self.next_check = step + self.options.every;
         // Checks are at the ends of intervals.
-        let decision: Decision = trigger.check(self.options.every.max(self.interval));
+        let decision: Decision = trigger.check(step, self.options.every.max(self.interval));
         tracing::debug!("step {step}: {decision}");
         decision.rebalances()
     }
@@ -407,21 +407,19 @@ mod tests {
         assert!(!after_two_intervals(-0.05, 0.0).due(64));
     }
 
-    /// Loads that drift apart by half a per cent an interval are seen two intervals before they would be if they were thought as noisy
-    /// as half a per cent, and not before they are above the threshold.
+    /// An imbalance from the start that is a quarter above what the threshold allows is seen at the first check, one check before it would be if loads are
+    /// thought as noisy as half a per cent.
     #[test]
     fn what_is_counted_is_trusted_early() {
-        let threshold = 1.02;
         let due = |noise: f64| {
-            let mut trigger = Trigger::new(threshold, 0.0, noise);
+            let mut trigger = Trigger::new(1.02, 0.0, noise);
             (1..40).find(|&k| {
-                let excess = 0.005 * f64::from(k);
-                trigger.observe(&[1.0 + excess, 1.0 - excess], &[1.0, 1.0]);
+                trigger.observe(32 * k, &[1.025, 0.975], &[1.0, 1.0]);
                 // A check is every second interval.
-                k % 2 == 0 && trigger.check(64).rebalances()
+                k % 2 == 0 && trigger.check(32 * k, 64).rebalances()
             })
         };
-        assert_eq!((due(NOISE), due(0.005)), (Some(6), Some(8)));
+        assert_eq!((due(NOISE), due(0.005)), (Some(2), Some(4)));
     }
 
     /// What is saved until the next check must be more than that; and it is no more than two steps, however long the first took.
