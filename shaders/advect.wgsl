@@ -21,7 +21,7 @@ override VENTS: bool = true;
 @compute @workgroup_size(WORKGROUP)
 fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
-    if (s >= step.total) {
+    if (s >= step.total || (ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u)) {
         return;
     }
     var place: vec4<u32>;

@@ -23,7 +23,7 @@ override BLOCK_ENERGY_SCALE: f32;
 @compute @workgroup_size(WORKGROUP)
 fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear(id, groups);
-    if (i >= step.total) {
+    if (i >= step.total || atomicLoad(&counters[HELD]) > 0u) {
         return;
     }
     let particle = particles[i];

@@ -3,7 +3,8 @@
 //
 // Reads what the search does, and `neighbour_count`; writes `neighbours`. One thread per entry of `long_lists`. Where a tail
 // is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
-// has, the room that was wanted is kept for the host, and that runs the interval again with more.
+// has, and the room that was wanted is kept for the host. A device alone is held (counters.wgsl): it leaves `sorted` as it is, from which the
+// host goes on with more room. Among others, of whom one alone may be short of room, the interval is run again.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
@@ -27,6 +28,10 @@ fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     let begin = atomicAdd(&counters[LIST_TAILS], more);
     if (begin + more > arrayLength(&neighbours) - DIRECT * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
+        if (!HALO) {
+            atomicStore(&counters[HELD], step.slot + 1u);
+            atomicStore(&counters[HELD_PARTICLES], cell_start[step.bins]);
+        }
         atomicStore(&neighbour_count[s], DIRECT);
         return;
     }

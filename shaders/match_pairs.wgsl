@@ -17,7 +17,7 @@ override ROUNDS: u32;
 @compute @workgroup_size(WORKGROUP)
 fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = chooser(linear(id, groups));
-    if (s == NOBODY) {
+    if (s == NOBODY || atomicLoad(&counters[HELD]) > 0u) {
         return;
     }
     let other = choices[s].x;

@@ -2,8 +2,8 @@
 // The neighbour lists, as far as they are short (search.wgsl).
 //
 // Reads what the search does and `sorted`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
-// nobody has chosen; appends longer lists to the first half of `long_lists`, to its second those with neighbours that may be
-// behind a wall, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
+// nobody has chosen; appends longer lists to `long_lists`, those with neighbours that may be
+// behind a wall to the second words of `choices`, which nobody needs yet, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
 // candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
 
@@ -15,7 +15,7 @@ const KEPT: u32 = 4;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
-@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
+@group(0) @binding(15) var<storage, read_write> choices: array<u32>;
 @group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
 // Who has a list: of all its neighbours, or only of those who have it in theirs.
@@ -51,7 +51,7 @@ fn note(list: u32, entry: u32, stride: u32) {
 
 fn to_screen(s: u32) {
     if ((atomicOr(&layers[s], UNSCREENED) & UNSCREENED) == 0u) {
-        long_lists[arrayLength(&neighbour_count) + append(LIST_SCREEN)] = s;
+        choices[2u * append(LIST_SCREEN) + 1u] = s;
     }
 }
 
@@ -62,7 +62,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    choices[s].x = NOBODY;
+    choices[2u * s] = NOBODY;
     let middle = middles[s];
     let stride = arrayLength(&neighbour_count);
     let reach = reach_of(s, middle);

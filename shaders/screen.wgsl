@@ -2,7 +2,7 @@
 // Takes from the neighbour lists near walls those that stand behind a wall where their flights start.
 //
 // Reads `sorted`, `flights`, `middles` and the walls; reads and writes `neighbours`, `neighbour_count`. One thread
-// per entry of the second half of `long_lists`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
+// per entry of the list that the search has left in the second words of `choices`, or per ghost that was asked and is not screened yet; rounds may have changed flights by then,
 // and so the start of the step is taken from `particles` and `newborns`. The test of a pair takes the lower id first, and only pairs near
 // walls are tested, whoever else is in the list: so both sides agree.
 
@@ -12,7 +12,7 @@
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(58) var<storage, read> long_lists: array<u32>;
+@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
@@ -37,7 +37,7 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             return;
         }
     } else if (entry < atomicLoad(&counters[LIST_SCREEN])) {
-        s = long_lists[arrayLength(&neighbour_count) + entry];
+        s = choices[entry].y;
     } else {
         return;
     }

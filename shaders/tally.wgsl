@@ -161,7 +161,7 @@ fn tally(
     let first_gas = 2u * group.z;
     // Once, not for each particle.
     let here = zones[zone];
-    let count = step.total;
+    let count = select(step.total, 0u, atomicLoad(&counters[HELD]) > 0u);
     var sums_of_first = Sums();
     var sums_of_second = Sums();
     for (var k = 0u; k < CHUNK_LOOPS; k++) {

@@ -7,7 +7,7 @@ use crate::gas::{Inflow, Newborn};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Subdomain, Tables, Tallies};
+use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Steps, Subdomain, Tables, Tallies};
 
 use super::SimulationError;
 use super::decomposition::Decomposition;
@@ -38,6 +38,8 @@ pub struct Interval {
     pub tables: Tables,
     /// The mean volumes of its tallied steps where walls move, m3: of the chambers, then the probes.
     pub volumes: Vec<f64>,
+    /// If it goes on where the device was held: how many of its first steps are done, and what they tallied.
+    pub done: Option<(u32, Box<Tallies>)>,
 }
 
 /// An interval on its way through the device.
@@ -100,6 +102,7 @@ impl Interval {
             energy: vec![0.0; steps as usize],
             tables: Tables::default(),
             volumes: Vec::new(),
+            done: None,
             particles: plan.initial_particles + inflow.entered_by_gas().iter().sum::<u64>(),
         };
         if let Deal::ById { rank, ranks } = deal {
@@ -125,6 +128,11 @@ impl Interval {
             }
         }
         Ok(interval)
+    }
+
+    /// Those who enter in it.
+    pub fn entering(&self) -> Newborns<'_> {
+        Newborns { of_step: &self.newborns_of, list: &self.newborns, first_id: self.first_id, stride: self.stride }
     }
 
     /// Adds the last step to the zones, whatever its number: the history ends where the run does.
@@ -196,20 +204,14 @@ impl Machine<'_, '_> {
         if self.fit_lists {
             self.subdomain.fit_lists(device, interval.dt, &interval.tables, &before)?;
         }
-        let newborns = Newborns {
-            of_step: &interval.newborns_of,
-            list: &interval.newborns,
-            first_id: interval.first_id,
-            stride: interval.stride,
-        };
-        let Interval { first_step, dt, ref tallied, ref tables, .. } = interval;
-        let slots = self.subdomain.begin_interval(device, first_step, dt, tallied, &newborns, tables)?;
-        let last = slots.len() - 1;
-        let end = slots[last];
+        let done = interval.done.as_ref().map_or(0, |(steps, _)| *steps);
+        let steps = Steps { first: interval.first_step, done, dt: interval.dt, tallied: &interval.tallied };
+        let slots = self.subdomain.begin_interval(device, &steps, &interval.entering(), &interval.tables)?;
+        let last = interval.steps - 1;
         let mut rec = Recording::new(device);
         let (mut present, mut cells) = (0, GridCells::default());
-        for (k, mut slot) in slots.into_iter().enumerate() {
-            let sampling = Sampling { lost: k == 0, tally: interval.tallied[k] };
+        for (k, mut slot) in (done..).zip(slots) {
+            let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
             if k == last {
                 rec.time(self.timer);
             } else {
@@ -221,7 +223,7 @@ impl Machine<'_, '_> {
                 self.subdomain.tally_blocks(&mut rec, &slot);
                 self.subdomain.count_candidates(&mut rec, &slot);
                 (present, cells) = (slot.present(), self.subdomain.cells());
-            } else if (k as u32 + 1).is_multiple_of(self.batch.max(1)) {
+            } else if (k + 1).is_multiple_of(self.batch.max(1)) {
                 rec.submit();
             }
             if let Some(decomposition) = self.decomposition.as_deref_mut()
@@ -230,7 +232,6 @@ impl Machine<'_, '_> {
                 decomposition.apply(device, self.subdomain, self.exchange)?;
             }
         }
-        self.subdomain.remember_end(&mut rec, &end);
         let phases = rec.timed().to_vec();
         let timed = self.timer.map(|timer| (timer, phases.len()));
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;

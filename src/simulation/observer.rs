@@ -31,7 +31,8 @@ pub struct Options<'a> {
     pub strict: bool,
     /// The step stays the plan's, whatever the state asks for: for studies of steps that are too long.
     pub hold_step: bool,
-    /// Neighbour lists begin with room for thin gas, whatever the density, which grows on the way: for tests of that.
+    /// Neighbour lists begin with room for thin gas, whatever the density, which grows on the way, on a device alone by no more than it must: for
+    /// tests of that.
     pub lists_start_short: bool,
     /// What is not given of it is tried out.
     pub halo: HaloOptions,

@@ -11,8 +11,8 @@ use super::exchange::Exchange;
 /// as well as with the pairs that are tried.)
 pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
 
-/// In the order of a step; `lost`, `blocks` and `remember` are once an interval.
-const PHASES: [&str; 15] = [
+/// In the order of a step; `lost` and `blocks` are once an interval.
+const PHASES: [&str; 14] = [
     "inject",
     "bin",
     "exchange",
@@ -27,7 +27,6 @@ const PHASES: [&str; 15] = [
     "advect",
     "tally",
     "blocks",
-    "remember",
 ];
 /// In the first step of an interval.
 pub const LOST: &str = "lost";
@@ -39,7 +38,7 @@ pub fn place(phase: &str) -> usize {
 
 /// Whether a phase is once an interval, and so no part of a mean step.
 pub fn once_an_interval(phase: &str) -> bool {
-    [LOST, "blocks", "remember"].contains(&phase)
+    [LOST, "blocks"].contains(&phase)
 }
 
 /// What else a step does.

@@ -142,7 +142,7 @@ impl FixedBuffers {
         [coats, vents, parted, moved, shares]: [u64; 5],
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
-            step: device.uniform("step", step_slots * step_stride(device))?,
+            step: device.written_uniform("step", step_slots * step_stride(device))?,
             counters: device.storage::<u32>("counters", counters::ALL_WORDS as u64)?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
@@ -260,13 +260,13 @@ impl ExchangeBuffers {
 pub fn bytes_per_particle(collisions: bool, rounds: bool, tails: u64) -> u64 {
     let particle = size_of::<GpuParticle>() as u64;
     // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `flights`, `cells`, `middles`, the lengths of
-    // the lists and their tails, and the copy that is kept to run an interval again.
+    // the lists and their tails.
     let mut bytes = particle + 4;
     if collisions {
-        bytes += particle + 8 + 8 + 4;
+        bytes += particle + 8 + 4 + 4;
     }
     if rounds {
-        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails + particle;
+        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails;
     }
     bytes
 }
@@ -282,7 +282,7 @@ pub struct ParticleBuffers {
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds, or the `crowds` of the method `cell`.
     pub bins: wgpu::Buffer,
-    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, to screen the lists in its second half; afterwards
+    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, among others also of ghosts that are searched for late; afterwards
     /// the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
     /// One after the other `crowded` and `order_by_id`, or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
@@ -292,8 +292,6 @@ pub struct ParticleBuffers {
     pub middles: wgpu::Buffer,
     /// Among others, whose ghosts may be searched for late.
     pub neighbours: Option<wgpu::Buffer>,
-    /// On a device alone that has lists, the particles before an interval that may have to run again.
-    pub remembered: wgpu::Buffer,
     pub neighbour_count: wgpu::Buffer,
     pub cells: wgpu::Buffer,
     pub layers: wgpu::Buffer,
@@ -327,7 +325,7 @@ impl ParticleBuffers {
             particles: device.storage::<u32>("particles", DIRECT * capacity + if apart { 0 } else { tails })?,
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
-            slots: device.storage::<[u32; 2]>("slots", scratch)?,
+            slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
             rare: device.storage::<u32>("rare", capacity)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             flights: device.storage::<GpuFlight>("flights", chosen)?,
@@ -337,7 +335,6 @@ impl ParticleBuffers {
                 true => Some(device.storage::<u32>("neighbours", DIRECT * capacity + tails)?),
                 false => None,
             },
-            remembered: device.storage::<GpuParticle>("remembered", if features.halo { 4 } else { chosen })?,
             neighbour_count: device.storage::<u32>("neighbour_count", weighed)?,
             layers: device.storage::<u32>("layers", scratch)?,
             changed: device.storage::<u32>("changed", exchange)?,
@@ -351,7 +348,7 @@ impl ParticleBuffers {
         self.buffers().iter().map(|buffer| buffer.size()).sum::<u64>() + apart
     }
 
-    fn buffers(&self) -> [&wgpu::Buffer; 15] {
+    fn buffers(&self) -> [&wgpu::Buffer; 14] {
         [
             &self.particles,
             &self.newborns,
@@ -361,7 +358,6 @@ impl ParticleBuffers {
             &self.sorted,
             &self.flights,
             &self.middles,
-            &self.remembered,
             &self.neighbour_count,
             &self.cells,
             &self.layers,
@@ -397,7 +393,7 @@ impl<'a> Buffers<'a> {
             ("bounce", "sums") => &fixed.surface_sums,
             ("blocks", "sums") => &fixed.block_sums,
             ("weigh", "sums") => &exchange.histogram,
-            (_, "step") => &fixed.step,
+            (_, "step" | "step_words") => &fixed.step,
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
@@ -437,7 +433,6 @@ impl<'a> Buffers<'a> {
             (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,
             (_, "neighbours") => particle.neighbours.as_ref().unwrap_or(&particle.particles),
-            (_, "remembered") => &particle.remembered,
             (_, "neighbour_count") => &particle.neighbour_count,
             (_, "cells") => &particle.cells,
             (_, "layers") => &particle.layers,

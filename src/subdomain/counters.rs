@@ -2,8 +2,10 @@
 
 /// Words that are read.
 pub const WORDS: usize = 52;
-/// Words of the buffer: `GOES_BACK` is the device's own.
-pub const ALL_WORDS: usize = WORDS + 1;
+/// Words of the buffer: the last, `HELD` and `HELD_PARTICLES`, are read only of a device that is held.
+pub const ALL_WORDS: usize = WORDS + 2;
+pub const HELD: usize = WORDS;
+pub const HELD_PARTICLES: usize = WORDS + 1;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;

@@ -47,6 +47,19 @@ pub struct Tables {
 /// The share of a block whose gas has the largest diameter (`shaders/shared/cap.wgsl`).
 pub const FULL_SHARE: u32 = 1 << 15;
 
+/// The steps of an interval.
+#[derive(Debug, Clone, Copy)]
+pub struct Steps<'a> {
+    /// Steps of the run before it.
+    pub first: u64,
+    /// The first of its steps that are done already.
+    pub done: u32,
+    /// s.
+    pub dt: f64,
+    /// Whether each adds to the zones.
+    pub tallied: &'a [bool],
+}
+
 /// Who enters in an interval.
 #[derive(Debug, Clone, Copy)]
 pub struct Newborns<'a> {
@@ -57,6 +70,20 @@ pub struct Newborns<'a> {
     pub first_id: u32,
     /// Distance of two ids.
     pub stride: u32,
+}
+
+impl Newborns<'_> {
+    /// A step in which those of the interval's step of this place enter.
+    pub(super) fn entering(&self, slot: StepSlot, step: u32) -> StepSlot {
+        let before: u32 = self.of_step[..step as usize].iter().sum();
+        StepSlot {
+            newborns: self.of_step[step as usize],
+            newborn_offset: before,
+            first_id: self.first_id + before * self.stride,
+            stride: self.stride,
+            ..slot
+        }
+    }
 }
 
 impl StepSlot {
@@ -105,19 +132,18 @@ const TALLY_CHUNK: u64 = 64 * 32;
 
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
-    /// the steps' slots.
+    /// the slots of those that are to be done.
     ///
     /// # Errors
     /// If room must be made and the device has none.
     pub fn begin_interval(
         &mut self,
         device: &Device,
-        first_step: u64,
-        dt: f64,
-        tallied: &[bool],
+        steps: &Steps<'_>,
         newborns: &Newborns<'_>,
         tables: &Tables,
     ) -> Result<Vec<StepSlot>, GpuError> {
+        let Steps { first, done, dt, tallied } = *steps;
         // Work that was submitted before has seen the tables of its own interval.
         device.write(&self.fixed.coats, 0, &tables.coats);
         device.write(&self.fixed.vents, 0, &tables.vents);
@@ -125,31 +151,35 @@ impl Subdomain {
         device.write(&self.fixed.shares, 0, &tables.shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
-        let Newborns { of_step, list, first_id, stride } = *newborns;
+        let Newborns { of_step, list, .. } = *newborns;
         self.make_room(&mut Recording::new(device), list.len() as u64, list.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
-        let mut entered = 0;
-        for (k, (&born, &tallied)) in of_step.iter().zip(tallied).enumerate() {
+        for (k, (&born, &tallied)) in (0u32..).zip(of_step.iter().zip(tallied)) {
             let slot = StepSlot {
-                slot: k as u32,
-                index: (first_step + k as u64) as u32,
+                slot: k,
+                index: (first + u64::from(k)) as u32,
                 dt: dt as f32,
                 count: self.count,
                 newborns: born,
-                newborn_offset: entered,
-                first_id: first_id + entered * stride,
-                stride,
+                newborn_offset: 0,
+                first_id: 0,
+                stride: 1,
                 arrivals: 0,
                 total: self.count + born,
                 tallies_left,
                 near2,
             };
+            let slot = newborns.entering(slot, k);
             tallies_left -= u32::from(tallied);
-            entered += born;
             if self.place.is_alone() {
                 bytes.extend(self.parameters(device, &slot));
+            }
+            if k < done {
+                continue;
+            }
+            if self.place.is_alone() {
                 self.count += born;
             }
             slots.push(slot);
@@ -159,8 +189,8 @@ impl Subdomain {
     }
 
     /// Makes half as much room again as the first step of an interval wants for the tails of neighbour lists, by a search among
-    /// the particles that are here, which is remembered as `before`: a run begins with gas of any density, and room that is
-    /// found to be too small only afterwards costs the intervals under way. Changes nothing else.
+    /// the particles that are here, which are remembered as `before`: a run begins with gas of any density, and room that is
+    /// found to be too small only afterwards costs the intervals under way. Changes nothing else but the order of the slots.
     ///
     /// # Errors
     /// If the device fails, or has no room for such lists.
@@ -186,7 +216,12 @@ impl Subdomain {
         self.neighbours(&mut rec, &slot);
         rec.submit();
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
-        self.restore(device, before);
+        let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
+        if let Kept::Held = before.kept {
+            self.recall(device, self.count - words[counters::DROPPED], &nobody, 0);
+        } else {
+            self.restore(device, before, &nobody)?;
+        }
         // Where particles lie outside of the own cells and the halo, `sorted` has gaps: then the intervals tell.
         if words[counters::DROPPED] > 0 {
             return Ok(());
@@ -465,14 +500,6 @@ impl Subdomain {
         let groups = [self.domain.zones as u32, chunks, pairs];
         let offset = self.offset(rec.device(), step, 0);
         self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
-    }
-
-    /// At the end of an interval: what the next begins with, on a device alone.
-    pub fn remember_end(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(CollisionKernels { remember: Some(kernel), .. }) = &self.kernels.collisions {
-            let device = rec.device();
-            kernel.dispatch(rec.phase("remember"), self.offset(device, step, 0), all(device, step));
-        }
     }
 
     /// The blocks that the choice of the step size needs.

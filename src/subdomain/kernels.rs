@@ -44,7 +44,7 @@ pub struct CollisionKernels<K> {
     pub settle: K,
     pub lost: K,
     /// On a device alone.
-    pub remember: Option<K>,
+    pub recall: Option<K>,
 }
 
 /// Collisions within cells.
@@ -113,7 +113,7 @@ impl<K> Kernels<K> {
                 match_pairs: make("match_pairs")?,
                 settle: make("settle")?,
                 lost: make("lost")?,
-                remember: if features.halo { None } else { Some(make("remember")?) },
+                recall: if features.halo { None } else { Some(make("recall")?) },
             })
         } else {
             None

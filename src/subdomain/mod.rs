@@ -33,7 +33,7 @@ pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
 pub use domain::{Domain, DomainInput};
-pub use encode::{FULL_SHARE, Newborns, StepSlot, Tables};
+pub use encode::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
@@ -50,9 +50,9 @@ use buffers::{
     Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, ParticleBuffers, TallyWords,
 };
 use exchange::Guess;
-use kernels::Kernels;
+use kernels::{CollisionKernels, Kernels};
 
-/// The particles before an interval, so that it can be run again with larger buffers.
+/// How an interval can be run again with larger buffers.
 pub struct Remembered {
     kept: Kept,
     count: u32,
@@ -61,9 +61,9 @@ pub struct Remembered {
 enum Kept {
     /// No interval is ever run again.
     Nothing,
-    /// A device alone keeps the start of the first interval that must (`shaders/remember.wgsl`).
-    Here,
-    /// Whether one must is known when all ranks' tallies are: each interval has a copy.
+    /// A device alone is held where it had too little room, and goes on from there (`shaders/lengthen.wgsl`).
+    Held,
+    /// Whether one must is known when all ranks' tallies are: each interval has a copy of the particles before it.
     Copy(wgpu::Buffer),
 }
 
@@ -72,7 +72,7 @@ impl Remembered {
     pub fn spare(self) -> Option<wgpu::Buffer> {
         match self.kept {
             Kept::Copy(buffer) => Some(buffer),
-            Kept::Nothing | Kept::Here => None,
+            Kept::Nothing | Kept::Held => None,
         }
     }
 }
@@ -90,8 +90,6 @@ pub struct Subdomain {
     update_guess: Guess,
     /// Slots of `particles` in use once all encoded steps have run; among others some of them are dead.
     count: u32,
-    /// Whether `remembered` holds the start of an interval.
-    remembers: bool,
     staging: Vec<wgpu::Buffer>,
     spare_staging: Vec<wgpu::Buffer>,
 }
@@ -143,7 +141,6 @@ impl Subdomain {
             outbox_guess: Guess::new(),
             update_guess: Guess::new(),
             count: particles.len() as u32,
-            remembers: false,
             staging: Vec::new(),
             spare_staging: Vec::new(),
             domain,
@@ -264,7 +261,6 @@ impl Subdomain {
             (&self.particle.particles, &grown.particles),
             (&self.particle.bins, &grown.bins),
             (&self.particle.newborns, &grown.newborns),
-            (&self.particle.remembered, &grown.remembered),
         ] {
             encoder.copy_buffer_to_buffer(old, 0, new, 0, old.size().min(new.size()));
         }
@@ -285,33 +281,26 @@ impl Subdomain {
         }
     }
 
-    /// Keeps the particles as they are before the next interval, among others in a copy of its own, in `spare` where that has
-    /// the room, if it may have to run again: neighbour lists may need more room, and among others particles may stray.
+    /// Keeps the particles as they are before the next interval, if it may have to run again: neighbour lists may need more room, and
+    /// among others particles may stray. A device alone needs no copy; one among others has one of its own for each, in `spare` where that has
+    /// the room.
     ///
     /// # Errors
     /// If the device has no memory for the copy.
     pub fn remember(&mut self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
         let Features { rounds, halo, .. } = self.domain.features;
-        let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
-        let copied = |to: &wgpu::Buffer| {
-            let mut encoder = device.encoder();
-            encoder.copy_buffer_to_buffer(&self.particle.particles, 0, to, 0, bytes);
-            device.submit(encoder);
-        };
         let kept = if halo {
-            let buffer = match spare.filter(|buffer| buffer.size() >= bytes) {
+            let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
+            let copy = match spare.filter(|buffer| buffer.size() >= bytes) {
                 Some(buffer) => buffer,
                 None => device.storage::<GpuParticle>("remembered", self.particle.capacity)?,
             };
-            copied(&buffer);
-            Kept::Copy(buffer)
+            let mut encoder = device.encoder();
+            encoder.copy_buffer_to_buffer(&self.particle.particles, 0, &copy, 0, bytes);
+            device.submit(encoder);
+            Kept::Copy(copy)
         } else if rounds {
-            // Of a later interval the one before has.
-            if !self.remembers {
-                copied(&self.particle.remembered);
-                self.remembers = true;
-            }
-            Kept::Here
+            Kept::Held
         } else {
             Kept::Nothing
         };
@@ -326,23 +315,60 @@ impl Subdomain {
         }
     }
 
-    /// Back to a remembered state, the first of those since that had too little room, as if the intervals since had not run.
-    /// Their tallies are cleared. False, and nothing is done, of one that was not kept.
-    pub fn restore(&mut self, device: &Device, remembered: &Remembered) -> bool {
-        let particles = match &remembered.kept {
-            Kept::Nothing => return false,
-            Kept::Here => &self.particle.remembered,
-            Kept::Copy(copy) => copy,
-        };
-        let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
+    /// Back to where the first interval that had too little room can go on with more: the step of it, as if nothing had run since. That is its
+    /// first, and its tallies count for nothing, or on a device alone the one that was held, and its tallies are those of the steps before.
+    /// What has been tallied since the last read is cleared. `None`, and nothing is done, of one of which nothing was kept.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn restore(
+        &mut self,
+        device: &Device,
+        remembered: &Remembered,
+        newborns: &Newborns<'_>,
+    ) -> Result<Option<u32>, GpuError> {
+        match &remembered.kept {
+            Kept::Nothing => Ok(None),
+            Kept::Copy(copy) => {
+                let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
+                let mut encoder = device.encoder();
+                encoder.copy_buffer_to_buffer(copy, 0, &self.particle.particles, 0, bytes);
+                device.submit(encoder);
+                self.count = remembered.count;
+                self.clear_tallies(device);
+                Ok(Some(0))
+            }
+            Kept::Held => {
+                let words: Vec<u32> = device.read(&self.fixed.counters, counters::ALL_WORDS)?;
+                let Some(step) = words[counters::HELD].checked_sub(1) else {
+                    return Ok(None);
+                };
+                self.recall(device, words[counters::HELD_PARTICLES], newborns, step);
+                Ok(Some(step))
+            }
+        }
+    }
+
+    /// On a device alone: the `present` particles of `sorted` are those before a step of an interval, less who entered in it. Clears what was
+    /// tallied since the last read.
+    fn recall(&mut self, device: &Device, present: u32, newborns: &Newborns<'_>, step: u32) {
+        self.count = present;
+        let slot = newborns.entering(self.at_rest(device), step);
+        self.write_parameters(device, &slot);
+        if let Some(CollisionKernels { recall: Some(kernel), .. }) = &self.kernels.collisions {
+            let mut rec = Recording::new(device);
+            kernel.dispatch(rec.phase("lists"), self.offset(device, &slot, 0), encode::all(device, &slot));
+            rec.submit();
+        }
+        self.clear_tallies(device);
+    }
+
+    fn clear_tallies(&self, device: &Device) {
         let mut encoder = device.encoder();
-        encoder.copy_buffer_to_buffer(particles, 0, &self.particle.particles, 0, bytes);
         for buffer in [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums] {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);
-        self.count = remembered.count;
-        true
     }
 
     /// The particles owned here, in the order of the device; waits for the device.

@@ -179,6 +179,22 @@ impl Tallies {
         sums.next().is_none().then_some(all)
     }
 
+    /// With those of the steps before in the same interval, which had another read. What they wanted is had, and what is of the last step alone
+    /// is of this one's. `None` if they are not of this shape.
+    pub fn and_before(&self, earlier: &Tallies) -> Option<Tallies> {
+        let mut earlier = earlier.clone();
+        let Counters { tails_wanted, candidates, near_walls, .. } = &mut earlier.counters;
+        (*tails_wanted, *candidates, *near_walls) = (0, 0, 0);
+        let (mut sums, mut maxima) = self.to_words();
+        let (more, most) = earlier.to_words();
+        if more.len() != sums.len() {
+            return None;
+        }
+        sums.iter_mut().zip(more).for_each(|(sum, more)| *sum = sum.wrapping_add(more));
+        maxima.iter_mut().zip(most).for_each(|(maximum, most)| *maximum = most.max(*maximum));
+        self.from_words(&sums, &maxima)
+    }
+
     /// The sums of zones, surfaces, coats, vents and moving walls.
     fn signed(&mut self) -> impl Iterator<Item = &mut i64> {
         let zones = self.zones.iter_mut().flat_map(|zone| {

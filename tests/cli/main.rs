@@ -337,7 +337,7 @@ fn a_bench_measures_each_scene_and_method() {
     assert_eq!(names, all.iter().map(|&(scene, method)| (Some(scene), Some(method))).collect::<Vec<_>>());
     for run in runs {
         let phases = run["phases"].as_array().unwrap();
-        for (phase, method) in [("collide", "cell"), ("lost", "closest-approach"), ("remember", "closest-approach")] {
+        for (phase, method) in [("collide", "cell"), ("lost", "closest-approach")] {
             assert_eq!(phases.iter().any(|own| own["phase"] == phase), run["method"] == method, "{phase}: {phases:?}");
         }
         let number = |of: &serde_json::Value, key: &str| of[key].as_f64().unwrap();
@@ -354,7 +354,7 @@ fn a_bench_measures_each_scene_and_method() {
         assert!(phases.iter().all(|phase| counts.iter().all(|&count| phase[count].is_number())), "{phases:#?}");
         for phase in phases {
             let times = match phase["phase"].as_str().unwrap() {
-                "lost" | "blocks" | "remember" => 1,
+                "lost" | "blocks" => 1,
                 "tally" => 4,
                 // In each of two rounds.
                 "choose" | "settle" => 64,

@@ -4,11 +4,13 @@ use corpuscle::gpu::{Device, Recording};
 use corpuscle::output::AuditLimits;
 use corpuscle::scene::{DiameterCap, Method, Scene};
 use corpuscle::simulation::{Model, Options, Setup, Shuffle, initial_particles};
-use corpuscle::subdomain::{GpuParticle, Newborns, Place, Subdomain, Tables};
+use corpuscle::subdomain::{GpuParticle, Newborns, Place, Steps, Subdomain, Tables};
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
-use crate::scenes::{burst, by, cold_walls, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely};
+use crate::scenes::{
+    burst, by, cold_walls, crowding, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely,
+};
 use crate::whole_run::{Run, published, run};
 
 /// The scene again, in every way that must not matter.
@@ -72,7 +74,8 @@ fn room_made_between_recorded_steps_loses_none() {
             let newborns = Newborns { of_step: &[0, 0], list: &[], first_id, stride: 1 };
             let dt = model.plan.time_step;
             let tables = Tables::default();
-            let slots = subdomain.begin_interval(&device, 0, dt, &[false; 2], &newborns, &tables).expect("room");
+            let steps = Steps { first: 0, done: 0, dt, tallied: &[false; 2] };
+            let slots = subdomain.begin_interval(&device, &steps, &newborns, &tables).expect("room");
             let mut rec = Recording::new(&device);
             for (k, slot) in slots.iter().enumerate() {
                 subdomain.inject(&mut rec, slot);
@@ -196,6 +199,27 @@ fn growth_of_neighbour_lists_changes_no_bit_and_loses_nothing() {
     let ids: Vec<u32> = first.outcome.particles.iter().map(GpuParticle::id).collect();
     assert_eq!(ids, (0..1500).collect::<Vec<u32>>());
     every_way(&model);
+}
+
+/// Where room is made for no more than is wanted the device is held again and again, in steps in which particles enter (seen: in the third to the last of
+/// intervals; the tank's is held in the first), and goes on from there as if it had not been.
+#[test]
+fn a_device_that_is_held_goes_on_as_if_it_had_not_been() {
+    let model = crowding();
+    let held = run(&model, Options { lists_start_short: true, ..Options::default() });
+    let free = run(&model, Options::default());
+    assert!(
+        held.outcome.repeated > 12 + free.outcome.repeated,
+        "{} and {}",
+        held.outcome.repeated,
+        free.outcome.repeated
+    );
+    assert!(held.outcome.audit.verdict(&AuditLimits::default()).is_empty(), "{:?}", held.outcome.audit);
+    assert_same("a device that is held", &Bits::of(&free), &Bits::of(&held));
+    assert_eq!(
+        (held.outcome.steps, held.outcome.collisions, held.outcome.bounces),
+        (free.outcome.steps, free.outcome.collisions, free.outcome.bounces)
+    );
 }
 
 /// Gas that is dense from the start has lists that fit from the start, and no interval runs twice.

@@ -16,6 +16,7 @@ mod collide;
 mod exchange;
 mod fly;
 mod halo;
+mod held;
 mod lists;
 mod local;
 mod match_pairs;
@@ -23,7 +24,6 @@ mod moved;
 mod neighbour_lists;
 mod neighbours;
 mod philox;
-mod remember;
 mod rig;
 mod scan;
 mod screen;
@@ -63,8 +63,8 @@ fn every_kernel_has_its_test() {
         "order",
         "pack",
         "pack_updates",
+        "recall",
         "receive",
-        "remember",
         "reset",
         "scan_cells",
         "scan_stretches",

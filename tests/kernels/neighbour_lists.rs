@@ -60,17 +60,17 @@ pub fn lengthen(rig: &Rig, late: bool) {
 
 /// The lists that `neighbours` wants screened, in ascending order.
 pub fn to_screen_of(rig: &Rig, count: usize) -> Vec<u32> {
-    let entries: Vec<u32> = rig.get("long_lists", 2 * count);
-    let mut listed = entries[count..count + rig.counter(LIST_SCREEN) as usize].to_vec();
+    let words: Vec<[u32; 2]> = rig.get("choices", count);
+    let mut listed: Vec<u32> = words[..rig.counter(LIST_SCREEN) as usize].iter().map(|[_, second]| *second).collect();
     listed.sort_unstable();
     listed
 }
 
 /// Lists to be screened.
 pub fn put_to_screen(rig: &mut Rig, count: usize, these: &[u32]) {
-    let mut entries = vec![NOBODY; count];
-    entries.extend(these);
-    rig.put("long_lists", &entries);
+    let mut words = vec![[NOBODY; 2]; count];
+    words.iter_mut().zip(these).for_each(|(word, &list)| word[1] = list);
+    rig.put("choices", &words);
     rig.set_counter(LIST_SCREEN, these.len() as u32);
 }
 

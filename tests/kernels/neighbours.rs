@@ -169,6 +169,11 @@ fn tails_without_room_are_reported_with_the_room_they_need() {
     }
     let long = expected.iter().filter(|list| list.len() > DIRECT).count();
     assert!(cut > 0 && cut < long, "{cut} of {long}");
+    // A device alone is held there, with all its particles; one among others is not.
+    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word)), [0, 0]);
+    crowd.rig.constant("HALO", 0.0);
+    crowd.run_near(room, CELL_NEAR2);
+    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word) as usize), [1, COUNT]);
     // With that room all have it.
     let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
     assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
@@ -194,13 +199,16 @@ fn slots_behind_the_last_cell_hold_nobody() {
     }
 }
 
-/// The outermost ghosts, whose neighbours are not all here, have none; the lists of all others are as ever.
+/// The outermost ghosts, whose neighbours are not all here, list those of them alone who choose, as far as there is room without a tail, and nobody where ghosts
+/// wait until they are asked; those farther out list nobody. The lists of all others are as ever.
 #[test]
-fn the_outermost_ghosts_have_no_neighbours() {
+fn the_outermost_ghosts_list_those_alone_who_choose() {
     let mut crowd = crowd(14);
-    let expected = crowd.all_pairs();
+    let pairs = crowd.all_pairs();
     let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
-    for depth in [2, 3, 0] {
+    let layer = |s: usize| layers[s] & 0xff;
+    // All choose, or the outermost of those who would wait.
+    for (depth, ghosts) in [(2, 0), (3, 0), (2, 1), (0, 0)] {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
         crowd.rig.put("layers", &layers);
@@ -209,16 +217,37 @@ fn the_outermost_ghosts_have_no_neighbours() {
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
             depth,
+            ghosts,
             size: grid,
             bins: grid.iter().product(),
             ..GpuStep::default()
         });
         crowd.rig.run("neighbours", COUNT);
+        let long = crowd.rig.counter(LIST_LONG) as usize;
+        lengthen(&crowd.rig, false);
         let counts: Vec<u32> = crowd.rig.get("neighbour_count", COUNT);
-        for (s, expected) in expected.iter().enumerate() {
-            let outermost = depth > 0 && layers[s] & 0xff >= depth;
-            assert_eq!(counts[s] as usize, if outermost { 0 } else { expected.len() }, "{s}, depth {depth}");
+        let entries: Vec<u32> = crowd.rig.get("neighbours", DIRECT * COUNT);
+        let (mut noted, mut cut, mut longer) = (0, 0, 0);
+        for (s, pairs) in pairs.iter().enumerate() {
+            if depth == 0 || layer(s) + ghosts < depth {
+                assert_eq!(counts[s] as usize, pairs.len(), "{s}, depth {depth}");
+                longer += usize::from(pairs.len() > DIRECT);
+                continue;
+            }
+            let choosers: BTreeSet<u32> = pairs.iter().copied().filter(|&j| layer(j as usize) < depth).collect();
+            let expected = if ghosts == 0 && layer(s) == depth { choosers } else { BTreeSet::new() };
+            assert_eq!(counts[s] as usize, expected.len(), "{s}, depth {depth}");
+            let kept = expected.len().min(DIRECT);
+            let found: BTreeSet<u32> = (0..kept).map(|k| entries[k * COUNT + s]).collect();
+            assert!(found.len() == kept && found.is_subset(&expected), "{s}, depth {depth}");
+            noted += usize::from(kept > 0);
+            cut += usize::from(expected.len() > DIRECT);
         }
+        // No room is made for what is cut; and who does not choose is on no list of those who do.
+        assert_eq!(long, longer, "depth {depth}");
+        let first = crowd.rig.list("rechoose", LIST_RECHOOSE);
+        assert!(depth == 0 || first.iter().all(|&s| layer(s as usize) < depth));
+        assert!(if depth > 0 && ghosts == 0 { noted > 100 && cut > 10 } else { noted == 0 }, "{noted}, {cut}");
     }
 }
 
@@ -298,7 +327,7 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
         crowd.dt = dt;
         crowd.run();
         let choosers = crowd.rig.list("rechoose", LIST_RECHOOSE);
-        assert_eq!(crowd.rig.get::<[u32; 2]>("choices", COUNT), vec![[NOBODY, 7]; COUNT]);
+        assert!(crowd.rig.get::<[u32; 2]>("choices", COUNT).iter().all(|[partner, _]| *partner == NOBODY));
         // Now all.
         crowd.rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
         crowd.rig.set_counter(LIST_RECHOOSE, COUNT as u32);

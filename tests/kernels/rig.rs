@@ -49,6 +49,8 @@ pub const GHOST_CANDIDATES: usize = 50;
 pub const GHOST_WALLS: usize = 51;
 pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
+pub const HELD: usize = 52;
+pub const HELD_PARTICLES: usize = 53;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -269,6 +271,7 @@ impl Rig {
         rig.put("shares", &[0u32; 4]);
         rig.put("origins", &[0u32; 4]);
         rig.put("particles", &[0u32; 8]);
+        rig.put("step_words", &[0u32; 8]);
         rig
     }
 

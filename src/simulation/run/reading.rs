@@ -76,11 +76,13 @@ impl Simulation<'_> {
         if self.ranks.comm().size() > 1 {
             flight = self.reduce(flight)?;
         }
-        let InFlight { interval, before, tallies, phases, .. } = flight;
-        let (tallies, stamps, loads) = self.collect(tallies)?;
-        let counters = &tallies.counters;
-        if counters.tails_wanted > 0 || counters.strays > 0 {
-            return self.run_again(interval, before, counters.tails_wanted, counters.strays > 0);
+        let InFlight { mut interval, before, tallies, phases, .. } = flight;
+        let (mut tallies, stamps, loads) = self.collect(tallies)?;
+        if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 {
+            return self.run_again(interval, before, tallies);
+        }
+        if let Some((_, earlier)) = interval.done.take() {
+            tallies = tallies.and_before(&earlier).ok_or_else(misshapen)?;
         }
         self.spare.extend(before.spare());
         let duration = interval.dt * f64::from(interval.steps);
@@ -180,24 +182,36 @@ impl Simulation<'_> {
         Ok(dropped)
     }
 
-    /// Runs an interval, and those submitted since, again with room for tails of neighbour lists of `wanted` entries and a
-    /// quarter more, and with everyone as a peer if particles strayed. All ranks do, since they see the sums.
+    /// Runs an interval, and those submitted since, again with as much room for the tails of neighbour lists as its tallies say was wanted and a
+    /// quarter more, and with everyone as a peer if particles strayed. All ranks do, since they see the sums. A device alone goes on from
+    /// the step that had too little room.
     fn run_again(
         &mut self,
-        first: Interval,
+        mut first: Interval,
         before: Remembered,
-        wanted: u32,
-        strayed: bool,
+        mut tallies: Tallies,
     ) -> Result<(), SimulationError> {
         self.repeated += 1;
         self.tuner.disturbed();
-        tracing::debug!("tails of neighbour lists grow to {wanted}, strays: {strayed}; an interval is run again");
+        let (wanted, strayed) = (tallies.counters.tails_wanted, tallies.counters.strays > 0);
         let later = self.abandon()?;
-        if !self.subdomain.restore(self.device, &before) {
+        let Some(step) = self.subdomain.restore(self.device, &before, &first.entering())? else {
             let what = "an interval has to run again, and its start was not kept".to_owned();
             return Err(SimulationError::Lost { time: self.read_until, what });
+        };
+        tracing::debug!(
+            "tails of neighbour lists grow to {wanted}, strays: {strayed}; an interval of {} steps is run again from step {step}",
+            first.steps
+        );
+        if step > 0 {
+            if let Some((_, earlier)) = &first.done {
+                tallies = tallies.and_before(earlier).ok_or_else(misshapen)?;
+            }
+            first.done = Some((step, Box::new(tallies)));
         }
-        self.subdomain.make_room_for_tails(self.device, wanted.into(), 0.25)?;
+        // (A device alone can be asked to grow no more than it must.)
+        let more = if self.options.lists_start_short && self.decomposition.is_none() { 0.0 } else { 0.25 };
+        self.subdomain.make_room_for_tails(self.device, wanted.into(), more)?;
         if let Some(decomposition) = &mut self.decomposition {
             // The cuts may have changed since; the first exchange brings the particles home.
             decomposition.scatter();
@@ -212,6 +226,13 @@ impl Simulation<'_> {
             self.submit(interval)?;
         }
         Ok(())
+    }
+}
+
+fn misshapen() -> SimulationError {
+    SimulationError::Lost {
+        time: 0.0,
+        what: "the tallies of an interval's two parts do not have the same shape".into(),
     }
 }
 

@@ -24,7 +24,7 @@ use crate::subdomain::CROWD;
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work.
-const COUNTED: [&str; 21] = [
+const COUNTED: [&str; 20] = [
     "inject",
     "bin",
     "arrange",
@@ -45,7 +45,6 @@ const COUNTED: [&str; 21] = [
     "bounce",
     "tally",
     "blocks",
-    "remember",
 ];
 
 /// The turns that each search takes at least, as in `shaders/neighbours.wgsl`.
@@ -189,7 +188,6 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             (seen * (work.zones * work.gas_pairs) + added) * (present * work.tallies)
         }
         "blocks" => counted.straight("blocks")? * (present * work.intervals),
-        "remember" => counted.straight("remember")? * (present * work.intervals),
         _ => return None,
     })
 }
@@ -229,7 +227,6 @@ mod tests {
                 "advect",
                 "tally",
                 "blocks",
-                "remember",
             ],
         }
     }

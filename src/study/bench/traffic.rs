@@ -72,7 +72,6 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         // The states, once for all zones.
         "tally" => present * PARTICLE * work.tallies,
         "blocks" => present * PARTICLE * work.intervals,
-        "remember" => present * 2.0 * PARTICLE * work.intervals,
         _ => return None,
     })
 }
@@ -102,7 +101,7 @@ mod tests {
             ..Work::default()
         };
         let more = Work { candidates: 600.0, ..few };
-        let phases = ["bin", "scan", "sort", "choose", "settle", "lost", "advect", "tally", "blocks", "remember"];
+        let phases = ["bin", "scan", "sort", "choose", "settle", "lost", "advect", "tally", "blocks"];
         for phase in phases {
             let [a, b] = [&few, &more].map(|work| bytes(phase, Method::ClosestApproach, work).unwrap());
             // One more for each particle.
@@ -129,7 +128,7 @@ mod tests {
         assert_eq!([floor("sort", rounds), floor("sort", cell)], [108.0, 72.0]);
         assert_eq!(floor("neighbours", rounds), 16.0);
         assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
-        assert_eq!(["tally", "blocks", "remember"].map(|phase| floor(phase, cell)), [32.0, 32.0, 64.0]);
+        assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
         let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };

@@ -1,0 +1,22 @@
+//! uses: step.wgsl particle.wgsl newborn.wgsl
+// Puts the particles back as they were before a step that was held after its search (counters.wgsl), on a device alone.
+//
+// Reads `sorted`; writes `particles`, where those that entered in this step leave dead slots: they enter again. One thread per
+// particle, which writes its own slot.
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+
+@compute @workgroup_size(WORKGROUP)
+fn recall(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear(id, groups);
+    if (k >= step.total) {
+        return;
+    }
+    var particle = sorted[k];
+    if (is_newborn(id_of(particle.place.w))) {
+        particle.place.w = NOBODY;
+    }
+    particles[k] = particle;
+}

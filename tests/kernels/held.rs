@@ -1,0 +1,102 @@
+//! A device that is held, as its neighbour lists had too little room: what is left as it is, and `recall`.
+
+use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
+
+use crate::oracle::random::Stream;
+use crate::rig::*;
+
+const COUNT: usize = 300;
+const LEVELS: usize = 4;
+
+/// Particles are back in their slots, but for those that entered in the step, which will again.
+#[test]
+fn recall_puts_back_all_but_those_that_entered() {
+    let world = World::plain();
+    let mut stream = Stream::new(91);
+    let sorted = world.particles(&mut stream, COUNT, 300.0);
+    let beyond = GpuParticle { velocity: [7.0; 3], ..GpuParticle::default() };
+    // Ids are below 2 COUNT; every second id from `first` on is of one that entered here.
+    let (first, newborns) = (COUNT as u32, COUNT as u32 / 2);
+    let mut expected = sorted.clone();
+    let entered = expected.iter_mut().filter(|particle| particle.id() >= first);
+    let number = entered.map(|particle| particle.tag = NOBODY).count();
+    assert!(number > 50 && number < COUNT - 50, "{number}");
+    expected.resize(COUNT + 20, beyond);
+    let mut rig = Rig::new(&world);
+    rig.put("sorted", &sorted);
+    rig.put("particles", &vec![beyond; COUNT + 20]);
+    let (count, total) = (COUNT as u32, COUNT as u32);
+    rig.step(GpuStep { count, total, newborns, newborn_first_id: first, stride: 2, ..GpuStep::default() });
+    rig.run("recall", COUNT);
+    assert!(rig.get::<GpuParticle>("particles", COUNT + 20) == expected);
+}
+
+/// What comes after the search of a step that was held changes nothing, and what does so otherwise can be told.
+#[test]
+fn a_device_that_is_held_changes_nothing() {
+    let world = World::plain();
+    let mut stream = Stream::new(92);
+    let sorted = world.particles(&mut stream, COUNT, 300.0);
+    let partners: Vec<[u32; 2]> = (0..COUNT as u32).map(|s| [s ^ 1, 5]).collect();
+    let chosen: Vec<u32> = (0..COUNT as u32).collect();
+    let mut rig = Rig::new(&world);
+    for (name, value) in [
+        ("ROUNDS", 2.0),
+        ("CHAMBERS", 0.0),
+        ("VELOCITY_SCALE", 65536.0),
+        ("ENERGY_SCALE", 4096.0),
+        ("BLOCKS", 1.0),
+        ("TIME_STEP", 1e-5),
+        ("LEVELS", LEVELS as f64),
+        ("BLOCK_ENERGY_SCALE", 64.0),
+    ] {
+        rig.constant(name, value);
+    }
+    rig.gases(&[GpuGas { mass: 1.0, ..GpuGas::default() }; 2]);
+    let nothing = vec![0u32; COUNT];
+    rig.put("sorted", &sorted);
+    rig.put("particles", &sorted);
+    rig.put("flights", &free_flights(COUNT));
+    rig.put("cell_start", &vec![COUNT as u32; world.grid.cell_count() as usize + 1]);
+    rig.put("choices", &partners);
+    rig.put("rechoose", &chosen);
+    rig.put("pairs", &nothing);
+    rig.put("bouncing", &nothing);
+    rig.put("layers", &vec![CHOOSES; COUNT]);
+    rig.put("zones", &[GpuZone::default()]);
+    rig.step(GpuStep { count: COUNT as u32, dt: 1e-6, ..GpuStep::default() });
+    rig.set_counter(LIST_RECHOOSE, COUNT as u32);
+    // What each of them leaves: particles, pairs, sums and counters.
+    let mut left_by = |kernel: &str, held: u32| {
+        rig.put("sums", &vec![0u32; (2 * ZONE_WORDS).max(BLOCK_WORDS + LEVELS)]);
+        rig.set_counter(HELD, held);
+        match kernel {
+            "tally" => rig.run_groups("tally", [1, 1, 1]),
+            _ => rig.run(kernel, COUNT),
+        }
+        rig.set_counter(HELD, 0);
+        let mut left: Vec<u32> = rig.get("sums", 2 * ZONE_WORDS);
+        left.extend(rig.get::<u32>("particles", 8 * COUNT));
+        left.extend(rig.get::<u32>("pairs", COUNT));
+        left.extend(rig.get::<u32>("counters", COUNTERS));
+        left
+    };
+    for kernel in ["match_pairs", "tally", "blocks", "advect"] {
+        let before = left_by(kernel, 5);
+        assert!(left_by(kernel, 1) == before, "{kernel} of a device that is held");
+        assert!(left_by(kernel, 0) != before, "{kernel} does nothing at all");
+    }
+}
+
+/// The steps that follow have nobody.
+#[test]
+fn the_steps_of_a_device_that_is_held_have_nobody() {
+    let mut rig = Rig::new(&World::plain());
+    let words: Vec<u32> = (1..=1000).collect();
+    rig.put("step_words", &words);
+    rig.run_groups("reset", [1, 1, 1]);
+    assert_eq!(rig.get::<u32>("step_words", words.len()), words);
+    rig.set_counter(HELD, 1);
+    rig.run_groups("reset", [1, 1, 1]);
+    assert_eq!(rig.get::<u32>("step_words", words.len()), vec![0; words.len()]);
+}
