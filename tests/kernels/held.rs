@@ -57,7 +57,7 @@ fn a_device_that_is_held_changes_nothing() {
     rig.put("sorted", &sorted);
     rig.put("particles", &sorted);
     rig.put("flights", &free_flights(COUNT));
-    rig.put("cell_start", &vec![COUNT as u32; world.grid.cell_count() as usize + 1]);
+    rig.put("cell_start", &vec![COUNT as u32; world.grid.cell_count() + 1]);
     rig.put("choices", &partners);
     rig.put("rechoose", &chosen);
     rig.put("pairs", &nothing);
