@@ -34,16 +34,16 @@ pub fn burst() -> Model {
 }
 
 /// The same with particles so large that the neighbour lists grow longer and longer, and a vent.
-pub fn crowding() -> Model {
-    model(
+pub fn crowding(particles: u32, diameter: f64) -> Model {
+    model(&format!(
         "end_time = 6e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
          [[chamber]]\nname = \"all\"\npressure = 2e4\ntemperature = 300.0\ngas = \"air\"\n\
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.004\n\
          gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 2.0], [6e-4, 2.0]]\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-         [model]\nparticles = 1200\ndiameter = 0.01\ndiameter_cap = \"off\"\ntime_step = 4e-6\n[output]\nrows = 5\nsnapshots = 0\n",
-    )
+         [model]\nparticles = {particles}\ndiameter = {diameter}\ndiameter_cap = \"off\"\ntime_step = 4e-6\n[output]\nrows = 5\nsnapshots = 0\n"
+    ))
 }
 
 /// Carbon dioxide, whose heat capacity grows, and helium blow into air and helium within warm walls.
