@@ -1,7 +1,7 @@
 //! uses: step.wgsl lists.wgsl counters.wgsl asked.wgsl search.wgsl
 // The neighbour lists that are longer than DIRECT: each is searched once more, with a tail.
 //
-// Reads what the search does, and `neighbour_count`; writes `neighbours`. One thread per entry of `long_lists`. Where a tail
+// Reads what the search does; reads and writes `neighbour_count`; writes `neighbours` and `counters`. One thread per entry of `long_lists`. Where a tail
 // is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
 // has, and the room that was wanted is kept for the host. A device alone is held (counters.wgsl): it leaves `sorted` as it is, from which the
 // host goes on with more room. Among others, of whom one alone may be short of room, the interval is run again.

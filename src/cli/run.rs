@@ -342,7 +342,7 @@ fn summary(model: &Model, outcome: &Outcome) -> String {
     text += &warned(outcome);
     if outcome.repeated > 0 {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{} intervals were run again with more room for neighbour lists", outcome.repeated);
+        let _ = writeln!(text, "steps were run again {} times, with more room for neighbour lists", outcome.repeated);
     }
     let traffic = &outcome.traffic;
     if traffic.steps > 0 {

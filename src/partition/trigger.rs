@@ -56,7 +56,8 @@ pub struct Trigger {
     noise_of: f64,
     /// What is asked more after rebalances in vain: a power of two.
     demand: f64,
-    /// The imbalance before a rebalance that is yet to be judged.
+    /// The imbalance that the last check found, and that before a rebalance that is yet to be judged.
+    found: Option<f64>,
     before: Option<f64>,
 }
 
@@ -133,6 +134,7 @@ impl Trigger {
             noise: 0.0,
             noise_of: 0.0,
             demand: 1.0,
+            found: None,
             before: None,
         }
     }
@@ -157,6 +159,7 @@ impl Trigger {
         }
         let (imbalance, error) = self.imbalance_at(step);
         self.judge_last(imbalance);
+        self.found = Some(imbalance);
         let threshold = 1.0 + (self.threshold - 1.0) * self.demand;
         if imbalance <= threshold {
             return Decision::Balanced { imbalance, threshold };
@@ -186,7 +189,7 @@ impl Trigger {
             self.cost += part * (seconds - self.cost);
             self.measured = true;
         }
-        self.before = (self.observations > 0).then(|| self.imbalance());
+        self.before = self.found.take();
         self.observations = 0;
         self.trend = Trend::default();
     }

@@ -136,7 +136,7 @@ pub struct Outcome {
     pub bounces: u64,
     /// s, of the particles; the end time unless the run was stopped earlier, or switched to a control volume.
     pub time: f64,
-    /// Intervals that were run again with larger buffers.
+    /// How often steps were run again with larger buffers.
     pub repeated: u32,
     /// Smallest and largest step taken, s.
     pub step_range: [f64; 2],

@@ -479,7 +479,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// The flights of the last step of the run so far, with ids, in the order of
-    /// [`Simulation::particles`]: for tests and studies of single steps.
+    /// [`Simulation::particles`]: for tests and studies of single steps, after [`Simulation::settle`].
     ///
     /// # Errors
     /// If the device fails.
@@ -489,7 +489,7 @@ impl<'a> Simulation<'a> {
         Ok(particles.iter().map(GpuParticle::id).zip(flights).collect())
     }
 
-    /// The particles, in the order of the device.
+    /// The particles, in the order of the device, after [`Simulation::settle`]: before it the device may be held.
     ///
     /// # Errors
     /// If the device fails.

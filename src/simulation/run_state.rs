@@ -48,7 +48,7 @@ pub struct RunState {
     pub next_snapshot: u32,
     /// s.
     pub read_until: f64,
-    /// Intervals that were run again.
+    /// How often steps were run again.
     pub repeated: u32,
 }
 

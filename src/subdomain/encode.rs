@@ -7,101 +7,11 @@ use super::buffers::{CHUNK, CellBuffers, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
-use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuStep, GpuVent};
+use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::place::Cells;
+use super::step_slot::{Newborns, StepSlot, Steps, Tables};
 use super::{GpuError, Kept, Remembered, Subdomain};
-
-/// One step of an interval, as its dispatches see it.
-#[derive(Debug, Clone, Copy)]
-pub struct StepSlot {
-    /// Place in the interval.
-    slot: u32,
-    index: u32,
-    dt: f32,
-    pub(super) count: u32,
-    pub(super) newborns: u32,
-    newborn_offset: u32,
-    first_id: u32,
-    stride: u32,
-    pub(super) arrivals: u32,
-    /// Entries of `sorted`.
-    pub(super) total: u32,
-    tallies_left: u32,
-    near2: u32,
-}
-
-/// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
-/// of its steps, `MOST_MOTIONS` entries for each, empty where none does.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Tables {
-    pub coats: Vec<GpuCoat>,
-    pub vents: Vec<GpuVent>,
-    pub motions: Vec<GpuMotion>,
-    /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
-    pub shares: Vec<u32>,
-    /// By how many halvings less the fastest pairs fly in these steps than in the longest.
-    pub halvings: u32,
-}
-
-/// The share of a block whose gas has the largest diameter (`shaders/shared/cap.wgsl`).
-pub const FULL_SHARE: u32 = 1 << 15;
-
-/// The steps of an interval.
-#[derive(Debug, Clone, Copy)]
-pub struct Steps<'a> {
-    /// Steps of the run before it.
-    pub first: u64,
-    /// The first of its steps that are done already.
-    pub done: u32,
-    /// s.
-    pub dt: f64,
-    /// Whether each adds to the zones.
-    pub tallied: &'a [bool],
-}
-
-/// Who enters in an interval.
-#[derive(Debug, Clone, Copy)]
-pub struct Newborns<'a> {
-    /// The number in each step.
-    pub of_step: &'a [u32],
-    /// All of them, in order of entry.
-    pub list: &'a [GpuNewborn],
-    pub first_id: u32,
-    /// Distance of two ids.
-    pub stride: u32,
-}
-
-impl Newborns<'_> {
-    /// A step in which those of the interval's step of this place enter.
-    pub(super) fn entering(&self, slot: StepSlot, step: u32) -> StepSlot {
-        let before: u32 = self.of_step[..step as usize].iter().sum();
-        StepSlot {
-            newborns: self.of_step[step as usize],
-            newborn_offset: before,
-            first_id: self.first_id + before * self.stride,
-            stride: self.stride,
-            ..slot
-        }
-    }
-}
-
-impl StepSlot {
-    /// Steps since the start of the run.
-    pub fn index(&self) -> u32 {
-        self.index
-    }
-
-    /// Particles on the device in this step, ghosts included.
-    pub fn present(&self) -> u32 {
-        self.total
-    }
-
-    /// Those of them that came from other devices.
-    pub fn arrived(&self) -> u32 {
-        self.arrivals
-    }
-}
 
 /// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
 const LIST_PARTED: u32 = 0;
@@ -152,7 +62,8 @@ impl Subdomain {
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
         let Newborns { of_step, list, .. } = *newborns;
-        self.make_room(&mut Recording::new(device), list.len() as u64, list.len() as u64, 0)?;
+        let entering = of_step[done as usize..].iter().map(|&born| u64::from(born)).sum();
+        self.make_room(&mut Recording::new(device), entering, list.len() as u64, 0)?;
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();

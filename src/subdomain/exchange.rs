@@ -9,8 +9,9 @@ use crate::gpu::{Device, Readback, Recording};
 
 use super::buffers::{ExchangeBuffers, ExchangeRoom};
 use super::counters;
-use super::encode::{StepSlot, threads};
+use super::encode::threads;
 use super::layout::{GpuParticle, GpuUpdate, GpuWeights};
+use super::step_slot::StepSlot;
 use super::{GpuError, Subdomain};
 
 /// Least entries that are copied with the counts, before it is known how many there are.

@@ -1,7 +1,7 @@
 //! One device's gas: the particle buffers and the kernels of each phase of the step.
 //!
 //! Invariants: between steps `particles` holds every particle once, in canonical order (cell, id) where
-//! there are collisions; positions are fixed-point on the plan's grid; nothing is read back but the
+//! there are collisions (of a device alone that is held, for want of room, `sorted` does until the host goes on); positions are fixed-point on the plan's grid; nothing is read back but the
 //! tallies of an interval, one interval late, and whole states on request.
 
 mod buffers;
@@ -18,6 +18,7 @@ mod nearness;
 mod place;
 mod scales;
 mod state;
+mod step_slot;
 mod tallies;
 mod walls;
 
@@ -33,7 +34,6 @@ pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
 pub use domain::{Domain, DomainInput};
-pub use encode::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
@@ -43,6 +43,7 @@ pub use memory::Memory;
 pub use place::{Cells, Ghosts, GridCells, Place};
 pub use scales::Scales;
 pub use state::{StateError, zone_of};
+pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;
 
@@ -342,11 +343,13 @@ impl Subdomain {
             }
             Kept::Held => {
                 let words: Vec<u32> = device.read(&self.fixed.counters, counters::ALL_WORDS)?;
-                let Some(step) = words[counters::HELD].checked_sub(1) else {
-                    return Ok(None);
-                };
-                self.recall(device, words[counters::HELD_PARTICLES], newborns, step);
-                Ok(Some(step))
+                let (held, present) = (words[counters::HELD], words[counters::HELD_PARTICLES]);
+                let known = (held as usize) <= newborns.of_step.len() && u64::from(present) <= self.particle.capacity;
+                let step = held.checked_sub(1).filter(|_| known);
+                if let Some(step) = step {
+                    self.recall(device, present, newborns, step);
+                }
+                Ok(step)
             }
         }
     }

@@ -115,7 +115,7 @@ fn vents_and_cold_walls_go_on_from_any_step() {
 #[test]
 fn intervals_that_are_run_again_do_not_matter() {
     let case = restarts(&dense(), 4, [2, 3, 1, 2]);
-    assert!(case.said.contains("intervals were run again"), "{}", case.said);
+    assert!(case.said.contains("steps were run again"), "{}", case.said);
 }
 
 /// An ended run says so, is left alone, and can still be done anew from one of its checkpoints.

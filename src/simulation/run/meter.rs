@@ -74,8 +74,8 @@ impl Simulation<'_> {
         self.subdomain.constants()
     }
 
-    /// Bytes of the device's buffers that grow with the particles (with the copies that are kept to run an interval again)
-    /// and of those that grow with the cells.
+    /// Bytes of the device's buffers that grow with the particles (among ranks with the copies that are kept to run an interval
+    /// again) and of those that grow with the cells.
     pub fn buffer_bytes(&self) -> [u64; 2] {
         let copies: u64 = self.spare.iter().map(wgpu::Buffer::size).sum();
         [self.subdomain.bytes() + copies, self.subdomain.cell_bytes()]

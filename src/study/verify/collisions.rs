@@ -145,6 +145,7 @@ pub fn watched(
     let mut simulation = Simulation::new(model, device, options)?;
     simulation.begin(&mut witness)?;
     while simulation.advance(&mut witness)? {
+        simulation.settle(&mut witness)?;
         watch(model, &simulation.particles()?, &simulation.flights()?);
     }
     let outcome = simulation.finish(&mut witness)?;
