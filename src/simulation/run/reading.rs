@@ -229,16 +229,11 @@ impl Simulation<'_> {
     }
 }
 
+/// Tallies of two ranks, or of two parts of an interval, that cannot be added.
 fn misshapen() -> SimulationError {
-    SimulationError::Lost {
-        time: 0.0,
-        what: "the tallies of an interval's two parts do not have the same shape".into(),
-    }
+    SimulationError::Lost { time: 0.0, what: "tallies that are to be added do not have the same shape".into() }
 }
 
 pub(super) fn all_tallies(own: &Tallies, sums: &[u64], maxima: &[u64]) -> Result<Tallies, SimulationError> {
-    own.from_words(sums, maxima).ok_or_else(|| SimulationError::Lost {
-        time: 0.0,
-        what: "the ranks' tallies do not have the same shape".into(),
-    })
+    own.from_words(sums, maxima).ok_or_else(misshapen)
 }
