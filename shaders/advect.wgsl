@@ -1,7 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
 // Flies the particles that meet no wall to the end of the step.
 //
-// Reads `sorted`, `flights` (without collisions `particles`), the number of particles behind
+// Reads `sorted` and in `particles` the flights (without collisions the particles), the number of particles behind
 // `cell_start`, the classes and clearances of the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot.
@@ -14,7 +14,6 @@ override VENTS: bool = true;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
 
@@ -49,7 +48,8 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let velocity = motion.xyz;
     var meets_wall: bool;
     if (ROUNDS_OF_PAIRS) {
-        meets_wall = flights[s].wall < step.dt;
+        // Where the particle will be.
+        meets_wall = flight_of(particles[s].place).wall < step.dt;
     } else {
         // (What enters in this step, which is rare, starts at a time of its own.)
         meets_wall = is_newborn(id_of(place.w)) || may_hit(position, velocity, 0.0, step.dt);

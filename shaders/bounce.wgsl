@@ -3,7 +3,7 @@
 // as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
-// Reads `bouncing`, `sorted`, `flights` (without rounds of pairs `newborns`, without collisions `particles`), the walls,
+// Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions `particles`), the walls,
 // `coats` and `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces,
 // the coats, the vents and the moving walls that the scene has. One thread per entry of `bouncing`, which writes its own particle;
 // random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
@@ -45,7 +45,6 @@ const ENERGY_RANGE: f32 = 4.29e9;
 @group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(26) var<storage, read> bouncing: array<u32>;
 
@@ -125,7 +124,8 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         particle = particles[s];
     }
     if (ROUNDS_OF_PAIRS) {
-        time = flights[s].start;
+        // Where the particle will be.
+        time = bitcast<f32>(particles[s].position.x);
     } else {
         time = birth_time(id_of(particle.tag));
     }

@@ -1,8 +1,8 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
-// Reads `sorted`, `flights`, the lists of `neighbours`; writes `choices` (partner's index or NOBODY, time).
+// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time).
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
 // collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
 // choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
@@ -15,7 +15,6 @@ override RIGID: bool = false;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(11) var<storage, read> flights: array<vec4<u32>>;
-@group(0) @binding(13) var<storage, read> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 @group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
 
@@ -40,12 +39,16 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     }
     let place = sorted[s].place;
     let velocity = sorted[s].motion.xyz;
-    let own_flight = flight_of(flights[s]);
+    let own_flight = flight_of(flights[2u * s]);
     let own_latest = min(step.dt, own_flight.wall);
-    let stride = arrayLength(&neighbour_count);
-    let tail = tail_of(s, listed, stride);
+    var direct = direct_of(s);
+    let tail = direct.w;
     for (var k = 0u; k < listed; k++) {
-        let j = neighbours[entry_of(s, k, listed, stride, tail)];
+        var j = direct.x;
+        direct = direct.yzww;
+        if (listed > DIRECT && k >= DIRECT - 1u) {
+            j = word_at(tail + k);
+        }
         let other = sorted[j].place;
         let r = between(place.xyz, other.xyz);
         let g = sorted[j].motion.xyz - velocity;
@@ -63,7 +66,7 @@ fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (miss2 >= DIAMETER * DIAMETER) {
             continue;
         }
-        let other_flight = flight_of(flights[j]);
+        let other_flight = flight_of(flights[2u * j]);
         let earliest = max(own_flight.start, other_flight.start);
         let latest = min(own_latest, other_flight.wall);
         if (!RIGID && !(time >= earliest && time < latest)) {

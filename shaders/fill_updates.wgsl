@@ -6,7 +6,7 @@
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
+@group(0) @binding(11) var<storage, read> flights: array<vec4<u32>>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(38) var<storage, read_write> updates_out: array<Update>;
 @group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
@@ -20,6 +20,6 @@ fn fill_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     let s = sendings[k].index;
     let place = peer_starts[sendings[k].peer] + sendings[k].place;
     if (place < arrayLength(&updates_out)) {
-        updates_out[place] = Update(sorted[s], flights[s], cell_index(cell_of(cells[s])), 0u, 0u, 0u);
+        updates_out[place] = Update(sorted[s], flight_of(flights[2u * s]), cell_index(cell_of(cells[s])), 0u, 0u, 0u);
     }
 }

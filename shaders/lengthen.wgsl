@@ -26,7 +26,7 @@ fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     long_lists[place] = NOBODY;
     let more = atomicLoad(&neighbour_count[s]) - (DIRECT - 1u);
     let begin = atomicAdd(&counters[LIST_TAILS], more);
-    if (begin + more > arrayLength(&neighbours) - DIRECT * stride) {
+    if (begin + more > arrayLength(&neighbours) - RECORD * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
         if (!HALO) {
             atomicStore(&counters[HELD], step.slot + 1u);
@@ -35,7 +35,7 @@ fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
         atomicStore(&neighbour_count[s], DIRECT);
         return;
     }
-    let tail = DIRECT * stride + begin - (DIRECT - 1u);
+    let tail = RECORD * stride + begin - (DIRECT - 1u);
     _ = search(s, DIRECT - 1u, tail);
-    neighbours[(DIRECT - 1u) * stride + s] = tail;
+    neighbours[direct_entry(s, DIRECT - 1u)] = tail;
 }

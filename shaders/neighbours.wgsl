@@ -33,19 +33,19 @@ fn listed_of(s: u32) -> Listed {
     return Listed(all, all || notes_at(layer));
 }
 
-fn enter(list: u32, k: u32, entry: u32, stride: u32) {
+fn enter(list: u32, k: u32, entry: u32) {
     if (k < DIRECT) {
-        neighbours[k * stride + list] = entry;
+        neighbours[direct_entry(list, k)] = entry;
     } else if (k == DIRECT) {
         long_lists[append(LIST_LONG)] = list;
     }
 }
 
 // As much as there is room for without a tail.
-fn note(list: u32, entry: u32, stride: u32) {
+fn note(list: u32, entry: u32) {
     let k = atomicAdd(&neighbour_count[list], 1u);
     if (k < DIRECT) {
-        neighbours[k * stride + list] = entry;
+        neighbours[direct_entry(list, k)] = entry;
     }
 }
 
@@ -64,7 +64,6 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     }
     choices[2u * s] = NOBODY;
     let middle = middles[s];
-    let stride = arrayLength(&neighbour_count);
     let reach = reach_of(s, middle);
     // What comes after it of its own row, and the four rows after that.
     let y_step = step.size.x;
@@ -123,7 +122,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
             let theirs = listed_of(j);
             if (own.all) {
-                enter(s, own_place + p, j, stride);
+                enter(s, own_place + p, j);
                 if (near_wall) {
                     to_screen(s);
                 }
@@ -131,10 +130,10 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                     to_choose(s, 0u);
                 }
             } else if (own.some && theirs.all) {
-                note(s, j, stride);
+                note(s, j);
             }
             if (theirs.all) {
-                enter(j, atomicAdd(&neighbour_count[j], 1u), s, stride);
+                enter(j, atomicAdd(&neighbour_count[j], 1u), s);
                 if (near_wall) {
                     to_screen(j);
                 }
@@ -142,7 +141,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                     to_choose(j, 0u);
                 }
             } else if (theirs.some && own.all) {
-                note(j, s, stride);
+                note(j, s);
             }
         }
     }

@@ -1,23 +1,20 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl slots.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
-// Sort, part 2: the particles in canonical order, by (cell, id), and the flights with which they start
-// the step.
+// Sort, part 2: the particles in canonical order, by (cell, id).
 //
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
-// `sorted`, `flights`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, `origins` (the place in
-// `particles`), clears what the
-// search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle as they lie in
+// `sorted`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, where ghosts wait until they are asked also
+// `firsts`, clears what the search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle as they lie in
 // `particles`. Its place is a function of the set, not of any order (slots.wgsl).
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
-@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(44) var<storage, read_write> origins: array<u32>;
+@group(0) @binding(44) var<storage, read_write> firsts: array<Packed>;
 @group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 // The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
@@ -57,7 +54,9 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
     var mark = 0u;
     if (step.depth > 0u) {
-        origins[place] = i;
+        if (step.ghosts == GHOSTS_WAIT) {
+            firsts[place] = whole;
+        }
         mark = layer_of(place_in_grid);
         if (mark > 0u) {
             mark = links_away(packed(middle), place_in_grid, mark);
@@ -67,17 +66,11 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         }
     }
     cells[place] = cell;
-    let start = birth_time(own_id);
     var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
     flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
     middles[place] = packed(middle) | flags;
     neighbour_count[place] = 0u;
-    var share = 0u;
-    if (CAPPED) {
-        share = shares[block_of(place_in_grid)];
-    }
-    flights[place] = packed_flight(Flight(start, NEVER, NOBODY, share << SHARE_AT));
-    if (may_hit(particle.position, particle.velocity, start, step.dt)) {
+    if (may_hit(particle.position, particle.velocity, birth_time(own_id), step.dt)) {
         near_walls[append(LIST_NEAR_WALLS)] = place;
         mark |= NEAR;
     }

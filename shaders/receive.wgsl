@@ -1,7 +1,7 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl listed.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
 // Update, part 2: what the owners of the ghosts did to them.
 //
-// Reads `updates_in`, `cell_start`, `layers`, the lists of `neighbours`, `middles`; writes `sorted` and `flights`, and lets the ghost choose
+// Reads `updates_in`, `cell_start`, `layers`, the lists of neighbours behind the flights, `middles`; writes `sorted` and `flights`, and lets the ghost choose
 // again and those who may have it in their lists.
 // One thread per update, each of another ghost, which is found in its cell by its id; one that is not there
 // is counted, and the host stops the run.
@@ -55,7 +55,7 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
         return;
     }
     sorted[s] = after;
-    flights[s] = packed_flight(updates_in[entry].flight);
+    flights[2u * s] = packed_flight(updates_in[entry].flight);
     touch(s);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {

@@ -1,11 +1,11 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
 // Settle, part 2: the collisions of this round.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
 // cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
 // back along the line of their centres.
 //
-// Reads `pairs`, `choices`, the lists of neighbours; reads and writes `sorted`, `flights` and `layers`,
+// Reads `pairs`, `choices`, the lists of neighbours behind the flights; reads and writes `sorted`, `flights` and `layers`,
 // and appends the particles that this may make choose otherwise to `rechoose`, and those that other
 // devices must be told of to `changed`. One thread per pair. Pairs are
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
@@ -90,8 +90,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let time = bitcast<f32>(choices[pair.x].y);
     var i = particle_of(sorted[pair.x]);
     var j = particle_of(sorted[pair.y]);
-    let flight_i = flight_of(flights[pair.x]);
-    let flight_j = flight_of(flights[pair.y]);
+    let flight_i = flight_of(flights[2u * pair.x]);
+    let flight_j = flight_of(flights[2u * pair.y]);
     let mass_i = gases[kind_of(i.tag)].mass;
     let mass_j = gases[kind_of(j.tag)].mass;
     let mu = mass_i * mass_j / (mass_i + mass_j);
@@ -114,8 +114,8 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     touch_neighbours(pair.x);
     touch_neighbours(pair.y);
     if (apart) {
-        flights[pair.x].z = j.tag;
-        flights[pair.y].z = i.tag;
+        flights[2u * pair.x].z = j.tag;
+        flights[2u * pair.y].z = i.tag;
         if (is_own(pair.x)) {
             atomicAdd(&counters[BLOCKED], 1u);
         }
@@ -150,6 +150,6 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     sorted[pair.y] = packed_of(j);
     let wall_i = wall_time(i.position, i.velocity, time, step.dt);
     let wall_j = wall_time(j.position, j.velocity, time, step.dt);
-    flights[pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
-    flights[pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
+    flights[2u * pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
+    flights[2u * pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
 }

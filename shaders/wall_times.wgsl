@@ -6,7 +6,7 @@
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read_write> flights: array<Flight>;
+@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
 @group(0) @binding(24) var<storage, read> near_walls: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -16,5 +16,7 @@ fn wall_times(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
         return;
     }
     let s = near_walls[entry];
-    flights[s].wall = first_hit(sorted[s].position, sorted[s].velocity, flights[s].start, step.dt).time;
+    var flight = flight_of(flights[2u * s]);
+    flight.wall = first_hit(sorted[s].position, sorted[s].velocity, flight.start, step.dt).time;
+    flights[2u * s] = packed_flight(flight);
 }

@@ -6,11 +6,6 @@
 // ever asked in this step choose (both by the same pipelines, so that no driver rounds otherwise). A choice is a function of the state, so
 // it does not matter when, or whether, it is made.
 
-// `step.ghosts`: all of them choose; the outermost wait; the pass over those that were asked.
-const GHOSTS_ALL: u32 = 0;
-const GHOSTS_WAIT: u32 = 1;
-const GHOSTS_ASKED: u32 = 2;
-
 @group(0) @binding(42) var<storage, read_write> asked: array<u32>;
 
 // Whether a particle of this layer waits until it is asked.

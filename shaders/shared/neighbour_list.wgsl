@@ -1,18 +1,14 @@
-// Where the entries of a particle's neighbour list are in `neighbours`. The first DIRECT of all particles are interleaved,
-// entry k of particle s at k * stride + s, where stride is the room for particles. Of a list that is longer the last of these
-// holds its tail instead: entry k from there on is at tail + k, behind all that is interleaved. So room is needed for what
-// lists hold, not for the longest of all.
+// Where a particle's flight and its neighbour list are from the sort until the particles fly: in RECORD words of its own, the flight
+// in the first four (particle.wgsl), the first DIRECT entries of the list behind it. Of a list that is longer the last of these holds its tail
+// instead: entry k from there on is at tail + k, behind the records of all. So room is needed for what lists hold, not for the longest of all.
+//
+// Kernels that write lists have all these words as `neighbours`, one by one, since several threads write to one list; the others have
+// them as `flights`, four by four (listed.wgsl).
 
-const DIRECT: u32 = 8;
+const RECORD: u32 = 8;
+const DIRECT: u32 = 4;
 
-// The tail of a list with so many entries; of a short one nothing.
-fn tail_of(s: u32, listed: u32, stride: u32) -> u32 {
-    if (listed > DIRECT) {
-        return neighbours[(DIRECT - 1u) * stride + s];
-    }
-    return 0u;
-}
-
-fn entry_of(s: u32, k: u32, listed: u32, stride: u32, tail: u32) -> u32 {
-    return select(k * stride + s, tail + k, listed > DIRECT && k >= DIRECT - 1u);
+// Where among all words entry k of a list is, of a long one only of the first.
+fn direct_entry(s: u32, k: u32) -> u32 {
+    return RECORD * s + (RECORD - DIRECT) + k;
 }

@@ -4,10 +4,9 @@
 // least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
 // farther away are passed over.
 //
-// Reads `middles`, `cells`, `cell_start`, where the diameter is capped `flights`; writes `neighbours`.
+// Reads `middles`, `cells`, `cell_start`, where the diameter is capped the flights in `neighbours`; writes lists in `neighbours`.
 
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(11) var<storage, read> flights: array<Flight>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
 @group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<atomic<u32>>;
@@ -25,6 +24,11 @@ fn gap(at: i32, side: i32) -> i32 {
     return select(select(0, at + 1, side < 0), 128 - at, side > 0);
 }
 
+// What is left of the cross-section of a particle (cap.wgsl).
+fn share_at(s: u32) -> u32 {
+    return neighbours[RECORD * s + 3u] >> SHARE_AT;
+}
+
 // How far a particle looks around itself.
 struct Reach {
     // The square of the distance below which it may meet another of its own diameter or more.
@@ -39,7 +43,7 @@ struct Reach {
 fn reach_of(s: u32, middle: u32) -> Reach {
     var share = FULL_SHARE;
     if (CAPPED) {
-        share = share_of(flights[s]);
+        share = share_at(s);
     }
     let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
     let low = vec3<i32>(gap(at.x, -1), gap(at.y, -1), gap(at.z, -1));
@@ -60,13 +64,13 @@ fn row_at(first: u32, left: i32, reach: Reach) -> vec2<u32> {
 fn may_meet(middle: u32, other: u32, j: u32, own_near2: i32) -> bool {
     let away = packed_between(middle, other);
     let distance2 = dot(away, away);
-    return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_of(flights[j])));
+    return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_at(j)));
 }
 
-// Looks all around. Writes what it finds: the first `direct` interleaved, the others, where there is a tail, there.
+// Looks all around. Writes what it finds: the first `direct` in the record, the others, where there is a tail, there.
 fn search(s: u32, direct: u32, tail: u32) -> Found {
     let middle = middles[s];
-    let stride = arrayLength(&neighbour_count);
+    let list = direct_entry(s, 0u);
     let reach = reach_of(s, middle);
     let low2 = reach.low2;
     let high2 = reach.high2;
@@ -112,7 +116,7 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
         if (j != s && may_meet(middle, other, j, n)) {
             flags |= other;
             if (found < direct || tail != NOBODY) {
-                neighbours[select(tail + found, found * stride + s, found < direct)] = j;
+                neighbours[select(tail, list, found < direct) + found] = j;
             }
             found++;
         }

@@ -55,6 +55,11 @@ struct Step {
     flight: u32,
 }
 
+// `ghosts`: all of them choose; the outermost wait; the pass over those that were asked.
+const GHOSTS_ALL: u32 = 0;
+const GHOSTS_WAIT: u32 = 1;
+const GHOSTS_ASKED: u32 = 2;
+
 override WORKGROUP: u32 = 64;
 
 // Dispatches larger than the limit per dimension are folded into two.

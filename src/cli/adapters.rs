@@ -46,10 +46,10 @@ fn bytes(count: u64) -> String {
 mod tests {
     use super::*;
 
-    /// A particle is 32 bytes, and the tail of its neighbour list 4.
+    /// A particle is 32 bytes, and its share of the tails of neighbour lists half a byte.
     #[test]
     fn the_binding_limits_the_particles() {
-        assert_eq!(most_particles(128 << 20), (128 << 20) / 36);
+        assert_eq!(most_particles(128 << 20), (256 << 20) / 65);
         assert_eq!(bytes(128 << 20), "134,217,728 bytes (0.1 GiB)");
     }
 }

@@ -478,8 +478,17 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
+    /// Keeps the flights of each step from now on, for [`Simulation::flights`].
+    ///
+    /// # Errors
+    /// If the device has no memory for them.
+    pub fn watch_flights(&mut self) -> Result<(), SimulationError> {
+        Ok(self.subdomain.watch_flights(self.device)?)
+    }
+
     /// The flights of the last step of the run so far, with ids, in the order of
-    /// [`Simulation::particles`]: for tests and studies of single steps, after [`Simulation::settle`].
+    /// [`Simulation::particles`]: for tests and studies of single steps, after [`Simulation::settle`]. None that are not
+    /// [watched](Simulation::watch_flights).
     ///
     /// # Errors
     /// If the device fails.

@@ -6,7 +6,7 @@ use super::cell_table::CellTable;
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate,
+    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate,
     GpuVent, GpuWeights, GpuZone,
 };
 use super::walls::Walls;
@@ -29,14 +29,11 @@ pub const MOTION_ENTRIES: usize = 128;
 /// Words per block (`shaders/blocks.wgsl`).
 pub const BLOCK_WORDS: usize = 4;
 
-/// Entries of a neighbour list that are interleaved with those of others (`shaders/shared/neighbour_list.wgsl`): as many as
-/// take the room of a particle.
-pub const DIRECT: u64 = 8;
+/// Words of a particle's record, its flight and the first entries of its neighbour list (`shaders/shared/neighbour_list.wgsl`): the room
+/// of a particle.
+pub const RECORD: u64 = 8;
 /// Particles for each entry of a tail that there is room for at first: thin gas has no longer lists.
 pub const FIRST_TAILS: u64 = 8;
-/// Entries of the tails of longer lists per particle, with room to spare, in gas at an occupancy of .12 and steps of a tenth of
-/// the collision time: a guide for plans. A run finds what its gas wants.
-pub const USUAL_TAILS: u64 = 1;
 
 /// What all subdomains of a device share: the gases, the walls and the zones.
 pub struct DomainBuffers {
@@ -256,17 +253,18 @@ impl ExchangeBuffers {
     }
 }
 
-/// Of the buffers that grow with the number of particles, on a device alone.
-pub fn bytes_per_particle(collisions: bool, rounds: bool, tails: u64) -> u64 {
-    let particle = size_of::<GpuParticle>() as u64;
-    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `flights`, `cells`, `middles`, the lengths of
+/// Of the buffers that grow with the number of particles, on a device alone, with room for the tails of neighbour lists as at first: most gas at an
+/// occupancy of .12 and in steps of a tenth of the collision time wants no more. A run finds what its gas wants.
+pub fn bytes_per_particle(collisions: bool, rounds: bool) -> f64 {
+    let particle = size_of::<GpuParticle>() as f64;
+    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `cells`, `middles`, the lengths of
     // the lists and their tails.
-    let mut bytes = particle + 4;
+    let mut bytes = particle + 4.0;
     if collisions {
-        bytes += particle + 8 + 4 + 4;
+        bytes += particle + 8.0 + 4.0 + 4.0;
     }
     if rounds {
-        bytes += size_of::<GpuFlight>() as u64 + 4 + 4 + 4 + 4 * tails;
+        bytes += 4.0 + 4.0 + 4.0 + 4.0 / FIRST_TAILS as f64;
     }
     bytes
 }
@@ -276,8 +274,8 @@ pub struct ParticleBuffers {
     pub capacity: u64,
     /// Entries of the tails of neighbour lists.
     pub tails: u64,
-    /// On a device alone that has lists, from the sort until the particles have flown `neighbours`: what the particles are
-    /// is in `sorted` then.
+    /// Where there are rounds, from the sort until the particles fly, `flights` and `neighbours`, a record of each and the tails: what the
+    /// particles are is in `sorted` then.
     pub particles: wgpu::Buffer,
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds, or the `crowds` of the method `cell`.
@@ -288,17 +286,15 @@ pub struct ParticleBuffers {
     /// One after the other `crowded` and `order_by_id`, or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
-    pub flights: wgpu::Buffer,
     pub middles: wgpu::Buffer,
-    /// Among others, whose ghosts may be searched for late.
-    pub neighbours: Option<wgpu::Buffer>,
     pub neighbour_count: wgpu::Buffer,
     pub cells: wgpu::Buffer,
     pub layers: wgpu::Buffer,
     /// On a device among others.
     pub changed: wgpu::Buffer,
     pub asked: wgpu::Buffer,
-    pub origins: wgpu::Buffer,
+    /// There also, where ghosts are searched for late: what the particles were before the rounds.
+    pub firsts: wgpu::Buffer,
 }
 
 impl ParticleBuffers {
@@ -318,37 +314,31 @@ impl ParticleBuffers {
         let weighed = if features.rounds || features.halo { scratch } else { 4 };
         let exchange = if features.halo { capacity } else { 4 };
         let tails = if features.rounds { tails.next_multiple_of(8) } else { 0 };
-        let apart = features.rounds && features.halo;
+        let late = if features.rounds { exchange } else { 4 };
         Ok(ParticleBuffers {
             capacity,
             tails,
-            particles: device.storage::<u32>("particles", DIRECT * capacity + if apart { 0 } else { tails })?,
+            particles: device.storage::<u32>("particles", RECORD * capacity + tails)?,
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
             rare: device.storage::<u32>("rare", capacity)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
-            flights: device.storage::<GpuFlight>("flights", chosen)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
-            neighbours: match apart {
-                true => Some(device.storage::<u32>("neighbours", DIRECT * capacity + tails)?),
-                false => None,
-            },
             neighbour_count: device.storage::<u32>("neighbour_count", weighed)?,
             layers: device.storage::<u32>("layers", scratch)?,
             changed: device.storage::<u32>("changed", exchange)?,
             asked: device.storage::<u32>("asked", exchange)?,
-            origins: device.storage::<u32>("origins", exchange)?,
+            firsts: device.storage::<GpuParticle>("firsts", late)?,
         })
     }
 
     pub fn bytes(&self) -> u64 {
-        let apart = self.neighbours.as_ref().map_or(0, wgpu::Buffer::size);
-        self.buffers().iter().map(|buffer| buffer.size()).sum::<u64>() + apart
+        self.buffers().iter().map(|buffer| buffer.size()).sum()
     }
 
-    fn buffers(&self) -> [&wgpu::Buffer; 14] {
+    fn buffers(&self) -> [&wgpu::Buffer; 13] {
         [
             &self.particles,
             &self.newborns,
@@ -356,14 +346,13 @@ impl ParticleBuffers {
             &self.slots,
             &self.rare,
             &self.sorted,
-            &self.flights,
             &self.middles,
             &self.neighbour_count,
             &self.cells,
             &self.layers,
             &self.changed,
             &self.asked,
-            &self.origins,
+            &self.firsts,
         ]
     }
 }
@@ -371,7 +360,7 @@ impl ParticleBuffers {
 /// How many particles, whose buffer with that of their neighbour lists is the largest that grows with them, fit a buffer of
 /// `bytes`. Lists grow where gas is dense, and buffers are made larger than the gas at hand: a guide, no promise.
 pub fn most_particles(bytes: u64) -> u64 {
-    bytes / ((DIRECT + USUAL_TAILS) * size_of::<u32>() as u64)
+    (bytes as f64 / (4.0 * (RECORD as f64 + 1.0 / FIRST_TAILS as f64))) as u64
 }
 
 /// All buffers of a subdomain.
@@ -422,23 +411,19 @@ impl<'a> Buffers<'a> {
             (_, "shares") => &fixed.shares,
             (_, "parted") => &fixed.parted,
             (_, "moved") => &fixed.moved,
-            // Only of ghosts that are searched for late, which a device alone has none of; its `neighbours` are in that buffer.
-            ("screen", "particles") if particle.neighbours.is_none() => &particle.sorted,
-            (_, "particles") => &particle.particles,
+            (_, "particles" | "flights" | "neighbours") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "crowds" | "choices") => &particle.bins,
             (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
             (_, "crowded" | "order_by_id" | "near_walls" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
-            (_, "flights") => &particle.flights,
             (_, "middles") => &particle.middles,
-            (_, "neighbours") => particle.neighbours.as_ref().unwrap_or(&particle.particles),
             (_, "neighbour_count") => &particle.neighbour_count,
             (_, "cells") => &particle.cells,
             (_, "layers") => &particle.layers,
             (_, "changed") => &particle.changed,
             (_, "asked") => &particle.asked,
-            (_, "origins") => &particle.origins,
+            (_, "firsts") => &particle.firsts,
             (_, "peers") => &exchange.peers,
             (_, "sendings") => &exchange.sendings,
             (_, "peer_counts") => &exchange.peer_counts,
@@ -461,12 +446,12 @@ mod tests {
     fn the_bytes_of_a_particle_are_those_of_its_buffers() {
         let device = Device::open(None).expect("a device");
         let bytes = |features: Features, capacity: u64| {
-            ParticleBuffers::new(&device, capacity, 1, USUAL_TAILS * capacity, features).expect("room").bytes()
+            ParticleBuffers::new(&device, capacity, 1, capacity / FIRST_TAILS, features).expect("room").bytes()
         };
         for (collisions, rounds) in [(false, false), (true, false), (true, true)] {
             let features = Features { collisions, rounds, ..Features::default() };
             let found = bytes(features, 6400) - bytes(features, 3200);
-            assert_eq!(found, 3200 * bytes_per_particle(collisions, rounds, USUAL_TAILS), "{collisions} {rounds}");
+            assert_eq!(found as f64, 3200.0 * bytes_per_particle(collisions, rounds), "{collisions} {rounds}");
         }
         let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
         let some = 4 * STRETCH;

@@ -3,7 +3,7 @@
 use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 
-use super::buffers::{CHUNK, CellBuffers, step_stride};
+use super::buffers::{CHUNK, CellBuffers, RECORD, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -291,6 +291,7 @@ impl Subdomain {
             let pass = rec.phase("sort");
             kernels.scatter.dispatch(pass, offset, slots);
             kernels.order.dispatch(pass, offset, slots);
+            kernels.start_flights.dispatch(pass, offset, all(device, step));
             kernels.wall_times.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_NEAR_WALLS);
         }
         if let Some(kernels) = &self.kernels.cells {
@@ -394,6 +395,10 @@ impl Subdomain {
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
     pub fn advect(&mut self, rec: &mut Recording<'_>, step: &StepSlot) {
+        if let Some(watched) = &self.watched {
+            let bytes = 4 * RECORD * u64::from(step.total);
+            rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
+        }
         let device = rec.device();
         let offset = self.offset(device, step, 0);
         let pass = rec.phase("advect");

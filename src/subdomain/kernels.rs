@@ -31,6 +31,7 @@ pub struct SortKernels<K> {
 pub struct CollisionKernels<K> {
     pub scatter: K,
     pub order: K,
+    pub start_flights: K,
     pub wall_times: K,
     pub neighbours: K,
     /// On a device among others.
@@ -103,6 +104,7 @@ impl<K> Kernels<K> {
             Some(CollisionKernels {
                 scatter: make("scatter")?,
                 order: make("order")?,
+                start_flights: make("start_flights")?,
                 wall_times: make("wall_times")?,
                 neighbours: make("neighbours")?,
                 neighbours_asked: if features.halo { Some(make("neighbours_asked")?) } else { None },

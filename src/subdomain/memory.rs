@@ -3,14 +3,14 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-use super::buffers::{BYTES_PER_BIN, USUAL_TAILS, bytes_per_particle};
+use super::buffers::{BYTES_PER_BIN, bytes_per_particle};
 use super::layout::GpuStillGas;
 
 /// Bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Memory {
     /// Of each particle, with room for neighbour lists as most gas wants it.
-    pub per_particle: u64,
+    pub per_particle: f64,
     /// Of each cell of the grid: that of the sort, that of the walls, and its volume for collisions within it.
     pub per_cell: f64,
     /// Were all particles there at once that ever enter.
@@ -30,7 +30,7 @@ impl Memory {
             return None;
         }
         let collisions = plan.method != Method::None;
-        let per_particle = bytes_per_particle(collisions, plan.method.has_rounds(), USUAL_TAILS);
+        let per_particle = bytes_per_particle(collisions, plan.method.has_rounds());
         let sort = if collisions { BYTES_PER_BIN } else { 0.0 };
         let volume = match plan.method {
             Method::Cell if moving => 4.0 + MOVED_OF_A_CELL,
@@ -39,6 +39,6 @@ impl Memory {
         };
         let per_cell = sort + volume + WALLS_OF_A_CELL;
         let cells = plan.grid.cell_count() as f64;
-        Some(Memory { per_particle, per_cell, all: plan.particles as f64 * per_particle as f64 + cells * per_cell })
+        Some(Memory { per_particle, per_cell, all: plan.particles as f64 * per_particle + cells * per_cell })
     }
 }

@@ -93,6 +93,8 @@ pub struct Subdomain {
     count: u32,
     staging: Vec<wgpu::Buffer>,
     spare_staging: Vec<wgpu::Buffer>,
+    /// A copy of the flights of each step, with their lists, before particles take their room.
+    watched: Option<wgpu::Buffer>,
 }
 
 /// The most particles that room is made for ahead of need: a device alone has at most all that the plan has.
@@ -144,6 +146,7 @@ impl Subdomain {
             count: particles.len() as u32,
             staging: Vec::new(),
             spare_staging: Vec::new(),
+            watched: None,
             domain,
         };
         subdomain.move_to(device, place)?;
@@ -269,6 +272,9 @@ impl Subdomain {
         }
         rec.submit();
         self.particle = grown;
+        if self.watched.is_some() {
+            self.watch_flights(device)?;
+        }
         self.rebind(device)
     }
 
@@ -386,12 +392,25 @@ impl Subdomain {
         Ok(particles)
     }
 
-    /// The flights of the last step, in the order of [`Subdomain::particles`]; none without rounds of pairs.
+    /// From now on the flights of each step are kept, which are gone when the particles have flown.
+    ///
+    /// # Errors
+    /// If the device has no memory for them.
+    pub fn watch_flights(&mut self, device: &Device) -> Result<(), GpuError> {
+        if self.domain.features.rounds {
+            self.watched = Some(device.storage::<[GpuFlight; 2]>("watched", self.particle.capacity)?);
+        }
+        Ok(())
+    }
+
+    /// The flights of the last step, in the order of [`Subdomain::particles`]; none without rounds of pairs, or where they are not watched.
     ///
     /// # Errors
     /// If the device fails.
     pub fn flights(&self, device: &Device) -> Result<Vec<GpuFlight>, GpuError> {
-        device.read(&self.particle.flights, if self.domain.features.rounds { self.count as usize } else { 0 })
+        let Some(watched) = &self.watched else { return Ok(Vec::new()) };
+        let records: Vec<[GpuFlight; 2]> = device.read(watched, self.count as usize)?;
+        Ok(records.into_iter().map(|[flight, _]| flight).collect())
     }
 
     /// Copies the interval's tallies (and the timer's stamps) for a late read, and clears them.

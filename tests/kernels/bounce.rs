@@ -5,6 +5,7 @@ use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, SURFACE_WORD
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, minus, norm};
 use crate::oracle::walls::{bounced, corner, normal, reflect_in_box, reflected};
+use crate::neighbour_lists::put_flights;
 use crate::rig::*;
 
 const DT: f32 = 3e-5;
@@ -25,8 +26,7 @@ fn bounce(world: &World, particles: &[GpuParticle], flights: &[GpuFlight], surfa
     rig.constant("IMPULSE_SCALE", 1024.0);
     rig.gases(&GASES);
     rig.put("sorted", particles);
-    rig.put("flights", flights);
-    rig.put("particles", &vec![GpuParticle::default(); particles.len()]);
+    put_flights(&mut rig, flights);
     rig.put("bouncing", &(0..particles.len() as u32).collect::<Vec<_>>());
     rig.constant("COPIES", COPIES as f64);
     rig.constant("COPY_WORDS", COPY_WORDS as f64);

@@ -5,6 +5,7 @@ use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 use crate::oracle::collision::{Body, closest_approach, meeting};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{minus, norm};
+use crate::neighbour_lists::{put_flights, put_lists};
 use crate::rig::*;
 
 pub const DIAMETER: f64 = 0.005;
@@ -45,8 +46,8 @@ impl Cloud {
         rig.constant("DIAMETER", DIAMETER);
         rig.constant("CAPPED", f64::from(u8::from(self.capped)));
         rig.put("sorted", &self.particles);
-        rig.put("flights", &self.flights);
-        crate::neighbour_lists::put_lists(&mut rig, &self.lists);
+        put_flights(&mut rig, &self.flights);
+        put_lists(&mut rig, &self.lists);
         // All of them choose in the first round.
         rig.put("rechoose", &(0..count as u32).collect::<Vec<_>>());
         rig.set_counter(LIST_RECHOOSE, count as u32);

@@ -5,6 +5,7 @@ use corpuscle::subdomain::{
 };
 
 use crate::oracle::random::Stream;
+use crate::neighbour_lists::put_flights;
 use crate::rig::*;
 
 const DT: f32 = 3e-5;
@@ -60,8 +61,7 @@ fn bounce(world: &World, particles: &[GpuParticle], coat: GpuCoat, vents: &[GpuV
     }
     rig.gases(&GASES);
     rig.put("sorted", particles);
-    rig.put("flights", &flights);
-    rig.put("particles", &vec![GpuParticle::default(); particles.len()]);
+    put_flights(&mut rig, &flights);
     rig.put("bouncing", &(0..particles.len() as u32).collect::<Vec<_>>());
     rig.put("coats", &[coat]);
     if !vents.is_empty() {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep, GpuUpdate};
 
 use crate::local::Local;
-use crate::neighbour_lists::{DIRECT, put_lists};
+use crate::neighbour_lists::{self, DIRECT, put_flights, put_lists};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -216,7 +216,7 @@ fn updates_go_to_those_who_have_the_ghost() {
     for room in [COUNT * 2, 50] {
         let mut rig = Rig::new(&world);
         rig.put("sorted", &particles);
-        rig.put("flights", &flights);
+        put_flights(&mut rig, &flights);
         rig.put("cells", &bins);
         rig.put("middles", &vec![0u32; COUNT]);
         rig.put("layers", &vec![marks; COUNT]);
@@ -298,7 +298,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     for ghosts in [0, 1] {
         let mut rig = Rig::new(&world);
         rig.put("sorted", &particles);
-        rig.put("flights", &flights_now);
+        put_flights(&mut rig, &flights_now);
         rig.put("middles", &middles.iter().map(|&p| grid.packed(p)).collect::<Vec<_>>());
         rig.put("layers", &marks);
         put_lists(&mut rig, &lists);
@@ -315,7 +315,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
             flights_after[s] = other_flights[s];
         }
         assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), after);
-        assert_eq!(rig.get::<GpuFlight>("flights", COUNT), flights_after);
+        assert_eq!(neighbour_lists::flights(&rig, COUNT), flights_after);
         let beside = |a: [u32; 3], b: [u32; 3]| (0..3).all(|k| a[k].abs_diff(b[k]) <= 1);
         let has_it = |s: usize, ghost: usize| {
             if s == ghost {

@@ -6,6 +6,7 @@ use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, norm, scaled};
 use crate::oracle::walls::{Triangle, crossings};
+use crate::neighbour_lists::{self, put_flights};
 use crate::rig::*;
 
 const COUNT: usize = 2000;
@@ -67,13 +68,13 @@ fn wall_times_are_those_of_a_swept_test_in_f64() {
         .collect();
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
-    rig.put("flights", &flights);
+    put_flights(&mut rig, &flights);
     let entries: Vec<u32> = (0..COUNT as u32 - 1).collect();
     rig.put("near_walls", &entries);
     rig.set_counter(LIST_NEAR_WALLS, entries.len() as u32);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("wall_times", entries.len());
-    let found: Vec<GpuFlight> = rig.get("flights", COUNT);
+    let found: Vec<GpuFlight> = neighbour_lists::flights(&rig, COUNT);
     assert_eq!(found[COUNT - 1], flights[COUNT - 1], "not on the list");
     let (p, f, w) = (&particles[..COUNT - 1], &flights[..COUNT - 1], &found[..COUNT - 1]);
     assert_eq!(outside_bounds(&world, &world.triangles, p, f, w), 0);
@@ -125,8 +126,11 @@ fn advect_flies_the_free_and_lists_the_others() {
         rig.constant("ROUNDS_OF_PAIRS", f64::from(u8::from(rounds)));
         let nowhere = vec![GpuParticle::default(); COUNT];
         rig.put("sorted", if collisions { &particles } else { &nowhere });
-        rig.put("particles", if collisions { &nowhere } else { &particles });
-        rig.put("flights", &flights);
+        if rounds {
+            put_flights(&mut rig, &flights);
+        } else {
+            rig.put("particles", if collisions { &nowhere } else { &particles });
+        }
         rig.put("newborns", &born);
         rig.put("bouncing", &vec![0u32; COUNT]);
         rig.put("layers", &vec![0u32; COUNT]);
@@ -139,13 +143,15 @@ fn advect_flies_the_free_and_lists_the_others() {
             dt: DT,
             ..GpuStep::default()
         });
+        let words = |rig: &Rig| rig.get::<[u32; RECORD]>("particles", COUNT);
+        let old = words(&rig);
         rig.run("advect", COUNT);
-        let found: Vec<GpuParticle> = rig.get("particles", COUNT);
+        let (found, new): (Vec<GpuParticle>, _) = (rig.get("particles", COUNT), words(&rig));
         let (mut bouncing, mut outside) = (Vec::new(), 0);
         for (k, &before) in particles.iter().enumerate() {
             if meets_wall(k) {
                 bouncing.push(k as u32);
-                assert_eq!(found[k], if collisions { GpuParticle::default() } else { before });
+                assert_eq!(new[k], old[k]);
                 continue;
             }
             let end = cells.shifted(before.position, before.velocity.map(|v| v * DT));
@@ -196,7 +202,6 @@ fn flights_that_walls_are_no_matter_to_meet_none() {
         rig.constant("ROUNDS_OF_PAIRS", 0.0);
         rig.put("particles", &particles);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-        rig.put("flights", &free_flights(COUNT));
         rig.put("bouncing", &vec![0u32; COUNT]);
         rig.put("cell_start", &[0u32]);
         rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
@@ -230,8 +235,7 @@ fn ghosts_leave_dead_slots() {
     let layers: Vec<u32> = (0..COUNT).map(|_| stream.below(3) | [0, SHARED, NEAR][stream.below(3) as usize]).collect();
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
-    rig.put("particles", &vec![GpuParticle::default(); COUNT]);
-    rig.put("flights", &flights);
+    put_flights(&mut rig, &flights);
     rig.put("layers", &layers);
     rig.put("bouncing", &vec![0u32; COUNT]);
     rig.put("cell_start", &[0u32]);
@@ -260,8 +264,7 @@ fn places_behind_the_last_particle_are_dead() {
     let last = COUNT - 70;
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
-    rig.put("particles", &particles);
-    rig.put("flights", &free_flights(COUNT));
+    put_flights(&mut rig, &free_flights(COUNT));
     rig.put("layers", &vec![1u32; COUNT]);
     rig.put("bouncing", &vec![0u32; COUNT]);
     let cells: u32 = world.cells().counts.iter().product();

@@ -6,6 +6,7 @@ use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuPeer, GpuStep,
 
 use crate::local::Extent;
 use crate::oracle::random::Stream;
+use crate::neighbour_lists::put_flights;
 use crate::rig::*;
 
 const COUNT: usize = 4000;
@@ -158,7 +159,7 @@ fn all_that_a_chain_of_neighbours_joins_are_sent() {
             crowd.particles.iter().map(|p| cells.packed(cells.middle(p.position, p.velocity, DT))).collect();
         let mut rig = crowd.rig();
         rig.put("sorted", &crowd.particles);
-        rig.put("flights", &vec![GpuFlight::default(); COUNT]);
+        put_flights(&mut rig, &vec![GpuFlight::default(); COUNT]);
         rig.put("cells", &crowd.bins());
         rig.put("middles", &middles);
         rig.put("layers", &vec![SHARED | LISTED; COUNT]);
@@ -206,8 +207,6 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("cell_start", &start);
     rig.put("slots", &crowd.particles.iter().map(GpuParticle::id).collect::<Vec<_>>());
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-    rig.put("flights", &vec![GpuFlight::default(); COUNT]);
-    rig.put("origins", &vec![0u32; COUNT]);
     for buffer in ["middles", "cells", "neighbour_count", "near_walls"] {
         rig.put(buffer, &vec![9u32; COUNT]);
     }

@@ -3,6 +3,7 @@
 use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
 
 use crate::oracle::random::Stream;
+use crate::neighbour_lists::put_flights;
 use crate::rig::*;
 
 const COUNT: usize = 300;
@@ -56,7 +57,6 @@ fn a_device_that_is_held_changes_nothing() {
     let nothing = vec![0u32; COUNT];
     rig.put("sorted", &sorted);
     rig.put("particles", &sorted);
-    rig.put("flights", &free_flights(COUNT));
     rig.put("cell_start", &vec![COUNT as u32; world.grid.cell_count() + 1]);
     rig.put("choices", &partners);
     rig.put("rechoose", &chosen);
@@ -70,6 +70,9 @@ fn a_device_that_is_held_changes_nothing() {
     let mut left_by = |kernel: &str, held: u32| {
         rig.put("sums", &vec![0u32; (2 * ZONE_WORDS).max(BLOCK_WORDS + LEVELS)]);
         rig.set_counter(HELD, held);
+        if kernel == "advect" {
+            put_flights(&mut rig, &free_flights(COUNT));
+        }
         match kernel {
             "tally" => rig.run_groups("tally", [1, 1, 1]),
             _ => rig.run(kernel, COUNT),

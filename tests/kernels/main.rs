@@ -72,6 +72,7 @@ fn every_kernel_has_its_test() {
         "scatter",
         "screen",
         "settle",
+        "start_flights",
         "tally",
         "wall_times",
         "weigh",

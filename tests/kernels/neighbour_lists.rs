@@ -1,16 +1,36 @@
-//! Neighbour lists as the kernels keep them (`shaders/shared/neighbour_list.wgsl`), written and read by their definition; and
+//! Flights and neighbour lists as the kernels keep them (`shaders/shared/neighbour_list.wgsl`), written and read by their definition; and
 //! `lengthen` by hand.
+
+use corpuscle::subdomain::GpuFlight;
 
 use crate::rig::*;
 
-/// Entries that are interleaved with those of the other lists.
-pub const DIRECT: usize = 8;
+/// Entries of a list in its particle's record.
+pub const DIRECT: usize = 4;
 /// Room for the tails of a test's lists.
 pub const TAILS: usize = 1 << 16;
 
+/// Flights, whatever the lists are.
+pub fn put_flights(rig: &mut Rig, flights: &[GpuFlight]) {
+    rig.put_records(|records, _| {
+        records.resize(flights.len(), [NOBODY; RECORD]);
+        for (record, flight) in records.iter_mut().zip(flights) {
+            record[..RECORD - DIRECT].copy_from_slice(bytemuck::cast_ref::<_, [u32; RECORD - DIRECT]>(flight));
+        }
+    });
+}
+
+pub fn flights(rig: &Rig, count: usize) -> Vec<GpuFlight> {
+    rig.get::<[GpuFlight; 2]>("flights", count).into_iter().map(|[flight, _]| flight).collect()
+}
+
 /// Empty lists, with room for tails of so many entries.
-pub fn put_room(rig: &mut Rig, count: usize, tails: usize) {
-    rig.put("neighbours", &vec![NOBODY; DIRECT * count + tails]);
+pub fn put_room(rig: &mut Rig, count: usize, room: usize) {
+    rig.put_records(|records, tails| {
+        records.resize(count, [NOBODY; RECORD]);
+        records.iter_mut().for_each(|record| record[RECORD - DIRECT..].fill(NOBODY));
+        *tails = vec![NOBODY; room];
+    });
     rig.put("long_lists", &vec![NOBODY; 2 * count]);
     [LIST_LONG, LIST_LONG_LATE, LIST_TAILS, LIST_SCREEN, LIST_RECHOOSE]
         .into_iter()
@@ -18,34 +38,31 @@ pub fn put_room(rig: &mut Rig, count: usize, tails: usize) {
 }
 
 pub fn put_lists(rig: &mut Rig, lists: &[Vec<u32>]) {
-    let count = lists.len();
-    let mut words = vec![NOBODY; DIRECT * count];
-    for (s, list) in lists.iter().enumerate() {
-        let direct = if list.len() > DIRECT { DIRECT - 1 } else { list.len() };
-        for (k, &j) in list[..direct].iter().enumerate() {
-            words[k * count + s] = j;
+    rig.put_records(|records, tails| {
+        records.resize(lists.len(), [NOBODY; RECORD]);
+        tails.clear();
+        for (record, list) in records.iter_mut().zip(lists) {
+            let direct = if list.len() > DIRECT { DIRECT - 1 } else { list.len() };
+            let entries = &mut record[RECORD - DIRECT..];
+            entries[..direct].copy_from_slice(&list[..direct]);
+            if list.len() > DIRECT {
+                entries[direct] = (RECORD * lists.len() + tails.len() - direct) as u32;
+                tails.extend(&list[direct..]);
+            }
         }
-        if list.len() > DIRECT {
-            words[direct * count + s] = (words.len() - direct) as u32;
-            words.extend(&list[direct..]);
-        }
-    }
-    rig.put("neighbours", &words);
+    });
     rig.put("neighbour_count", &lists.iter().map(|list| list.len() as u32).collect::<Vec<_>>());
 }
 
 /// Of a rig with so many particles and so much room for tails.
 pub fn lists(rig: &Rig, count: usize, tails: usize) -> Vec<Vec<u32>> {
-    let words: Vec<u32> = rig.get("neighbours", DIRECT * count + tails);
+    let words: Vec<u32> = rig.get("neighbours", RECORD * count + tails);
     let lengths: Vec<u32> = rig.get("neighbour_count", count);
     let list = |s: usize| -> Vec<u32> {
         let length = lengths[s] as usize;
+        let first = RECORD * s + RECORD - DIRECT;
         let place = |k: usize| {
-            if length <= DIRECT || k + 1 < DIRECT {
-                k * count + s
-            } else {
-                words[(DIRECT - 1) * count + s] as usize + k
-            }
+            if length <= DIRECT || k + 1 < DIRECT { first + k } else { words[first + DIRECT - 1] as usize + k }
         };
         (0..length).map(|k| words[place(k)]).collect()
     };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 
 use crate::choose::{DIAMETER, DT};
-use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_room, tails_of, to_screen_of};
+use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_flights, put_room, tails_of, to_screen_of};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -226,7 +226,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
         let long = crowd.rig.counter(LIST_LONG) as usize;
         lengthen(&crowd.rig, false);
         let counts: Vec<u32> = crowd.rig.get("neighbour_count", COUNT);
-        let entries: Vec<u32> = crowd.rig.get("neighbours", DIRECT * COUNT);
+        let records: Vec<[u32; RECORD]> = crowd.rig.get("neighbours", COUNT);
         let (mut noted, mut cut, mut longer) = (0, 0, 0);
         for (s, pairs) in pairs.iter().enumerate() {
             if depth == 0 || layer(s) + ghosts < depth {
@@ -238,7 +238,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
             let expected = if ghosts == 0 && layer(s) == depth { choosers } else { BTreeSet::new() };
             assert_eq!(counts[s] as usize, expected.len(), "{s}, depth {depth}");
             let kept = expected.len().min(DIRECT);
-            let found: BTreeSet<u32> = (0..kept).map(|k| entries[k * COUNT + s]).collect();
+            let found: BTreeSet<u32> = records[s][RECORD - DIRECT..][..kept].iter().copied().collect();
             assert!(found.len() == kept && found.is_subset(&expected), "{s}, depth {depth}");
             noted += usize::from(kept > 0);
             cut += usize::from(expected.len() > DIRECT);
@@ -263,7 +263,7 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
         (0..COUNT).map(|s| if s % 3 == 0 { FULL_SHARE } else { 1 + stream.below(FULL_SHARE) }).collect();
     let flights: Vec<GpuFlight> =
         shares.iter().map(|&share| GpuFlight { collisions: share << 16, ..free_flights(1)[0] }).collect();
-    crowd.rig.put("flights", &flights);
+    put_flights(&mut crowd.rig, &flights);
     crowd.rig.constant("CAPPED", 1.0);
     crowd.rig.constant("DIAMETER2_PACKED", whole);
     let lists: Vec<BTreeSet<u32>> = crowd.run().into_iter().map(|list| list.into_iter().collect()).collect();
@@ -323,7 +323,7 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
         crowd.rig.constant("DIAMETER2_PACKED", (128.0 * DIAMETER / edge).powi(2).floor());
         crowd.rig.constant("RIGID", f64::from(u8::from(rigid)));
         crowd.rig.put("sorted", &particles);
-        crowd.rig.put("flights", &free_flights(COUNT));
+        put_flights(&mut crowd.rig, &free_flights(COUNT));
         crowd.dt = dt;
         crowd.run();
         let choosers = crowd.rig.list("rechoose", LIST_RECHOOSE);

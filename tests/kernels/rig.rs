@@ -65,6 +65,8 @@ pub const SHARED: u32 = 0x100;
 pub const LISTED: u32 = 0x200;
 pub const NEAR: u32 = 0x400;
 pub const CHOOSES: u32 = 0x10000;
+/// Words of a particle's flight and the beginning of its neighbour list.
+pub const RECORD: usize = 8;
 /// Threads of the largest dispatch over particles.
 const MOST_PARTICLES: usize = 8192;
 
@@ -218,6 +220,9 @@ pub struct Rig {
     /// Cells of the world's grid.
     grid: [u32; 3],
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    /// Of each particle, and the tails behind (neighbour_lists.rs).
+    records: Vec<[u32; RECORD]>,
+    tails: Vec<u32>,
     constants: Vec<(&'static str, f64)>,
 }
 
@@ -247,7 +252,7 @@ impl Rig {
             ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),
         ];
-        let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), constants };
+        let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), records: vec![], tails: vec![], constants };
         rig.put("wall_start", &world.walls.start);
         rig.put("wall_list", &world.walls.list);
         rig.put("triangles", &world.walls.triangles);
@@ -267,10 +272,9 @@ impl Rig {
         rig.put("vents", &[0u32; 8]);
         rig.put("asked", &[0u32; 4]);
         rig.put("asked_dispatches", &[0u32; 3 * LISTS]);
-        rig.put("flights", &[0u32; 8]);
         rig.put("shares", &[0u32; 4]);
-        rig.put("origins", &[0u32; 4]);
-        rig.put("particles", &[0u32; 8]);
+        rig.put("firsts", &[0u32; 8]);
+        rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
         rig.put("step_words", &[0u32; 8]);
         rig
     }
@@ -283,6 +287,17 @@ impl Rig {
     /// A storage buffer; its length is rounded up to 16 bytes, with zeros.
     pub fn put<T: bytemuck::Pod>(&mut self, name: &'static str, data: &[T]) {
         self.buffers.insert(name, device().storage_of(name, data).expect("memory"));
+    }
+
+    /// Changes the particles' records and the tails behind them, in the one buffer that has the flights, the neighbour lists, and when these
+    /// are done with the particles.
+    pub fn put_records(&mut self, change: impl FnOnce(&mut Vec<[u32; RECORD]>, &mut Vec<u32>)) {
+        change(&mut self.records, &mut self.tails);
+        let words = [self.records.as_flattened(), &self.tails].concat();
+        let buffer = device().storage_of("particles", &words).expect("memory");
+        for name in ["particles", "flights", "neighbours"] {
+            self.buffers.insert(name, buffer.clone());
+        }
     }
 
     pub fn uniform<T: bytemuck::Pod>(&mut self, name: &'static str, data: &[T]) {

@@ -3,7 +3,7 @@
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuFlight, GpuStep};
 
-use crate::neighbour_lists::{DIRECT, put_lists, put_to_screen, tails_of};
+use crate::neighbour_lists::{DIRECT, put_flights, put_lists, put_to_screen, tails_of};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::along;
 use crate::oracle::walls::parted;
@@ -47,7 +47,7 @@ fn lists_lose_exactly_those_behind_a_wall() {
         (0..COUNT).map(|i| (0..COUNT).filter(|&j| near(i, j)).take(LIST).map(|j| j as u32).collect()).collect();
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
-    rig.put("flights", &flights);
+    put_flights(&mut rig, &flights);
     put_lists(&mut rig, &lists);
     let marked = |s: usize| !s.is_multiple_of(8);
     let middles: Vec<u32> = (0..COUNT).map(|s| u32::from(marked(s)) << 31).collect();

@@ -271,7 +271,7 @@ fn those_near_a_collision_choose_again() {
         flight.collisions = 3 | FULL_SHARE << 16;
     }
     let rig = settle(&cloud, &pairs, true);
-    let flights: Vec<GpuFlight> = rig.get("flights", cloud.particles.len());
+    let flights: Vec<GpuFlight> = crate::neighbour_lists::flights(&rig, cloud.particles.len());
     let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
     let mut again = BTreeSet::new();
     let mut collided = BTreeSet::new();
@@ -310,7 +310,7 @@ fn a_wall_between_a_pair_stops_the_collision() {
     let pairs = meetings(&cloud);
     let rig = settle(&cloud, &pairs, true);
     let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
-    let flights: Vec<GpuFlight> = rig.get("flights", cloud.particles.len());
+    let flights: Vec<GpuFlight> = crate::neighbour_lists::flights(&rig, cloud.particles.len());
     let slack = 4.0 * cloud.world.walls.tolerance;
     let (mut blocked, mut met) = (0, 0);
     let mut again = BTreeSet::new();

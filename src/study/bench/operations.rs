@@ -24,7 +24,7 @@ use crate::subdomain::CROWD;
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work.
-const COUNTED: [&str; 20] = [
+const COUNTED: [&str; 21] = [
     "inject",
     "bin",
     "arrange",
@@ -33,6 +33,7 @@ const COUNTED: [&str; 20] = [
     "scan_cells",
     "scatter",
     "order",
+    "start_flights",
     "wall_times",
     "neighbours",
     "collide",
@@ -139,7 +140,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "sort" if rounds => {
             let order = counted.away_from_walls("order")? + counted.turn("order", "for (var k = begin >> 2u")?;
             let walls = (counted.straight("wall_times")? + counted.walls("wall_times")?) * work.near_walls;
-            (counted.straight("scatter")? + order) * n + walls
+            (counted.straight("scatter")? + order + counted.straight("start_flights")?) * n + walls
         }
         "sort" => counted.straight("arrange")? * n,
         "neighbours" => {

@@ -143,6 +143,7 @@ pub fn watched(
     model.plan.tally_every = 1;
     let mut witness = Witness::default();
     let mut simulation = Simulation::new(model, device, options)?;
+    simulation.watch_flights()?;
     simulation.begin(&mut witness)?;
     while simulation.advance(&mut witness)? {
         simulation.settle(&mut witness)?;
