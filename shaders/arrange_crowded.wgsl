@@ -1,10 +1,34 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl slots.wgsl lay.wgsl
-// Sort of the method `cell`, in cells that `collide` does not put in order: their particles by id.
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl slots.wgsl walls.wgsl cell_gas.wgsl lay.wgsl
+// Sort of the method `cell`, in cells that `collide` does not put in order: their particles by id, and where walls at rest part the gas the part
+// of each.
 //
-// Reads `crowded`, `bins`, `cell_start`, `slots` and `particles`; writes `sorted` (lay.wgsl). One thread per entry of `crowded`.
+// A particle belongs to the first part whose point it sees, or if it sees none, to the one with the nearest point.
+//
+// Reads `crowded`, `bins`, `cell_start`, `slots`, `particles`, `cell_volume`, `cell_parts` and the walls; writes `sorted` and `layers` (lay.wgsl). One thread
+// per entry of `crowded`.
 
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
 @group(0) @binding(25) var<storage, read> crowded: array<u32>;
+@group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
+
+// Walls part the gas of some cell.
+override PARTED_GAS: bool = true;
+
+fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
+    var nearest = 0u;
+    var least = NEVER;
+    for (var part = 0u; part < parts; part++) {
+        let away = between(place, cell_parts[first + part].place);
+        if (!blocked(place, cell_parts[first + part].place, 0.0)) {
+            return part;
+        }
+        if (dot(away, away) < least) {
+            nearest = part;
+            least = dot(away, away);
+        }
+    }
+    return nearest;
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn arrange_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -14,5 +38,14 @@ fn arrange_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     }
     let i = crowded[place_in_list];
     let cell = bins[i].x;
-    lay(i, place_by_id(cell, id_of(particles[i].place.w)), cell);
+    let place = place_by_id(cell, id_of(particles[i].place.w));
+    lay(i, place, cell);
+    // (Where walls may be that move `collide_moved` finds the parts.)
+    if (PARTED_GAS && !in_any_motion(cell_of(cell))) {
+        let entry = cell_volume[index_of(cell)];
+        if ((entry & PARTED) != 0u) {
+            layers[place] = part_of(particles[i].place.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;
+            tell_cut_short();
+        }
+    }
 }

@@ -212,6 +212,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         time = hit.time;
     }
     atomicAdd(&counters[BOUNCES], bounces);
+    tell_cut_short();
     if (overshoot > 0.0) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
     }

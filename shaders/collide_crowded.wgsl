@@ -170,9 +170,11 @@ fn collide_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if (fits_a_thread(begin, end)) {
         put_in_order(begin, end);
     } else {
-        for (var s = begin; s < end; s++) {
+        var s = begin;
+        for (; s < end; s++) {
             order_by_id[s] = s;
         }
+        through(s, end);
     }
     var count = end - begin;
     while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
@@ -188,4 +190,5 @@ fn collide_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
             neighbour_count[begin] = done.candidates;
         }
     }
+    tell_cut_short();
 }

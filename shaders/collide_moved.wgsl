@@ -324,8 +324,11 @@ fn collide_moved(
         return;
     }
     var candidates = 0u;
-    for (var part = 0u; part < place_count; part++) {
+    var part = 0u;
+    for (; part < place_count; part++) {
         candidates += collide_part(begin, end, volume_of(part), cell, part);
     }
+    through(part, place_count);
     tell_candidates(begin, candidates);
+    tell_cut_short();
 }

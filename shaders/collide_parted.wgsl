@@ -1,33 +1,16 @@
 //! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl parts.wgsl cell_gas.wgsl
 // The collisions of the method `cell`, in cells that walls part: each part of the gas by itself.
 //
-// A particle belongs to the first part whose point it sees, or if it sees none, to the one with the nearest point.
 // Pairs that a wall parts do not collide (where the gas of a part is not convex; the volumes allow for it).
 //
-// Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns` and the walls; reads and writes `sorted` and
-// the part of each particle in `layers`. One thread per entry of `parted`; each works on its own cell.
+// Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns`, the part of each particle in `layers` (arrange_crowded.wgsl) and the
+// walls; reads and writes `sorted`, and of its own cell `order_by_id`. One thread per entry of `parted`; each works on its own cell.
 
 @group(0) @binding(51) var<storage, read> parted: array<u32>;
 @group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
 
 fn hidden(s: u32, t: u32) -> bool {
     return blocked(sorted[s].place.xyz, sorted[t].place.xyz, 0.0);
-}
-
-fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
-    var nearest = 0u;
-    var least = NEVER;
-    for (var part = 0u; part < parts; part++) {
-        let away = between(place, cell_parts[first + part].place);
-        if (!blocked(place, cell_parts[first + part].place, 0.0)) {
-            return part;
-        }
-        if (dot(away, away) < least) {
-            nearest = part;
-            least = dot(away, away);
-        }
-    }
-    return nearest;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -42,12 +25,12 @@ fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     let parts = parts_of(entry);
     let begin = cell_start[bin];
     let end = last_of(begin, cell_start[bin + 1u]);
-    for (var s = begin; s < end; s++) {
-        put_in_part(s, part_of(sorted[s].place.xyz, first_part(entry), parts));
-    }
     var candidates = 0u;
-    for (var part = 0u; part < parts; part++) {
+    var part = 0u;
+    for (; part < parts; part++) {
         candidates += collide_part(begin, end, cell_parts[first_part(entry) + part].volume, cell, part);
     }
+    through(part, parts);
     tell_candidates(begin, candidates);
+    tell_cut_short();
 }

@@ -37,5 +37,6 @@ fn lengthen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     }
     let tail = RECORD * stride + begin - (DIRECT - 1u);
     _ = search(s, DIRECT - 1u, tail);
+    tell_cut_short();
     neighbours[direct_entry(s, DIRECT - 1u)] = tail;
 }

@@ -113,7 +113,8 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         if (own.all) {
             own_place = atomicAdd(&neighbour_count[s], found);
         }
-        for (var p = 0u; p < found; p++) {
+        var p = 0u;
+        for (; p < found; p++) {
             let j = partners.x;
             let other = places.x;
             partners = partners.yzww;
@@ -144,5 +145,8 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
                 note(j, s);
             }
         }
+        through(p, found);
     }
+    through(k, turns);
+    tell_cut_short();
 }

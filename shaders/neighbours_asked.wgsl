@@ -21,6 +21,7 @@ fn neighbours_asked(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_w
         // The rounds have their pairs in the first half.
         long_lists[arrayLength(&neighbour_count) + append(LIST_LONG_LATE)] = s;
     }
+    tell_cut_short();
     let walls = found.count > 0u && (found.flags & NEAR_WALL) != 0u;
     layers[s] |= SEARCHED | select(0u, UNSCREENED, walls);
 }

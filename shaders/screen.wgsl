@@ -52,7 +52,8 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let place = first_place(s);
     let middle = middles[s];
     var kept = 0u;
-    for (var k = 0u; k < listed; k++) {
+    var k = 0u;
+    for (; k < listed; k++) {
         let j = neighbours[entry_of(s, k, listed, tail)];
         var apart = false;
         if (((middle | middles[j]) & NEAR_WALL) != 0u) {
@@ -65,6 +66,8 @@ fn screen(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             kept++;
         }
     }
+    through(k, listed);
+    tell_cut_short();
     if (listed > DIRECT && kept == DIRECT) {
         // It has no tail any more.
         neighbours[last] = neighbours[tail + DIRECT - 1u];

@@ -19,4 +19,5 @@ fn wall_times(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     var flight = flight_of(flights[2u * s]);
     flight.wall = first_hit(sorted[s].position, sorted[s].velocity, flight.start, step.dt).time;
     flights[2u * s] = packed_flight(flight);
+    tell_cut_short();
 }

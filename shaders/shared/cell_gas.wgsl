@@ -19,6 +19,9 @@ struct StillGas {
 
 @group(0) @binding(50) var<storage, read> cell_volume: array<u32>;
 
+// Where in a particle's word of `layers` its part is.
+const PART_SHIFT: u32 = 16;
+
 fn parts_of(entry: u32) -> u32 {
     return (entry >> 24u) & 0x7fu;
 }

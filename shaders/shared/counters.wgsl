@@ -21,7 +21,8 @@ const MOVED: u32 = 48;              // particles that came from another owner si
 const FAST_PAIRS: u32 = 49;         // collisions of pairs faster than the plan's fastest since the last read
 const GHOST_CANDIDATES: u32 = 50;    // of CANDIDATES those of ghosts
 const GHOST_WALLS: u32 = 51;         // ghosts that may meet a wall in that step
+const CUT_SHORT: u32 = 52;           // threads whose loops the device ended too soon (turns.wgsl)
 // On a device alone, whose lists had too little room: one more than the place of the step in its interval, after whose search nothing
 // changes until the host has made room; and how many particles are in `sorted` then. The host alone clears them.
-const HELD: u32 = 52;
-const HELD_PARTICLES: u32 = 53;
+const HELD: u32 = 53;
+const HELD_PARTICLES: u32 = 54;

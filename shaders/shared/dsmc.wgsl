@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl spin.wgsl
+//! uses: step.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl turns.wgsl spin.wgsl
 // The collisions of the method `cell` in one part of a cell (direct simulation Monte Carlo without a time
 // counter, specification, section 2).
 //
@@ -21,7 +21,7 @@ override CELL_SEED_HIGH: u32;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 
 // More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
-const MOST_CANDIDATES: f32 = 65536.0;
+const MOST_CANDIDATES: f32 = 32768.0;
 
 fn at_most(wanted: f32) -> u32 {
     if (wanted > MOST_CANDIDATES) {
@@ -53,10 +53,12 @@ fn bulk_of(begin: u32, count: u32, part: u32) -> Bulk {
         bulk.mean += sorted[member(begin, k, part)].motion.xyz;
     }
     bulk.mean /= f32(count);
-    for (var k = 0u; k < count; k++) {
+    var k = 0u;
+    for (; k < count; k++) {
         let away = sorted[member(begin, k, part)].motion.xyz - bulk.mean;
         bulk.farthest2 = max(bulk.farthest2, dot(away, away));
     }
+    through(k, count);
     return bulk;
 }
 
@@ -124,6 +126,7 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
             bound = new_bound;
         }
     }
+    through(done.candidates, candidates);
     return done;
 }
 

@@ -1,11 +1,10 @@
 //! uses: dsmc.wgsl
 // Cells whose gas is in parts, each of which collides by itself: the part of each particle is kept in the upper half of its
-// word in `layers` (the lower half is the halo's).
+// word in `layers` (the lower half is the halo's), and while a part collides its members' places are in those of the cell in `order_by_id`.
 
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-
-const PART_SHIFT: u32 = 16;
+@group(0) @binding(63) var<storage, read_write> order_by_id: array<u32>;
 
 // The particles begin .. end of a bin, by id, that can collide.
 fn last_of(begin: u32, bin_end: u32) -> u32 {
@@ -20,28 +19,28 @@ fn put_in_part(s: u32, part: u32) {
     layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
 }
 
-// The k-th particle of a part.
+// The k-th particle of the part that was found last.
 fn member(begin: u32, k: u32, part: u32) -> u32 {
+    return order_by_id[begin + k];
+}
+
+// Finds a part's particles among begin .. end, which lie by id; how many there are.
+fn find_members(begin: u32, end: u32, part: u32) -> u32 {
+    var count = 0u;
     var s = begin;
-    var left = k;
-    loop {
+    for (; s < end; s++) {
         if ((layers[s] >> PART_SHIFT) == part) {
-            if (left == 0u) {
-                return s;
-            }
-            left--;
+            order_by_id[begin + count] = s;
+            count++;
         }
-        s++;
     }
-    return s;
+    through(s, end);
+    return count;
 }
 
 // The collisions of a part of this volume, m3, among the particles begin .. end of its cell; how many candidates there were.
 fn collide_part(begin: u32, end: u32, volume: f32, cell: u32, part: u32) -> u32 {
-    var count = 0u;
-    for (var s = begin; s < end; s++) {
-        count += select(0u, 1u, (layers[s] >> PART_SHIFT) == part);
-    }
+    let count = find_members(begin, end, part);
     if (count < 2u) {
         return 0u;
     }

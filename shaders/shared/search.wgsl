@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl cap.wgsl nearness.wgsl neighbour_list.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl cap.wgsl nearness.wgsl turns.wgsl neighbour_list.wgsl
 // The search for the particles near enough to collide with a particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than `near2` says, in the longest steps the cell edge (which the plan makes at
 // least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
@@ -101,7 +101,8 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
     var found = 0u;
     var flags = middle;
     // One loop over all of them: threads that run together wait for the one with the most candidates, not for the fullest row of each.
-    for (var k = 0u; k < e8; k++) {
+    var k = 0u;
+    for (; k < e8; k++) {
         var base = r0.x;
         base = select(base, r1.x - e0, k >= e0);
         base = select(base, r2.x - e1, k >= e1);
@@ -121,5 +122,6 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
             found++;
         }
     }
+    through(k, e8);
     return Found(found, flags);
 }

@@ -1,4 +1,4 @@
-//! uses: motions.wgsl
+//! uses: motions.wgsl turns.wgsl
 // Swept tests of a straight flight against the triangles of the walls.
 //
 // A wall that moves does so along a straight line at one velocity in a step, so in its own frame it is at rest: the
@@ -187,9 +187,11 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let list = row_list(cells, y, z);
-            for (var k = list.x; k < list.y; k++) {
+            var k = list.x;
+            for (; k < list.y; k++) {
                 meet(&hit, wall_list[k], from_point, v, start, end);
             }
+            through(k, list.y);
         }
     }
     if (MOVING) {
@@ -197,9 +199,11 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             let motion = motion_of(m);
             if (touches(cells, motion)) {
                 let from_frame = in_frame(from_point, motion, start);
-                for (var index = motion.first; index < motion.end; index++) {
+                var index = motion.first;
+                for (; index < motion.end; index++) {
                     meet(&hit, index, from_frame, v - motion.velocity, start, end);
                 }
+                through(index, motion.end);
             }
         }
     }
@@ -258,11 +262,13 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let list = row_list(cells, y, z);
-            for (var k = list.x; k < list.y; k++) {
+            var k = list.x;
+            for (; k < list.y; k++) {
                 if (parts(wall_list[k], p, q, along)) {
                     return true;
                 }
             }
+            through(k, list.y);
         }
     }
     if (MOVING) {
@@ -271,11 +277,13 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
             if (touches(cells, motion)) {
                 let from_frame = in_frame(p, motion, time);
                 let to_frame = in_frame(q, motion, time);
-                for (var index = motion.first; index < motion.end; index++) {
+                var index = motion.first;
+                for (; index < motion.end; index++) {
                     if (parts(index, from_frame, to_frame, along)) {
                         return true;
                     }
                 }
+                through(index, motion.end);
             }
         }
     }

@@ -6,8 +6,8 @@ use super::cell_table::CellTable;
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate,
-    GpuVent, GpuWeights, GpuZone,
+    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate, GpuVent,
+    GpuWeights, GpuZone,
 };
 use super::walls::Walls;
 

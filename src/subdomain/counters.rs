@@ -1,7 +1,7 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words that are read.
-pub const WORDS: usize = 52;
+pub const WORDS: usize = 53;
 /// Words of the buffer: the last, `HELD` and `HELD_PARTICLES`, are read only of a device that is held.
 pub const ALL_WORDS: usize = WORDS + 2;
 pub const HELD: usize = WORDS;
@@ -54,6 +54,8 @@ pub struct Counters {
     /// Of these on this device those of ghosts.
     pub ghost_candidates: u32,
     pub ghost_walls: u32,
+    /// Threads whose loops the device ended too soon.
+    pub cut_short: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
     pub choosers: [u32; MOST_ROUNDS],
 }
@@ -81,12 +83,13 @@ impl Counters {
             near_walls: words[NEAR_WALLS],
             ghost_candidates: words[50],
             ghost_walls: words[51],
+            cut_short: words[52],
             choosers: std::array::from_fn(|round| words[RECHOOSE + round]),
         }
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 14] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 15] {
         [
             &mut self.lost,
             &mut self.sampled,
@@ -102,6 +105,7 @@ impl Counters {
             &mut self.fast_pairs,
             &mut self.candidates,
             &mut self.near_walls,
+            &mut self.cut_short,
         ]
     }
 

@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep};
 
 use crate::choose::{Cloud, DT};
-use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_flights, put_room, put_to_screen, tails_of, to_screen_of};
+use crate::neighbour_lists::{
+    DIRECT, TAILS, lengthen, lists, put_flights, put_room, put_to_screen, tails_of, to_screen_of,
+};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 

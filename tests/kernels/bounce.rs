@@ -2,10 +2,10 @@
 
 use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, SURFACE_WORDS};
 
+use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, minus, norm};
 use crate::oracle::walls::{bounced, corner, normal, reflect_in_box, reflected};
-use crate::neighbour_lists::put_flights;
 use crate::rig::*;
 
 const DT: f32 = 3e-5;

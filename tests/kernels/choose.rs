@@ -2,10 +2,10 @@
 
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 
+use crate::neighbour_lists::{put_flights, put_lists};
 use crate::oracle::collision::{Body, closest_approach, meeting};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{minus, norm};
-use crate::neighbour_lists::{put_flights, put_lists};
 use crate::rig::*;
 
 pub const DIAMETER: f64 = 0.005;

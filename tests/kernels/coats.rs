@@ -4,8 +4,8 @@ use corpuscle::subdomain::{
     COAT_WORDS, GpuCoat, GpuFlight, GpuGas, GpuParticle, GpuStep, GpuVent, SURFACE_WORDS, VENT_WORDS,
 };
 
-use crate::oracle::random::Stream;
 use crate::neighbour_lists::put_flights;
+use crate::oracle::random::Stream;
 use crate::rig::*;
 
 const DT: f32 = 3e-5;

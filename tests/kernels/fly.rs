@@ -3,10 +3,10 @@
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep};
 
+use crate::neighbour_lists::{self, put_flights};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, norm, scaled};
 use crate::oracle::walls::{Triangle, crossings};
-use crate::neighbour_lists::{self, put_flights};
 use crate::rig::*;
 
 const COUNT: usize = 2000;

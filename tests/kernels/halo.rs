@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuPeer, GpuStep, GpuUpdate};
 
 use crate::local::Extent;
-use crate::oracle::random::Stream;
 use crate::neighbour_lists::put_flights;
+use crate::oracle::random::Stream;
 use crate::rig::*;
 
 const COUNT: usize = 4000;

@@ -2,8 +2,8 @@
 
 use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
 
-use crate::oracle::random::Stream;
 use crate::neighbour_lists::put_flights;
+use crate::oracle::random::Stream;
 use crate::rig::*;
 
 const COUNT: usize = 300;

@@ -49,8 +49,9 @@ pub const GHOST_CANDIDATES: usize = 50;
 pub const GHOST_WALLS: usize = 51;
 pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
-pub const HELD: usize = 52;
-pub const HELD_PARTICLES: usize = 53;
+pub const CUT_SHORT: usize = 52;
+pub const HELD: usize = 53;
+pub const HELD_PARTICLES: usize = 54;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;

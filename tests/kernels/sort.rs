@@ -1,11 +1,13 @@
 //! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly; `arrange` and `arrange_crowded`: by cell, and by id where
 //! `collide` wants it.
 
-use corpuscle::subdomain::{CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES};
+use corpuscle::subdomain::{
+    CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES,
+};
 
+use crate::neighbour_lists::{self, put_flights};
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
-use crate::neighbour_lists::{self, put_flights};
 use crate::rig::*;
 
 const COUNT: usize = 2000;
@@ -196,7 +198,7 @@ fn order_is_canonical() {
 
 /// Particles of the method `cell` come into the places of their cells: as their slots say, but by id in cells of more than a thread
 /// puts in order by itself, in those that walls part and in those that walls may touch which move. Slots have the ids of those and of
-/// crowded cells. Among others their cells are noted.
+/// crowded cells. Among others their cells are noted, and where walls part a cell the part of each.
 #[test]
 fn particles_of_cells_are_arranged() {
     const PARTED: u32 = 1 << 31;
@@ -255,6 +257,10 @@ fn particles_of_cells_are_arranged() {
         rig.put("bins", &bins);
         rig.put("cell_start", &start);
         rig.put("cell_volume", &volume);
+        // The point of the first part is out of sight, beyond the tank's side.
+        let beyond = world.fixed([world.low[0] - 0.5 * world.grid.cell, 0.035, 0.04]);
+        let part = |place: [u32; 3]| GpuPart { place, volume: 1e-9 };
+        rig.put("cell_parts", &[part(beyond), part(world.fixed([0.03, 0.035, 0.04]))]);
         rig.put("slots", &vec![NOBODY; COUNT]);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         for buffer in ["crowded", "cells", "layers"] {
@@ -286,6 +292,7 @@ fn particles_of_cells_are_arranged() {
         if peers > 0 {
             cell.iter().zip(&bins).for_each(|(&c, bin)| noted[(start[c as usize] + bin[1]) as usize] = c);
             layers[..COUNT].fill(0);
+            layers[start[parted as usize] as usize..start[parted as usize + 1] as usize].fill(1 << 16);
             layers[COUNT..].fill(LAYER);
         }
         assert_eq!((rig.get::<u32>("cells", COUNT + EMPTY), rig.get::<u32>("layers", COUNT + EMPTY)), (noted, layers));

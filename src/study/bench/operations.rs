@@ -94,7 +94,7 @@ impl Counted {
         let kernel = self.of(kernel)?;
         let rows = ["for (var z = ", "for (var y = "];
         let rows = rows.iter().map(|text| Some(kernel.inner(text)?.straight())).sum::<Option<Operations>>()?;
-        Some(rows + kernel.inner("for (var k = list.x")?.around("if (approach <= 0.0)")?[0])
+        Some(rows + kernel.inner("for (; k < list.y")?.around("if (approach <= 0.0)")?[0])
     }
 
     /// An entry of the list of one that chooses, up to the first test that most fail, and the rest.
@@ -147,7 +147,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
             counted.straight("neighbours")? * n
                 + counted.turn("neighbours", "for (; k < turns")? * turns
-                + counted.turn("neighbours", "for (var p = ")? * (0.5 * candidates)
+                + counted.turn("neighbours", "for (; p < found")? * (0.5 * candidates)
         }
         "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
         "settle" => {
@@ -170,7 +170,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("collide", "if (bin_end > begin + 1u)")? * work.shared
                 + few * work.few
                 + crowd * (work.shared - work.few)
-                + crowds.every("for (var k = 0u; k < count") * work.crowded
+                + (crowds.every("for (var k = 0u; k < count") + crowds.every("for (; k < count")) * work.crowded
                 + counted.turn("collide", "while (done.candidates < candidates)")? * collisions
         }
         "advect" => {
