@@ -135,15 +135,18 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     // Velocity of the wall that was hit last.
     var carried = vec3<f32>(0.0);
     var overshoot = 0.0;
+    var ended = false;
     loop {
         let hit = first_hit(particle.position, particle.velocity, time, step.dt);
         overshoot = max(overshoot, hit.overshoot);
         if (hit.triangle == NOBODY) {
+            ended = true;
             break;
         }
         if (bounces == MOST_BOUNCES) {
             atomicAdd(&counters[TRUNCATED], 1u);
             end = time;
+            ended = true;
             break;
         }
         bounces++;
@@ -169,6 +172,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                         tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
                     }
                     particle.tag = NOBODY;
+                    ended = true;
                     break;
                 }
             }
@@ -211,6 +215,7 @@ fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         particle.velocity = turned;
         time = hit.time;
     }
+    cut_short = cut_short || !ended;
     atomicAdd(&counters[BOUNCES], bounces);
     tell_cut_short();
     if (overshoot > 0.0) {

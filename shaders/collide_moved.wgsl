@@ -12,8 +12,8 @@
 // All of it is a function of the cell and of where the walls are in the step: the same on every device that owns the
 // cell. A pair that a wall parts does not collide, whatever the parts are.
 //
-// Reads `moved`, `cell_start`, `cell_volume`, `still_gas`, `motions` and the walls; reads and writes `sorted` and the
-// part of each particle in `layers`. One workgroup per entry of `moved`, whose threads share the points and the particles
+// Reads `moved`, `cell_start`, `cell_volume`, `still_gas`, `motions` and the walls; reads and writes `sorted`, the
+// part of each particle in `layers`, and of its own cell `order_by_id`. One workgroup per entry of `moved`, whose threads share the points and the particles
 // (a software device gives up loops that are too long); the first of them collides. Each works on its own cell; what is
 // shared are sets and sums of integers, which have no order.
 
@@ -315,12 +315,15 @@ fn collide_moved(
     }
     let begin = cell_start[bin];
     let end = select(begin, last_of(begin, cell_start[bin + 1u]), listed);
-    for (var s = begin + thread; s < end; s += WORKGROUP) {
+    var s = begin + thread;
+    for (; s < end; s += WORKGROUP) {
         put_in_part(s, part_of(sorted[s].place.xyz));
     }
+    through(s, end);
     storageBarrier();
     workgroupBarrier();
     if (thread > 0u || !listed) {
+        tell_cut_short();
         return;
     }
     var candidates = 0u;

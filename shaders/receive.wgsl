@@ -63,4 +63,5 @@ fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     } else {
         touch_around(s, cell);
     }
+    tell_cut_short();
 }

@@ -119,6 +119,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         if (is_own(pair.x)) {
             atomicAdd(&counters[BLOCKED], 1u);
         }
+        tell_cut_short();
         return;
     }
     if (dot(g, g) > FASTEST2 && is_own(pair.x)) {
@@ -152,4 +153,5 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     let wall_j = wall_time(j.position, j.velocity, time, step.dt);
     flights[2u * pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
     flights[2u * pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
+    tell_cut_short();
 }

@@ -32,7 +32,7 @@ fn layer_of(c: vec3<u32>) -> u32 {
 // `layers` holds a particle's layer (0 of the own, halo.wgsl) and these marks: another device may have it as a ghost; it is in the list
 // `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched; its neighbours
 // are yet to be screened. Above them is a bit for each round: it is in the list of those that choose in it, or one of the
-// outermost ghosts, who never are. (Where nobody chooses, `collide_parted` keeps the part of the cell there.)
+// outermost ghosts, who never are. (Where nobody chooses, the part of a particle in its cell is kept there, cell_gas.wgsl.)
 const LAYER: u32 = 0xff;
 const SHARED: u32 = 0x100;
 const LISTED: u32 = 0x200;

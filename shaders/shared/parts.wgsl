@@ -1,4 +1,4 @@
-//! uses: dsmc.wgsl
+//! uses: dsmc.wgsl cell_gas.wgsl
 // Cells whose gas is in parts, each of which collides by itself: the part of each particle is kept in the upper half of its
 // word in `layers` (the lower half is the halo's), and while a part collides its members' places are in those of the cell in `order_by_id`.
 

@@ -1,3 +1,4 @@
+//! uses: turns.wgsl
 // Lets those choose again who have a particle in their lists of neighbours: they are in its own list.
 
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
@@ -6,7 +7,8 @@ fn touch_neighbours(s: u32) {
     let listed = neighbour_count[s];
     var direct = direct_of(s);
     let tail = direct.w;
-    for (var k = 0u; k < listed; k++) {
+    var k = 0u;
+    for (; k < listed; k++) {
         var j = direct.x;
         direct = direct.yzww;
         if (listed > DIRECT && k >= DIRECT - 1u) {
@@ -14,4 +16,5 @@ fn touch_neighbours(s: u32) {
         }
         touch(j);
     }
+    through(k, listed);
 }

@@ -32,7 +32,7 @@ pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
     (plan.rounds + 1) * if features.halo { 2 } else { 1 }
 }
 
-/// `GHOSTS_ALL` and so on of `shaders/shared/asked.wgsl`.
+/// `GHOSTS_ALL` and so on of `shaders/shared/step.wgsl`.
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ASKED: u32 = 2;

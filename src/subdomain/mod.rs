@@ -272,10 +272,11 @@ impl Subdomain {
         }
         rec.submit();
         self.particle = grown;
-        if self.watched.is_some() {
+        self.rebind(device)?;
+        if self.watched.take().is_some() {
             self.watch_flights(device)?;
         }
-        self.rebind(device)
+        Ok(())
     }
 
     /// Makes room for tails of neighbour lists of `wanted` entries, and for a share of that more if the device has it.

@@ -152,7 +152,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
         "settle" => {
             let [alone, mutual] = counted.of("match_pairs")?.around(MUTUAL)?;
-            let touched = counted.turn("settle", LISTED)? * (2.0 * entries);
+            let touched = counted.turn("settle", "for (; k < listed")? * (2.0 * entries);
             alone * choosers + (mutual + counted.straight("settle")? + touched) * collisions
         }
         "lost" => {
