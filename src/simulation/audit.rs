@@ -184,18 +184,18 @@ impl Account {
         let counters = &tallies.counters;
         let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
         let expected = i128::from(interval.particles) - i128::from(self.counted.left + left(tallies));
+        if counters.capacity_failed > 0 || i128::from(found) != expected {
+            return Err(format!("{found} particles are there, {expected} should be"));
+        }
+        if counters.missing > 0 {
+            return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
+        }
         if counters.cut_short > 0 {
             return Err(format!(
                 "the driver ended loops of {} threads too soon, as Mesa's lavapipe of 22.3 does after 65,535 turns and that of \
                  25.0 does not: take a newer driver, or fewer particles or triangles in a cell",
                 counters.cut_short
             ));
-        }
-        if counters.capacity_failed > 0 || i128::from(found) != expected {
-            return Err(format!("{found} particles are there, {expected} should be"));
-        }
-        if counters.missing > 0 {
-            return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
         }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
