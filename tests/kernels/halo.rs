@@ -218,9 +218,13 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
         inner_high: high,
         arrivals: COUNT as u32,
         count: 0,
+        // They wait until they are asked, and are searched for where the step begins.
+        ghosts: 1,
         ..crowd.step(DEPTH)
     });
+    rig.put("firsts", &vec![GpuParticle::default(); COUNT]);
     rig.run("order", COUNT);
+    assert!(rig.get::<GpuParticle>("firsts", COUNT) == rig.get::<GpuParticle>("sorted", COUNT));
     let layers: Vec<u32> = rig.get::<u32>("layers", COUNT).iter().map(|mark| mark & 0xff).collect();
     let mut farther = 0;
     for s in 0..COUNT {
