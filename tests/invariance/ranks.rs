@@ -166,7 +166,7 @@ fn effusion_has_the_same_bits_on_any_number_of_ranks() {
 }
 
 /// Cells that walls part, with up to two hundred particles each. (Found by it: looked for one by one, the members of a part took more turns of a
-/// loop than Mesa's lavapipe of 22.3 grants a thread, so that cells did half of their collisions, by the order of the cells.)
+/// loop than Mesa's lavapipe of 22.3 grants a thread, so that too few collided, by the order of the cells.)
 #[test]
 fn crowded_cells_that_walls_part_have_the_same_bits_in_any_order() {
     let mut scene = by(Method::Cell, effusion()).scene;
