@@ -20,7 +20,8 @@ override CELL_SEED_HIGH: u32;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 
-// More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out.
+// More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out. Fewer than any device ends
+// a loop after (turns.wgsl).
 const MOST_CANDIDATES: f32 = 32768.0;
 
 fn at_most(wanted: f32) -> u32 {

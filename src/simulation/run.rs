@@ -4,6 +4,7 @@
 //! host code on the inflow. Rank 0 tells the observer.
 
 mod handover;
+mod looks;
 pub mod meter;
 mod reading;
 mod snapshots;
@@ -14,7 +15,7 @@ use std::time::Instant;
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer, Recording};
 use crate::ranks::{Communicator, Solo};
-use crate::subdomain::{GpuFlight, GpuParticle, Place, Subdomain, Tallies};
+use crate::subdomain::{GpuParticle, Place, Subdomain, Tallies};
 
 use super::SimulationError;
 use super::audit::{Account, count_outside};
@@ -476,33 +477,5 @@ impl<'a> Simulation<'a> {
         }
         self.flying.push_back(flying);
         Ok(())
-    }
-
-    /// Keeps the flights of each step from now on, for [`Simulation::flights`].
-    ///
-    /// # Errors
-    /// If the device has no memory for them.
-    pub fn watch_flights(&mut self) -> Result<(), SimulationError> {
-        Ok(self.subdomain.watch_flights(self.device)?)
-    }
-
-    /// The flights of the last step of the run so far, with ids, in the order of
-    /// [`Simulation::particles`]: for tests and studies of single steps, after [`Simulation::settle`]. None that are not
-    /// [watched](Simulation::watch_flights).
-    ///
-    /// # Errors
-    /// If the device fails.
-    pub fn flights(&self) -> Result<Vec<(u32, GpuFlight)>, SimulationError> {
-        let particles = self.subdomain.particles(self.device)?;
-        let flights = self.subdomain.flights(self.device)?;
-        Ok(particles.iter().map(GpuParticle::id).zip(flights).collect())
-    }
-
-    /// The particles, in the order of the device, after [`Simulation::settle`]: before it the device may be held.
-    ///
-    /// # Errors
-    /// If the device fails.
-    pub fn particles(&self) -> Result<Vec<GpuParticle>, SimulationError> {
-        Ok(self.subdomain.particles(self.device)?)
     }
 }

@@ -360,7 +360,7 @@ impl ParticleBuffers {
 /// How many particles, whose buffer with that of their neighbour lists is the largest that grows with them, fit a buffer of
 /// `bytes`. Lists grow where gas is dense, and buffers are made larger than the gas at hand: a guide, no promise.
 pub fn most_particles(bytes: u64) -> u64 {
-    (bytes as f64 / (4.0 * (RECORD as f64 + 1.0 / FIRST_TAILS as f64))) as u64
+    bytes * FIRST_TAILS / (size_of::<u32>() as u64 * (RECORD * FIRST_TAILS + 1))
 }
 
 /// All buffers of a subdomain.
