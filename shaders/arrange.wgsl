@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl cell_gas.wgsl members.wgsl lay.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl drawn.wgsl cell_gas.wgsl members.wgsl lay.wgsl
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
 // order by itself; those of other cells are listed.
 //
@@ -15,7 +15,7 @@ override PARTED_GAS: bool = true;
 
 // Whether other kernels work on a cell as well, which want its particles in order.
 fn parted_or_moved(cell: u32) -> bool {
-    if (in_any_motion(cell_of(cell))) {
+    if (moving_in(cell_of(cell))) {
         return true;
     }
     return PARTED_GAS && (cell_volume[index_of(cell)] & PARTED) != 0u;

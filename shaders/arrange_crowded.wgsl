@@ -41,7 +41,7 @@ fn arrange_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let place = place_by_id(cell, id_of(particles[i].place.w));
     lay(i, place, cell);
     // (Where walls may be that move `collide_moved` finds the parts.)
-    if (PARTED_GAS && !in_any_motion(cell_of(cell))) {
+    if (PARTED_GAS && !moving_in(cell_of(cell))) {
         let entry = cell_volume[index_of(cell)];
         if ((entry & PARTED) != 0u) {
             layers[place] = part_of(particles[i].place.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;

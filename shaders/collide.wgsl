@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl drawn.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 // The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //
 // Reads `cell_start`, `cell_volume`, `motions`; reads and writes `sorted`, appends the cells that walls part
@@ -161,7 +161,7 @@ fn collide(
             let cell = index_of(bin);
             let entry = cell_volume[cell];
             var count = bin_end - begin;
-            if (in_any_motion(cell_of(bin))) {
+            if (moving_in(cell_of(bin))) {
                 moved[append_group(LIST_MOVED)] = bin;
             } else if ((entry & PARTED) != 0u) {
                 parted[append(LIST_PARTED)] = bin;

@@ -30,8 +30,8 @@ const MOST_PARTS: u32 = 8;
 // Pairs of points whose sight of each other is tried: each with three others.
 const PAIRINGS: vec3<u32> = vec3<u32>(3, 20, 47);
 
-// Moving triangles that may be in the cell, and those that lie on it or beyond it along x. Where there are more of the
-// first than there is room for, no pair of the cell collides; of the second, all of the walls are tried.
+// Moving triangles that may be in the cell, and those that lie on it or beyond it along x. Where there are more of either than there is
+// room for, the walls' own lists are gone through.
 const MOST_LISTED: u32 = 512;
 var<workgroup> close: array<u32, 512>;
 var<workgroup> close_count: atomic<u32>;
@@ -54,10 +54,26 @@ fn hidden(s: u32, t: u32) -> bool {
     return !sees(sorted[s].place.xyz, sorted[t].place.xyz);
 }
 
+// Whether a triangle is in a row's list, which is in ascending order.
+fn is_listed(row: u32, index: u32) -> bool {
+    var low = wall_list[row];
+    let end = wall_list[row + 1u];
+    var high = end;
+    while (low < high) {
+        let middle = (low + high) >> 1u;
+        if (wall_list[middle] < index) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low < end && wall_list[low] == index;
+}
+
 // Finds `close` and `ahead`, by all threads.
 fn gather(thread: u32) {
     // A little more than half the edge, for rounding.
-    let half = 0.50005 * f32(1u << CELL_BITS) * QUANTUM + TOLERANCE;
+    let half = (0.5 + PLACE_OFF) * f32(1u << CELL_BITS) * QUANTUM + TOLERANCE;
     let middle = (here << vec3<u32>(CELL_BITS)) + vec3<u32>(1u << (CELL_BITS - 1u));
     for (var m = 0u; m < MOTIONS; m++) {
         let motion = motion_of(m);
@@ -65,27 +81,56 @@ fn gather(thread: u32) {
             continue;
         }
         let from_middle = middle - bitcast<vec3<u32>>(motion.moved);
-        for (var index = motion.first + thread; index < motion.end; index += WORKGROUP) {
-            let triangle = triangles[index];
-            let a = between(from_middle, triangle.a);
-            let b = between(from_middle, triangle.b);
-            let c = between(from_middle, triangle.c);
-            let low = min(a, min(b, c));
-            let high = max(a, max(b, c));
-            if (any(low.yz > vec2<f32>(half)) || any(high.yz < vec2<f32>(-half)) || high.x < -half) {
-                continue;
-            }
-            let k = atomicAdd(&ahead_count, 1u);
-            if (k < MOST_LISTED) {
-                ahead[k] = index;
-            }
-            let size = abs(triangle.normal);
-            if (low.x <= half && abs(dot(triangle.normal, a)) <= half * (size.x + size.y + size.z)) {
-                let l = atomicAdd(&close_count, 1u);
-                if (l < MOST_LISTED) {
-                    close[l] = index;
+        let drawn = drawn_around(here, motion);
+        for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+            for (var y = drawn.low.y; y <= drawn.high.y; y++) {
+                let row = row_of(motion, y, z);
+                let end = wall_list[row + 1u];
+                var k = wall_list[row] + thread;
+                for (; k < end; k += WORKGROUP) {
+                    let index = wall_list[k];
+                    // Of a triangle in several rows the first counts.
+                    var known = false;
+                    for (var other_z = drawn.low.z; other_z <= z; other_z++) {
+                        for (var other_y = drawn.low.y; other_y < select(drawn.high.y + 1, y, other_z == z); other_y++) {
+                            known = known || is_listed(row_of(motion, other_y, other_z), index);
+                        }
+                    }
+                    if (!known) {
+                        sort_in(index, from_middle, half);
+                    }
                 }
+                through(k, end);
             }
+        }
+    }
+}
+
+// Where in `wall_list` it says where the triangles of a row begin.
+fn row_of(motion: Motion, y: i32, z: i32) -> u32 {
+    return motion.rows + u32(z * bitcast<vec3<i32>>(motion.drawn_size).y + y);
+}
+
+// Puts a triangle into `ahead` and `close`, if it is. `from_middle` is the middle of the cell in its frame.
+fn sort_in(index: u32, from_middle: vec3<u32>, half: f32) {
+    let triangle = triangles[index];
+    let a = between(from_middle, triangle.a);
+    let b = between(from_middle, triangle.b);
+    let c = between(from_middle, triangle.c);
+    let low = min(a, min(b, c));
+    let high = max(a, max(b, c));
+    if (any(low.yz > vec2<f32>(half)) || any(high.yz < vec2<f32>(-half)) || high.x < -half) {
+        return;
+    }
+    let k = atomicAdd(&ahead_count, 1u);
+    if (k < MOST_LISTED) {
+        ahead[k] = index;
+    }
+    let size = abs(triangle.normal);
+    if (low.x <= half && abs(dot(triangle.normal, a)) <= half * (size.x + size.y + size.z)) {
+        let l = atomicAdd(&close_count, 1u);
+        if (l < MOST_LISTED) {
+            close[l] = index;
         }
     }
 }
@@ -103,8 +148,17 @@ fn in_wall(p: vec3<u32>) -> bool {
     for (var m = 0u; m < MOTIONS; m++) {
         let motion = motion_of(m);
         if (in_motion(here, motion)) {
-            for (var index = motion.first; index < motion.end; index++) {
-                depth += crossing(index, p);
+            let q = p - bitcast<vec3<u32>>(motion.moved);
+            let drawn = drawn_cells(motion, q, q);
+            // The row of the point, if the wall has one there.
+            if (drawn.low.y == drawn.high.y && drawn.low.z == drawn.high.z) {
+                let row = row_of(motion, drawn.low.y, drawn.low.z);
+                let end = wall_list[row + 1u];
+                var k = wall_list[row];
+                for (; k < end; k++) {
+                    depth += crossing(wall_list[k], p);
+                }
+                through(k, end);
             }
         }
     }
@@ -135,13 +189,20 @@ fn turn(a: vec3<f32>, b: vec3<f32>) -> bool {
 fn sees(p: vec3<u32>, q: vec3<u32>) -> bool {
     let along = between(p, q);
     let count = atomicLoad(&close_count);
-    if (count > MOST_LISTED) {
-        return false;
-    }
-    for (var k = 0u; k < count; k++) {
-        let way = bitcast<vec3<u32>>(motion_of(triangles[close[k]].motion).moved);
-        if (parts(close[k], p - way, q - way, along)) {
-            return false;
+    if (count <= MOST_LISTED) {
+        for (var k = 0u; k < count; k++) {
+            let way = bitcast<vec3<u32>>(motion_of(triangles[close[k]].motion).moved);
+            if (parts(close[k], p - way, q - way, along)) {
+                return false;
+            }
+        }
+    } else {
+        for (var m = 0u; m < MOTIONS; m++) {
+            let motion = motion_of(m);
+            let way = bitcast<vec3<u32>>(motion.moved);
+            if (in_motion(here, motion) && blocked_by(motion, p - way, q - way, along)) {
+                return false;
+            }
         }
     }
     if (still_parts) {

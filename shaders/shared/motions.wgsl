@@ -4,16 +4,22 @@
 struct Motion {
     // Since the start of the run, at the start of the step, quanta.
     moved: vec3<i32>,
-    // Its triangles.
-    first: u32,
+    // Where in `wall_list` it says where the triangles begin of each cell in which it is drawn (walls.wgsl).
+    cells: u32,
     // m/s.
     velocity: vec3<f32>,
-    end: u32,
+    // The same of each row of these cells along x, with each triangle once.
+    rows: u32,
     // The cells that it touches in this step.
     low: vec3<u32>,
     pad: u32,
     high: vec3<u32>,
     pad2: u32,
+    // The box of cells in which it is drawn: the first, and how many there are.
+    drawn_low: vec3<u32>,
+    pad3: u32,
+    drawn_size: vec3<u32>,
+    pad4: u32,
 }
 
 // Whether walls move, and how many do. Else not a line more is compiled than walls at rest need.
@@ -30,15 +36,4 @@ fn motion_of(m: u32) -> Motion {
 // Whether a moving wall may touch a cell in this step.
 fn in_motion(c: vec3<u32>, motion: Motion) -> bool {
     return all(c >= motion.low) && all(c <= motion.high);
-}
-
-fn in_any_motion(c: vec3<u32>) -> bool {
-    if (MOVING) {
-        for (var m = 0u; m < MOTIONS; m++) {
-            if (in_motion(c, motion_of(m))) {
-                return true;
-            }
-        }
-    }
-    return false;
 }

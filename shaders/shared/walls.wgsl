@@ -1,9 +1,9 @@
-//! uses: motions.wgsl turns.wgsl
+//! uses: motions.wgsl drawn.wgsl turns.wgsl
 // Swept tests of a straight flight against the triangles of the walls.
 //
 // A wall that moves does so along a straight line at one velocity in a step, so in its own frame it is at rest: the
-// flight is moved into the frame and tested against the triangles as drawn. Such triangles are in no cell's list: a
-// flight is tested against all of a moving wall where the box of its cells and that of the wall's touch.
+// flight is moved into the frame and tested against the triangles as drawn. These are in lists of their own, of the cells in which
+// the wall is drawn.
 //
 // A triangle stops a particle that moves against its normal and comes from the gas side. Rounding may
 // leave a particle less than TOLERANCE behind a wall; moving away it is let go, turning back it is
@@ -61,7 +61,6 @@ override TOLERANCE: f32;
 
 // Of each cell near walls: where its triangles start in `wall_list`, and its clearance.
 @group(0) @binding(20) var<storage, read> wall_start: array<vec2<u32>>;
-@group(0) @binding(21) var<storage, read> wall_list: array<u32>;
 @group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
 // The classes of sixteen cells, two bits each, and how many cells before these are near walls: cut, or beside one that is.
 @group(0) @binding(23) var<storage, read> cell_class: array<vec2<u32>>;
@@ -199,11 +198,17 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             let motion = motion_of(m);
             if (touches(cells, motion)) {
                 let from_frame = in_frame(from_point, motion, start);
-                var index = motion.first;
-                for (; index < motion.end; index++) {
-                    meet(&hit, index, from_frame, v - motion.velocity, start, end);
+                let drawn = drawn_cells(motion, from_frame, in_frame(to_point, motion, end));
+                for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+                    for (var y = drawn.low.y; y <= drawn.high.y; y++) {
+                        let list = drawn_list(motion, drawn, y, z);
+                        var k = list.x;
+                        for (; k < list.y; k++) {
+                            meet(&hit, wall_list[k], from_frame, v - motion.velocity, start, end);
+                        }
+                        through(k, list.y);
+                    }
                 }
-                through(index, motion.end);
             }
         }
     }
@@ -227,7 +232,18 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
         return true;
     }
     if (MOVING) {
-        return near_moving(c);
+        return near_moving(c) && passes_moving(from_point, start, shifted(x0, v * dt), dt);
+    }
+    return false;
+}
+
+// Whether a way through the cells in which some moving wall is drawn, as that wall has it, passes one with a triangle.
+fn passes_moving(p: vec3<u32>, start: f32, q: vec3<u32>, end: f32) -> bool {
+    for (var m = 0u; m < MOTIONS; m++) {
+        let motion = motion_of(m);
+        if (any_drawn(motion, drawn_cells(motion, in_frame(p, motion, start), in_frame(q, motion, end)))) {
+            return true;
+        }
     }
     return false;
 }
@@ -255,6 +271,24 @@ fn parts(index: u32, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
     return within(triangle, a + along * (before / (before - after)), ab, ac, TOLERANCE / sine);
 }
 
+// Whether a moving wall lies between two points of its frame.
+fn blocked_by(motion: Motion, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
+    let drawn = drawn_cells(motion, p, q);
+    for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+        for (var y = drawn.low.y; y <= drawn.high.y; y++) {
+            let list = drawn_list(motion, drawn, y, z);
+            var k = list.x;
+            for (; k < list.y; k++) {
+                if (parts(wall_list[k], p, q, along)) {
+                    return true;
+                }
+            }
+            through(k, list.y);
+        }
+    }
+    return false;
+}
+
 // Whether a wall, from either side, lies between two points at a time of the step.
 fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     let cells = cells_of(p, q);
@@ -274,16 +308,8 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {
             let motion = motion_of(m);
-            if (touches(cells, motion)) {
-                let from_frame = in_frame(p, motion, time);
-                let to_frame = in_frame(q, motion, time);
-                var index = motion.first;
-                for (; index < motion.end; index++) {
-                    if (parts(index, from_frame, to_frame, along)) {
-                        return true;
-                    }
-                }
-                through(index, motion.end);
+            if (touches(cells, motion) && blocked_by(motion, in_frame(p, motion, time), in_frame(q, motion, time), along)) {
+                return true;
             }
         }
     }

@@ -31,7 +31,7 @@ pub use error::GeometryError;
 pub use grid::{Grid, GridError};
 pub use primitives::FoundHole;
 pub use region::{region_bounds, region_contains, region_volume};
-pub use triangle_grid::{CellClass, FixedTriangle, TriangleGrid};
+pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, TriangleGrid};
 pub use vessel::{Triangle, Vessel, WallInfo};
 
 #[cfg(test)]

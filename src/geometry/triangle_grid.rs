@@ -4,8 +4,12 @@
 //! Akenine-Moeller 2001, with a tolerance of 1e-9 cells: never too few). Each axis bounds a linear function of
 //! the cell's centre, so a row of cells along x costs one intersection of intervals, however long it is.
 //!
+//! A wall that moves is in lists of its own, as drawn ([`Body`]): what comes near it looks there from its frame.
+//!
 //! Invariants: no fixed triangle is degenerate or turned over by the rounding; shared vertices keep one id and
-//! the same corners; each cell's list is in ascending order; a class other than `Cut` means an empty list.
+//! the same corners; each list is in ascending order; a class other than `Cut` means an empty list.
+
+use std::ops::Range;
 
 use super::GeometryError;
 use super::Grid;
@@ -49,37 +53,39 @@ pub struct TriangleGrid {
     pub list: Vec<u32>,
     /// One per cell.
     pub class: Vec<CellClass>,
+    /// The walls that move.
+    pub bodies: Vec<Body>,
 }
 
-impl TriangleGrid {
-    /// `margin` (m) grows every cell. Fails where a triangle lies outside the grid or loses its area to rounding.
-    pub fn build(vessel: &Vessel, grid: &Grid, margin: f64) -> Result<TriangleGrid, GeometryError> {
-        TriangleGrid::build_still(vessel, vessel, grid, margin, |_| false)
-    }
+/// Which triangles are listed where: those of place `i` are `list[start[i]..start[i + 1]]`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lists {
+    pub start: Vec<u32>,
+    pub list: Vec<u32>,
+}
 
-    /// The same for a vessel with walls that move: these are in no list, and cells have the class that they have in
-    /// the vessel `still` without them.
-    pub fn build_still(
-        vessel: &Vessel,
-        still: &Vessel,
-        grid: &Grid,
-        margin: f64,
-        moves: impl Fn(usize) -> bool,
-    ) -> Result<TriangleGrid, GeometryError> {
-        let triangles = (0..vessel.triangles.len())
-            .map(|source| fix(vessel, grid, source))
-            .collect::<Result<Vec<FixedTriangle>, GeometryError>>()?;
-        let footprints: Vec<Footprint> = triangles.iter().map(|t| Footprint::new(t, grid, margin)).collect();
-        let mut sizes = vec![0u64; grid.cell_count()];
-        let listed = |k: usize| !moves(vessel.triangles[k].wall as usize);
-        for (_, footprint) in footprints.iter().enumerate().filter(|(k, _)| listed(*k)) {
-            footprint.rows(grid, |row| sizes[row].iter_mut().for_each(|n| *n += 1));
-        }
+/// A wall that moves, where it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// The first cell of the box around its triangles, and the cells of the box by axis.
+    pub low: [u32; 3],
+    pub size: [u32; 3],
+    /// The triangles in each cell of the box, x fastest.
+    pub cells: Lists,
+    /// The triangles in each row of cells along x, y fastest, each once.
+    pub rows: Lists,
+}
+
+impl Lists {
+    /// `each` tells of every triangle in ascending order the places that list it, the same each time.
+    fn of(places: usize, each: impl Fn(&mut dyn FnMut(usize, Range<usize>))) -> Result<Lists, GeometryError> {
+        let mut sizes = vec![0u64; places];
+        each(&mut |_, at| sizes[at].iter_mut().for_each(|n| *n += 1));
         let entries: u64 = sizes.iter().sum();
         if u32::try_from(entries).is_err() {
             return Err(GeometryError::TooMany { count: entries as usize });
         }
-        let mut start = Vec::with_capacity(sizes.len() + 1);
+        let mut start = Vec::with_capacity(places + 1);
         let mut total = 0u32;
         start.push(0);
         start.extend(sizes.iter().map(|&n| {
@@ -88,16 +94,81 @@ impl TriangleGrid {
         }));
         let mut next = start.clone();
         let mut list = vec![0; total as usize];
-        for (k, footprint) in footprints.iter().enumerate().filter(|(k, _)| listed(*k)) {
-            footprint.rows(grid, |row| {
-                for n in &mut next[row] {
-                    list[*n as usize] = k as u32;
-                    *n += 1;
-                }
-            });
-        }
+        each(&mut |triangle, at| {
+            for n in &mut next[at] {
+                list[*n as usize] = triangle as u32;
+                *n += 1;
+            }
+        });
+        Ok(Lists { start, list })
+    }
+
+    /// Triangles (indices) listed in a place.
+    pub fn of_place(&self, place: usize) -> &[u32] {
+        &self.list[self.start[place] as usize..self.start[place + 1] as usize]
+    }
+}
+
+impl Body {
+    fn new(own: &[(usize, &Footprint)]) -> Result<Body, GeometryError> {
+        let ends = |axis: usize, end: usize| own.iter().map(move |(_, footprint)| footprint.range[axis][end]);
+        let low: [u32; 3] = std::array::from_fn(|axis| ends(axis, 0).min().unwrap_or(0));
+        let size: [u32; 3] = std::array::from_fn(|axis| ends(axis, 1).max().map_or(0, |high| high - low[axis] + 1));
+        let [nx, ny, nz] = size.map(|n| n as usize);
+        let row = |y: u32, z: u32| (z - low[2]) as usize * ny + (y - low[1]) as usize;
+        let cells = Lists::of(nx * ny * nz, |list| {
+            for (triangle, footprint) in own {
+                footprint.rows(|xs, y, z| {
+                    let at = row(y, z) * nx;
+                    list(*triangle, at + (xs.start - low[0]) as usize..at + (xs.end - low[0]) as usize);
+                });
+            }
+        })?;
+        let rows = Lists::of(ny * nz, |list| {
+            for (triangle, footprint) in own {
+                footprint.rows(|_, y, z| list(*triangle, row(y, z)..row(y, z) + 1));
+            }
+        })?;
+        Ok(Body { low, size, cells, rows })
+    }
+}
+
+impl TriangleGrid {
+    /// `margin` (m) grows every cell. Fails where a triangle lies outside the grid or loses its area to rounding.
+    pub fn build(vessel: &Vessel, grid: &Grid, margin: f64) -> Result<TriangleGrid, GeometryError> {
+        TriangleGrid::build_still(vessel, vessel, grid, margin, 0, |_| None)
+    }
+
+    /// The same for a vessel with walls that move (how many, and the number of a wall among them): each of these is a body
+    /// of its own, and cells have the class that they have in the vessel `still` without them.
+    pub fn build_still(
+        vessel: &Vessel,
+        still: &Vessel,
+        grid: &Grid,
+        margin: f64,
+        bodies: usize,
+        body: impl Fn(usize) -> Option<usize>,
+    ) -> Result<TriangleGrid, GeometryError> {
+        let triangles = (0..vessel.triangles.len())
+            .map(|source| fix(vessel, grid, source))
+            .collect::<Result<Vec<FixedTriangle>, GeometryError>>()?;
+        let footprints: Vec<Footprint> = triangles.iter().map(|t| Footprint::new(t, grid, margin)).collect();
+        let of = |wanted: Option<usize>| {
+            let own = |(k, _): &(usize, _)| body(vessel.triangles[*k].wall as usize) == wanted;
+            footprints.iter().enumerate().filter(own).collect::<Vec<(usize, &Footprint)>>()
+        };
+        let still_walls = of(None);
+        let Lists { start, list } = Lists::of(grid.cell_count(), |list| {
+            for (triangle, footprint) in &still_walls {
+                footprint.rows(|xs, y, z| {
+                    let row = grid.cell_index([0, y, z]);
+                    list(*triangle, row + xs.start as usize..row + xs.end as usize);
+                });
+            }
+        })?;
+        let bodies = (0..bodies).map(|k| Body::new(&of(Some(k)))).collect::<Result<_, _>>()?;
         let class = classify(still, grid, &start);
-        Ok(TriangleGrid { triangles, start, list, class })
+        Ok(TriangleGrid { triangles, start, list, class, bodies })
     }
 
     /// Triangles (indices) listed in a cell.
@@ -170,8 +241,8 @@ impl Footprint {
         Footprint { range, limits }
     }
 
-    /// Calls `visit` with the cell indices of each run of touched cells along x.
-    fn rows(&self, grid: &Grid, mut visit: impl FnMut(std::ops::Range<usize>)) {
+    /// Calls `visit` with each run of touched cells along x, and its y and z.
+    fn rows(&self, mut visit: impl FnMut(Range<u32>, u32, u32)) {
         let [xs, ys, zs] = self.range;
         for z in zs[0]..=zs[1] {
             for y in ys[0]..=ys[1] {
@@ -190,8 +261,7 @@ impl Footprint {
                 }
                 let (first, last) = (first.ceil(), last.floor());
                 if first <= last {
-                    let row = grid.cell_index([0, y, z]);
-                    visit(row + first as usize..row + last as usize + 1);
+                    visit(first as u32..last as u32 + 1, y, z);
                 }
             }
         }

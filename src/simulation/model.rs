@@ -46,9 +46,6 @@ pub enum ModelError {
         "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls"
     ))]
     MovingCavity { wall: String },
-    #[error("wall \"{wall}\" moves and has {found} triangles, more than the {limit} that a moving wall may have")]
-    #[diagnostic(help("a flight near it is tested against each of them: use a coarser mesh, or fewer segments"))]
-    MovingTriangles { wall: String, found: usize, limit: usize },
     #[error("wall \"{wall}\" sweeps over {what}: what lets gas in or out must stay free of moving walls")]
     #[diagnostic(help("move it out of the box that the wall passes through from its first to its last place"))]
     Swept { what: String, wall: String },

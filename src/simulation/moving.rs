@@ -15,8 +15,6 @@ use crate::subdomain::{GpuMotion, Walls};
 
 use super::model::ModelError;
 
-/// Triangles of a moving wall, at most: a flight near it is tested against all of them.
-const MOST_TRIANGLES: usize = 4096;
 /// A chamber may not be squeezed to less than this share of its volume.
 const LEAST_SHARE: f64 = 1e-3;
 /// Volumes are taken as linear in the displacement where their middle is so near to it, over the volume of all gas.
@@ -39,8 +37,6 @@ pub struct Moving {
 struct Body {
     motion: Motion,
     name: String,
-    /// First and end among the vessel's.
-    triangles: [u32; 2],
     /// As drawn, m.
     low: [f64; 3],
     high: [f64; 3],
@@ -69,7 +65,7 @@ fn overlap(a: &([f64; 3], [f64; 3]), b: &([f64; 3], [f64; 3])) -> bool {
 
 impl Moving {
     /// # Errors
-    /// If a wall has too many triangles, sweeps over an orifice or a vent, squeezes a chamber to nothing, or two of them
+    /// If a wall encloses the gas, sweeps over an orifice or a vent, squeezes a chamber to nothing, or two of them
     /// claim one side of a chamber.
     pub fn new(scene: &Scene, vessel: &Vessel) -> Result<Moving, ModelError> {
         if scene.motions.is_empty() {
@@ -328,9 +324,7 @@ fn placed(body: &Body, grid: &Grid, [from, to]: [f64; 2]) -> GpuMotion {
     let [low, high] = cells_swept(body, grid, between);
     GpuMotion {
         moved: body.shift(between[0]).map(|way| (way / grid.quantum()).round() as i32),
-        first: body.triangles[0],
         velocity: body.shift((between[1] - between[0]) / (to - from).max(f64::MIN_POSITIVE)).map(|v| v as f32),
-        end: body.triangles[1],
         low,
         high,
         ..GpuMotion::default()
@@ -352,22 +346,15 @@ fn cells_swept(body: &Body, grid: &Grid, between: [f64; 2]) -> [[u32; 3]; 2] {
 }
 
 fn body(scene: &Scene, vessel: &Vessel, motion: &Motion) -> Result<Body, ModelError> {
-    let own = |triangle: &crate::geometry::Triangle| triangle.wall as usize == motion.wall;
-    let first = vessel.triangles.iter().position(own).unwrap_or(0);
-    let count = vessel.triangles.iter().filter(|triangle| own(triangle)).count();
     let name = scene.walls[motion.wall].name.clone();
     if vessel.walls[motion.wall].cavity {
         return Err(ModelError::MovingCavity { wall: name });
-    }
-    if count > MOST_TRIANGLES {
-        return Err(ModelError::MovingTriangles { wall: name, found: count, limit: MOST_TRIANGLES });
     }
     let (low, high) = extent(vessel, |wall, _| wall == motion.wall);
     let inside = turns(&motion.course).into_iter().filter(|&time| time > 0.0 && time < scene.end_time);
     let places = inside.chain([0.0, scene.end_time]).map(|time| displacement(&motion.course, time));
     let range = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-    let triangles = [first as u32, (first + count) as u32];
-    Ok(Body { motion: motion.clone(), name, triangles, low, high, range })
+    Ok(Body { motion: motion.clone(), name, low, high, range })
 }
 
 /// The corners of some triangles, m.

@@ -93,17 +93,18 @@ impl Setup {
         if plan.method == Method::ControlVolume {
             return Err(SimulationError::NoParticles);
         }
-        let moves = |wall: usize| model.moving.motion_of(wall).is_some();
+        let motion = |wall: usize| model.moving.motion_of(wall);
         let margin = Walls::tolerance(&plan.grid);
-        let still = model.vessel.without(moves);
-        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, moves)?;
+        let still = model.vessel.without(|wall| motion(wall).is_some());
+        let bodies = model.moving.count();
+        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, bodies, motion)?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {
             let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
             !wall.is_convex_cavity()
         };
         let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts)
-            .moving(&triangle_grid, |source| model.moving.motion_of(model.vessel.triangles[source].wall as usize));
+            .moving(&triangle_grid, |source| motion(model.vessel.triangles[source].wall as usize));
         let cells = match plan.method {
             Method::Cell => cell_table(model, &still, &triangle_grid, parts)?,
             _ => CellTable::default(),

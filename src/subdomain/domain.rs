@@ -10,7 +10,7 @@ use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
 use super::state::{gas_table, mode_table};
-use super::walls::Walls;
+use super::walls::{Drawn, Walls};
 
 /// What a domain is made from.
 pub struct DomainInput<'a> {
@@ -44,6 +44,8 @@ pub struct Domain {
     pub(super) parted_cells: u64,
     /// Cells that moving walls may touch, at most.
     pub(super) moved_cells: u64,
+    /// Where the walls that move are drawn.
+    pub(super) drawn: Vec<Drawn>,
 }
 
 impl Domain {
@@ -80,6 +82,7 @@ impl Domain {
             zones: input.zones.len(),
             parted_cells: input.cells.parted,
             moved_cells: input.cells.still.len() as u64,
+            drawn: input.walls.drawn.clone(),
         })
     }
 

@@ -2,6 +2,7 @@
 
 use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
+use crate::scene::MOST_MOTIONS;
 
 use super::buffers::{CHUNK, CellBuffers, RECORD, step_stride};
 use super::constants::{Features, WORKGROUP};
@@ -57,7 +58,7 @@ impl Subdomain {
         // Work that was submitted before has seen the tables of its own interval.
         device.write(&self.fixed.coats, 0, &tables.coats);
         device.write(&self.fixed.vents, 0, &tables.vents);
-        device.write(&self.fixed.motions, 0, &tables.motions);
+        self.place_walls(device, &tables.motions);
         device.write(&self.fixed.shares, 0, &tables.shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
@@ -210,9 +211,13 @@ impl Subdomain {
         bytes
     }
 
-    /// Places the walls that move, for tallies outside a step.
+    /// Places the walls that move: in each step of an interval, or for tallies outside of one.
     pub fn place_walls(&self, device: &Device, motions: &[GpuMotion]) {
-        device.write(&self.fixed.motions, 0, motions);
+        let mut told = motions.to_vec();
+        for step in told.chunks_mut(MOST_MOTIONS) {
+            step.iter_mut().zip(&self.domain.drawn).for_each(|(motion, drawn)| *motion = drawn.complete(*motion));
+        }
+        device.write(&self.fixed.motions, 0, &told);
     }
 
     /// The particles as they are, for tallies outside a step.

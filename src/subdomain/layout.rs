@@ -137,13 +137,17 @@ pub struct GpuTriangle {
 pub struct GpuMotion {
     /// Quanta of the grid.
     pub moved: [i32; 3],
-    pub first: u32,
+    pub cells: u32,
     pub velocity: [f32; 3],
-    pub end: u32,
+    pub rows: u32,
     pub low: [u32; 3],
     pub pad: u32,
     pub high: [u32; 3],
     pub pad2: u32,
+    pub drawn_low: [u32; 3],
+    pub pad3: u32,
+    pub drawn_size: [u32; 3],
+    pub pad4: u32,
 }
 
 /// `Coat` of `shaders/shared/coats.wgsl`.

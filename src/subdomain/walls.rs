@@ -1,8 +1,8 @@
 //! The walls as the device sees them: triangles in quanta, and the lists of the cells they touch.
 
-use crate::geometry::{CellClass, Grid, TriangleGrid, clearances};
+use crate::geometry::{CellClass, Grid, Lists, TriangleGrid, clearances};
 
-use super::layout::GpuTriangle;
+use super::layout::{GpuMotion, GpuTriangle};
 
 /// No surface tally.
 const NOBODY: u32 = u32::MAX;
@@ -16,14 +16,36 @@ pub struct Walls {
     /// First entry in `list` of each cell that has walls or is beside one that has, and its
     /// [`clearance`](crate::geometry::clearances); and the end.
     pub start: Vec<[u32; 2]>,
+    /// Triangles by cell; behind them those of each wall that moves, by cell and by row, and where these begin.
     pub list: Vec<u32>,
     /// The classes of sixteen cells each, two bits per cell, and how many cells before them are near walls. One more than there
     /// are such sixteens, for the cell behind the last.
     pub class: Vec<[u32; 2]>,
     /// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
     pub parting: Vec<u32>,
+    /// The walls that move.
+    pub drawn: Vec<Drawn>,
     /// m.
     pub tolerance: f64,
+}
+
+/// Where a wall that moves is drawn, and where in `list` its lists are: place `i` has the triangles from the word at `list[at + i]` up to
+/// that at `list[at + i + 1]`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Drawn {
+    /// The first cell of the box around it, and the cells of the box by axis.
+    low: [u32; 3],
+    size: [u32; 3],
+    /// Of its cells, x fastest, and of its rows of cells along x.
+    cells: u32,
+    rows: u32,
+}
+
+impl Drawn {
+    /// What the shaders are told of the wall in a step.
+    pub fn complete(&self, motion: GpuMotion) -> GpuMotion {
+        GpuMotion { drawn_low: self.low, drawn_size: self.size, cells: self.cells, rows: self.rows, ..motion }
+    }
 }
 
 impl Walls {
@@ -94,18 +116,32 @@ impl Walls {
             list: triangle_grid.list.clone(),
             class,
             parting: parting(triangle_grid, grid, parts),
+            drawn: Vec::new(),
             tolerance,
         }
     }
 }
 
 impl Walls {
-    /// Tells the triangles of walls that move (their motion by triangle of the vessel, or `None`).
+    /// With the walls that move, and which of them each triangle of the vessel is of, if any.
     pub fn moving(mut self, triangle_grid: &TriangleGrid, motion: impl Fn(usize) -> Option<usize>) -> Walls {
         for (own, fixed) in self.triangles.iter_mut().zip(&triangle_grid.triangles) {
             own.motion = motion(fixed.source as usize).map_or(NOBODY, |motion| motion as u32);
         }
+        for body in &triangle_grid.bodies {
+            let [cells, rows] = [&body.cells, &body.rows].map(|lists| self.append(lists));
+            self.drawn.push(Drawn { low: body.low, size: body.size, cells, rows });
+        }
         self
+    }
+
+    /// Where in `list` the lists begin.
+    fn append(&mut self, lists: &Lists) -> u32 {
+        let entries = self.list.len() as u32;
+        self.list.extend(&lists.list);
+        let place = self.list.len() as u32;
+        self.list.extend(lists.start.iter().map(|start| entries + start));
+        place
     }
 }
 

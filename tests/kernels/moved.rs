@@ -34,13 +34,12 @@ fn at_rest_and_moved(seed: u32, shape: &dyn Fn(Vector) -> Shape, gas: GasSide, m
     let vessel = Vessel::build(&drawn).unwrap();
     let rest = vessel.without(|wall| wall == 1).measured().unwrap();
     let margin = Walls::tolerance(grid);
-    let triangles = TriangleGrid::build_still(&vessel, &rest, grid, margin, |wall| wall == 1).unwrap();
-    let moves = |source: usize| (vessel.triangles[source].wall == 1).then_some(0);
+    let body = |wall: usize| (wall == 1).then_some(0);
+    let triangles = TriangleGrid::build_still(&vessel, &rest, grid, margin, 1, body).unwrap();
+    let moves = |source: usize| body(vessel.triangles[source].wall as usize);
     world.walls = Walls::new(&triangles, grid, &[], &[], |source| moves(source).is_some()).moving(&triangles, moves);
-    let own = |k: &usize| moves(*k).is_some();
-    let indices: Vec<usize> = (0..vessel.triangles.len()).filter(own).collect();
-    let place = |k: &usize| vessel.triangles[*k].vertices.map(|v| vessel.vertices[v as usize]);
-    let corners: Vec<Vector> = indices.iter().flat_map(place).collect();
+    let own = vessel.triangles.iter().filter(|triangle| triangle.wall == 1);
+    let corners: Vec<Vector> = own.flat_map(|own| own.vertices.map(|v| vessel.vertices[v as usize])).collect();
     let cell = |fold: fn(f64, f64) -> f64, sign: f64| -> [u32; 3] {
         std::array::from_fn(|axis| {
             let corner = corners.iter().map(|corner| corner[axis] + moved[axis]).reduce(fold).unwrap();
@@ -49,12 +48,11 @@ fn at_rest_and_moved(seed: u32, shape: &dyn Fn(Vector) -> Shape, gas: GasSide, m
     };
     let motion = GpuMotion {
         moved: moved.map(|way| (way / grid.quantum()).round() as i32),
-        first: indices[0] as u32,
-        end: indices[indices.len() - 1] as u32 + 1,
         low: cell(f64::min, -1.0),
         high: cell(f64::max, 1.0),
         ..GpuMotion::default()
     };
+    let motion = world.walls.drawn[0].complete(motion);
     let gas = cell_gas(&rest, grid, &triangles, |_| false);
     let points = still_points(&rest, grid, &triangles, &[[motion.low, motion.high]]);
     let table = CellTable::new(&gas, grid).unwrap().moving(&gas, &points);

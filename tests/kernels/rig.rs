@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
 use corpuscle::gpu::{Device, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, Walls};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
 
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
@@ -263,7 +263,7 @@ impl Rig {
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
-        rig.uniform("motions", &[[0u32; 16]; 128]);
+        rig.uniform("motions", &[GpuMotion::default(); MOTION_ENTRIES]);
         rig.put("newborns", &[0u32; 12]);
         // A device alone: all are in layer 0, and nobody is told.
         rig.put("layers", &[0u32; MOST_PARTICLES]);
