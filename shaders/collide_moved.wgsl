@@ -54,21 +54,10 @@ fn hidden(s: u32, t: u32) -> bool {
     return !sees(sorted[s].place.xyz, sorted[t].place.xyz);
 }
 
-// Whether a triangle is in a row's list, which is in ascending order.
-fn is_listed(row: u32, index: u32) -> bool {
-    var low = wall_list[row];
-    let end = wall_list[row + 1u];
-    var high = end;
-    while (low < high) {
-        let middle = (low + high) >> 1u;
-        if (wall_list[middle] < index) {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return low < end && wall_list[low] == index;
-}
+// In the lists of rows: the triangle's number, and whether it is also in the row before along y and along z.
+const NUMBER: u32 = 0x3fffffff;
+const EARLIER_Y: u32 = 0x80000000;
+const EARLIER_Z: u32 = 0x40000000;
 
 // Finds `close` and `ahead`, by all threads.
 fn gather(thread: u32) {
@@ -85,19 +74,14 @@ fn gather(thread: u32) {
         for (var z = drawn.low.z; z <= drawn.high.z; z++) {
             for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                 let row = row_of(motion, y, z);
+                // Of a triangle in several rows the first counts.
+                let earlier = select(0u, EARLIER_Y, y > drawn.low.y) | select(0u, EARLIER_Z, z > drawn.low.z);
                 let end = wall_list[row + 1u];
                 var k = wall_list[row] + thread;
                 for (; k < end; k += WORKGROUP) {
-                    let index = wall_list[k];
-                    // Of a triangle in several rows the first counts.
-                    var known = false;
-                    for (var other_z = drawn.low.z; other_z <= z; other_z++) {
-                        for (var other_y = drawn.low.y; other_y < select(drawn.high.y + 1, y, other_z == z); other_y++) {
-                            known = known || is_listed(row_of(motion, other_y, other_z), index);
-                        }
-                    }
-                    if (!known) {
-                        sort_in(index, from_middle, half);
+                    let entry = wall_list[k];
+                    if ((entry & earlier) == 0u) {
+                        sort_in(entry & NUMBER, from_middle, half);
                     }
                 }
                 through(k, end);
@@ -156,7 +140,7 @@ fn in_wall(p: vec3<u32>) -> bool {
                 let end = wall_list[row + 1u];
                 var k = wall_list[row];
                 for (; k < end; k++) {
-                    depth += crossing(wall_list[k], p);
+                    depth += crossing(wall_list[k] & NUMBER, p);
                 }
                 through(k, end);
             }

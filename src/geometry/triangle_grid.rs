@@ -72,13 +72,18 @@ pub struct Body {
     pub size: [u32; 3],
     /// The triangles in each cell of the box, x fastest.
     pub cells: Lists,
-    /// The triangles in each row of cells along x, y fastest, each once.
+    /// The triangles whose boxes touch each row of cells along x, y fastest, each once: marked with [`EARLIER_Y`] and [`EARLIER_Z`]
+    /// if the box touches the row before along that axis too.
     pub rows: Lists,
 }
 
+/// Marks beside the number of a triangle in the lists of rows.
+const EARLIER_Y: u32 = 1 << 31;
+const EARLIER_Z: u32 = 1 << 30;
+
 impl Lists {
     /// `each` tells of every triangle in ascending order the places that list it, the same each time.
-    fn of(places: usize, each: impl Fn(&mut dyn FnMut(usize, Range<usize>))) -> Result<Lists, GeometryError> {
+    fn of(places: usize, each: impl Fn(&mut dyn FnMut(u32, Range<usize>))) -> Result<Lists, GeometryError> {
         let mut sizes = vec![0u64; places];
         each(&mut |_, at| sizes[at].iter_mut().for_each(|n| *n += 1));
         let entries: u64 = sizes.iter().sum();
@@ -96,7 +101,7 @@ impl Lists {
         let mut list = vec![0; total as usize];
         each(&mut |triangle, at| {
             for n in &mut next[at] {
-                list[*n as usize] = triangle as u32;
+                list[*n as usize] = triangle;
                 *n += 1;
             }
         });
@@ -111,6 +116,9 @@ impl Lists {
 
 impl Body {
     fn new(own: &[(usize, &Footprint)]) -> Result<Body, GeometryError> {
+        if let Some((last, _)) = own.last().filter(|(last, _)| *last >= EARLIER_Z as usize) {
+            return Err(GeometryError::TooMany { count: *last });
+        }
         let ends = |axis: usize, end: usize| own.iter().map(move |(_, footprint)| footprint.range[axis][end]);
         let low: [u32; 3] = std::array::from_fn(|axis| ends(axis, 0).min().unwrap_or(0));
         let size: [u32; 3] = std::array::from_fn(|axis| ends(axis, 1).max().map_or(0, |high| high - low[axis] + 1));
@@ -120,13 +128,17 @@ impl Body {
             for (triangle, footprint) in own {
                 footprint.rows(|xs, y, z| {
                     let at = row(y, z) * nx;
-                    list(*triangle, at + (xs.start - low[0]) as usize..at + (xs.end - low[0]) as usize);
+                    list(*triangle as u32, at + (xs.start - low[0]) as usize..at + (xs.end - low[0]) as usize);
                 });
             }
         })?;
         let rows = Lists::of(ny * nz, |list| {
             for (triangle, footprint) in own {
-                footprint.rows(|_, y, z| list(*triangle, row(y, z)..row(y, z) + 1));
+                let [_, ys, zs] = footprint.range;
+                for (z, y) in (zs[0]..=zs[1]).flat_map(|z| (ys[0]..=ys[1]).map(move |y| (z, y))) {
+                    let marks = if y > ys[0] { EARLIER_Y } else { 0 } | if z > zs[0] { EARLIER_Z } else { 0 };
+                    list(*triangle as u32 | marks, row(y, z)..row(y, z) + 1);
+                }
             }
         })?;
         Ok(Body { low, size, cells, rows })
@@ -162,7 +174,7 @@ impl TriangleGrid {
             for (triangle, footprint) in &still_walls {
                 footprint.rows(|xs, y, z| {
                     let row = grid.cell_index([0, y, z]);
-                    list(*triangle, row + xs.start as usize..row + xs.end as usize);
+                    list(*triangle as u32, row + xs.start as usize..row + xs.end as usize);
                 });
             }
         })?;
