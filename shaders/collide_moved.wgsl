@@ -51,7 +51,8 @@ var<private> part_of_place: array<u32, 8>;
 var<private> place_count: u32;
 
 fn hidden(s: u32, t: u32) -> bool {
-    return !sees(sorted[s].place.xyz, sorted[t].place.xyz);
+    let q = sorted[t].place.xyz;
+    return !clear_of(Ways(sorted[s].place.xyz, q, q, q), vec3<bool>(true, false, false)).x;
 }
 
 // In the lists of rows: the triangle's number, and whether it is also in the row before along y and along z.
@@ -74,8 +75,7 @@ fn gather(thread: u32) {
         for (var z = drawn.low.z; z <= drawn.high.z; z++) {
             for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                 let row = row_of(motion, y, z);
-                // Of a triangle in several rows the first counts.
-                let earlier = select(0u, EARLIER_Y, y > drawn.low.y) | select(0u, EARLIER_Z, z > drawn.low.z);
+                let earlier = earlier_marks(drawn, y, z);
                 let end = wall_list[row + 1u];
                 var k = wall_list[row] + thread;
                 for (; k < end; k += WORKGROUP) {
@@ -88,6 +88,11 @@ fn gather(thread: u32) {
             }
         }
     }
+}
+
+// What marks the triangles of a row that are in one before it among these, too: the first of its rows counts.
+fn earlier_marks(drawn: DrawnCells, y: i32, z: i32) -> u32 {
+    return select(0u, EARLIER_Y, y > drawn.low.y) | select(0u, EARLIER_Z, z > drawn.low.z);
 }
 
 // Where in `wall_list` it says where the triangles of a row begin.
@@ -119,40 +124,51 @@ fn sort_in(index: u32, from_middle: vec3<u32>, half: f32) {
     }
 }
 
-// Whether a point of the cell is in a wall that moves.
-fn in_wall(p: vec3<u32>) -> bool {
-    var depth = 0;
+// Of three points of the cell, which are in a wall that moves. (Three at a time, here and below: what a thread reads of a triangle serves
+// all of them.)
+fn in_wall(p0: vec3<u32>, p1: vec3<u32>, p2: vec3<u32>) -> vec3<bool> {
+    var depth = vec3<i32>(0);
     let count = atomicLoad(&ahead_count);
     if (count <= MOST_LISTED) {
         for (var k = 0u; k < count; k++) {
-            depth += crossing(ahead[k], p);
+            let triangle = triangles[ahead[k]];
+            let way = bitcast<vec3<u32>>(motion_of(triangle.motion).moved);
+            depth += crossings(triangle, p0 - way, p1 - way, p2 - way);
         }
-        return depth > 0;
+        return depth > vec3<i32>(0);
     }
     for (var m = 0u; m < MOTIONS; m++) {
         let motion = motion_of(m);
-        if (in_motion(here, motion)) {
-            let q = p - bitcast<vec3<u32>>(motion.moved);
-            let drawn = drawn_cells(motion, q, q);
-            // The row of the point, if the wall has one there.
-            if (drawn.low.y == drawn.high.y && drawn.low.z == drawn.high.z) {
-                let row = row_of(motion, drawn.low.y, drawn.low.z);
+        if (!in_motion(here, motion)) {
+            continue;
+        }
+        let way = bitcast<vec3<u32>>(motion.moved);
+        let drawn = drawn_around(here, motion);
+        for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+            for (var y = drawn.low.y; y <= drawn.high.y; y++) {
+                let row = row_of(motion, y, z);
+                let earlier = earlier_marks(drawn, y, z);
                 let end = wall_list[row + 1u];
                 var k = wall_list[row];
                 for (; k < end; k++) {
-                    depth += crossing(wall_list[k] & NUMBER, p);
+                    let entry = wall_list[k];
+                    if ((entry & earlier) == 0u) {
+                        depth += crossings(triangles[entry & NUMBER], p0 - way, p1 - way, p2 - way);
+                    }
                 }
                 through(k, end);
             }
         }
     }
-    return depth > 0;
+    return depth > vec3<i32>(0);
 }
 
-// Whether the ray along x from a point leaves the wall of a triangle through it (1), or enters it (-1).
-fn crossing(index: u32, p: vec3<u32>) -> i32 {
-    let triangle = triangles[index];
-    let q = p - bitcast<vec3<u32>>(motion_of(triangle.motion).moved);
+// Of three points in a wall's frame, whether the ray along x leaves the wall through a triangle (1), or enters it (-1).
+fn crossings(triangle: Triangle, p0: vec3<u32>, p1: vec3<u32>, p2: vec3<u32>) -> vec3<i32> {
+    return vec3<i32>(crossing(triangle, p0), crossing(triangle, p1), crossing(triangle, p2));
+}
+
+fn crossing(triangle: Triangle, q: vec3<u32>) -> i32 {
     let a = between(q, triangle.a);
     let b = between(q, triangle.b);
     let c = between(q, triangle.c);
@@ -169,35 +185,60 @@ fn turn(a: vec3<f32>, b: vec3<f32>) -> bool {
     return a.y * b.z - a.z * b.y >= 0.0;
 }
 
-// Whether no wall is between two points of the cell.
-fn sees(p: vec3<u32>, q: vec3<u32>) -> bool {
-    let along = between(p, q);
+// Three ways from a point of the cell to others.
+struct Ways {
+    p: vec3<u32>,
+    q0: vec3<u32>,
+    q1: vec3<u32>,
+    q2: vec3<u32>,
+}
+
+// Which of the open ways a triangle leaves open. `way` is that of its wall since it was drawn.
+fn left_open(triangle: Triangle, way: vec3<u32>, ways: Ways, open: vec3<bool>) -> vec3<bool> {
+    let p = ways.p - way;
+    return vec3<bool>(
+        open.x && !lies_between(triangle, p, ways.q0 - way, between(ways.p, ways.q0)),
+        open.y && !lies_between(triangle, p, ways.q1 - way, between(ways.p, ways.q1)),
+        open.z && !lies_between(triangle, p, ways.q2 - way, between(ways.p, ways.q2)),
+    );
+}
+
+// Which of the wanted ways have no wall across them.
+fn clear_of(ways: Ways, wanted: vec3<bool>) -> vec3<bool> {
+    var open = wanted;
     let count = atomicLoad(&close_count);
     if (count <= MOST_LISTED) {
-        for (var k = 0u; k < count; k++) {
-            let way = bitcast<vec3<u32>>(motion_of(triangles[close[k]].motion).moved);
-            if (parts(close[k], p - way, q - way, along)) {
-                return false;
-            }
+        for (var k = 0u; k < count && any(open); k++) {
+            let triangle = triangles[close[k]];
+            open = left_open(triangle, bitcast<vec3<u32>>(motion_of(triangle.motion).moved), ways, open);
         }
     } else {
         for (var m = 0u; m < MOTIONS; m++) {
             let motion = motion_of(m);
+            if (!in_motion(here, motion)) {
+                continue;
+            }
             let way = bitcast<vec3<u32>>(motion.moved);
-            if (in_motion(here, motion) && blocked_by(motion, p - way, q - way, along)) {
-                return false;
+            let drawn = drawn_around(here, motion);
+            for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+                for (var y = drawn.low.y; y <= drawn.high.y; y++) {
+                    let list = drawn_list(motion, drawn, y, z);
+                    var k = list.x;
+                    for (; k < list.y; k++) {
+                        open = left_open(triangles[wall_list[k]], way, ways, open);
+                    }
+                    through(k, list.y);
+                }
             }
         }
     }
     if (still_parts) {
         let list = row_list(Cells(here, here), here.y, here.z);
-        for (var k = list.x; k < list.y; k++) {
-            if (parts(wall_list[k], p, q, along)) {
-                return false;
-            }
+        for (var k = list.x; k < list.y && any(open); k++) {
+            open = left_open(triangles[wall_list[k]], vec3<u32>(0u), ways, open);
         }
     }
-    return true;
+    return open;
 }
 
 fn point(k: u32) -> vec3<u32> {
@@ -221,6 +262,11 @@ fn all_gas() -> vec3<u32> {
 
 fn seen_by(place: u32) -> vec3<u32> {
     return vec3<u32>(atomicLoad(&seen[3u * place]), atomicLoad(&seen[3u * place + 1u]), atomicLoad(&seen[3u * place + 2u]));
+}
+
+fn count_true(which: vec3<bool>) -> u32 {
+    let ones = select(vec3<u32>(0u), vec3<u32>(1u), which);
+    return ones.x + ones.y + ones.z;
 }
 
 // The number of the first point of a set that is not empty.
@@ -265,10 +311,16 @@ fn part_of_point(k: u32) -> u32 {
 fn part_of(place: vec3<u32>) -> u32 {
     var nearest = 0u;
     var least = NEVER;
-    for (var k = 0u; k < place_count; k++) {
-        if (sees(place, places[k])) {
-            return part_of_place[k];
+    for (var k = 0u; k < place_count; k += 3u) {
+        let ways = Ways(place, places[k], places[min(k + 1u, MOST_PARTS - 1u)], places[min(k + 2u, MOST_PARTS - 1u)]);
+        let seen = clear_of(ways, vec3<u32>(k, k + 1u, k + 2u) < vec3<u32>(place_count));
+        for (var n = 0u; n < 3u; n++) {
+            if (seen[n]) {
+                return part_of_place[k + n];
+            }
         }
+    }
+    for (var k = 0u; k < place_count; k++) {
         let away = between(place, places[k]);
         if (dot(away, away) < least) {
             nearest = part_of_place[k];
@@ -316,9 +368,12 @@ fn collide_moved(
     gather(thread);
     workgroupBarrier();
     let still_points = still_gas[cell].points;
-    for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
-        if (has(still_points, k) && !in_wall(point(k))) {
-            atomicOr(&gas[k >> 5u], 1u << (k & 31u));
+    for (var k = 3u * thread; k < CELL_POINTS; k += 3u * WORKGROUP) {
+        let inside = in_wall(point(k), point(k + 1u), point(k + 2u));
+        for (var n = 0u; n < 3u; n++) {
+            if (k + n < CELL_POINTS && has(still_points, k + n) && !inside[n]) {
+                atomicOr(&gas[(k + n) >> 5u], 1u << ((k + n) & 31u));
+            }
         }
     }
     workgroupBarrier();
@@ -331,9 +386,14 @@ fn collide_moved(
             let own = point(lowest(rest));
             places[place] = own;
             place_count = place + 1u;
-            for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
-                if (has(points, k) && (k == lowest(rest) || sees(own, point(k)))) {
-                    atomicOr(&seen[3u * place + (k >> 5u)], 1u << (k & 31u));
+            for (var k = 3u * thread; k < CELL_POINTS; k += 3u * WORKGROUP) {
+                let ways = Ways(own, point(k), point(k + 1u), point(k + 2u));
+                let wanted = vec3<bool>(has(points, k), has(points, k + 1u), has(points, k + 2u));
+                let clear = clear_of(ways, wanted);
+                for (var n = 0u; n < 3u; n++) {
+                    if (clear[n] || (wanted[n] && k + n == lowest(rest))) {
+                        atomicOr(&seen[3u * place + ((k + n) >> 5u)], 1u << ((k + n) & 31u));
+                    }
                 }
             }
         }
@@ -343,14 +403,13 @@ fn collide_moved(
     merge();
     for (var k = thread; k < CELL_POINTS; k += WORKGROUP) {
         let part = part_of_point(k);
-        for (var n = 0u; n < 3u && part < MOST_PARTS; n++) {
-            let other = (PAIRINGS[n] * k + 1u) % CELL_POINTS;
-            if (other != k && part_of_point(other) == part) {
-                atomicAdd(&tried[2u * part], 1u);
-                if (sees(point(k), point(other))) {
-                    atomicAdd(&tried[2u * part + 1u], 1u);
-                }
-            }
+        let others = (PAIRINGS * k + 1u) % CELL_POINTS;
+        let parts_there = vec3<u32>(part_of_point(others.x), part_of_point(others.y), part_of_point(others.z));
+        let of_part = (others != vec3<u32>(k)) & (parts_there == vec3<u32>(part));
+        if (part < MOST_PARTS && any(of_part)) {
+            atomicAdd(&tried[2u * part], count_true(of_part));
+            let ways = Ways(point(k), point(others.x), point(others.y), point(others.z));
+            atomicAdd(&tried[2u * part + 1u], count_true(clear_of(ways, of_part)));
         }
     }
     if (place_count == 0u) {

@@ -258,7 +258,10 @@ fn wall_time(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> f32 {
 
 // Whether the triangle, from either side, lies between two points.
 fn parts(index: u32, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
-    let triangle = triangles[index];
+    return lies_between(triangles[index], p, q, along);
+}
+
+fn lies_between(triangle: Triangle, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
     let a = between(triangle.a, p);
     let before = dot(a, triangle.normal);
     let after = dot(between(triangle.a, q), triangle.normal);
