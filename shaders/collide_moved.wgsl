@@ -40,6 +40,8 @@ var<workgroup> ahead_count: atomic<u32>;
 // Sets of points, three words each: the gas, and what each place sees.
 var<workgroup> gas: array<atomic<u32>, 3>;
 var<workgroup> seen: array<atomic<u32>, 24>;
+// Whether there are points that no place sees.
+var<workgroup> more: u32;
 // Of each part the pairs of points that were tried, and those of them that see each other.
 var<workgroup> tried: array<atomic<u32>, 16>;
 
@@ -381,19 +383,22 @@ fn collide_moved(
     var rest = points;
     place_count = 0u;
     for (var place = 0u; place < MOST_PARTS; place++) {
-        let found = any(rest != vec3<u32>(0u));
-        if (found) {
-            let own = point(lowest(rest));
-            places[place] = own;
-            place_count = place + 1u;
-            for (var k = 3u * thread; k < CELL_POINTS; k += 3u * WORKGROUP) {
-                let ways = Ways(own, point(k), point(k + 1u), point(k + 2u));
-                let wanted = vec3<bool>(has(points, k), has(points, k + 1u), has(points, k + 2u));
-                let clear = clear_of(ways, wanted);
-                for (var n = 0u; n < 3u; n++) {
-                    if (clear[n] || (wanted[n] && k + n == lowest(rest))) {
-                        atomicOr(&seen[3u * place + ((k + n) >> 5u)], 1u << ((k + n) & 31u));
-                    }
+        if (thread == 0u) {
+            more = u32(any(rest != vec3<u32>(0u)));
+        }
+        if (workgroupUniformLoad(&more) == 0u) {
+            break;
+        }
+        let own = point(lowest(rest));
+        places[place] = own;
+        place_count = place + 1u;
+        for (var k = 3u * thread; k < CELL_POINTS; k += 3u * WORKGROUP) {
+            let ways = Ways(own, point(k), point(k + 1u), point(k + 2u));
+            let wanted = vec3<bool>(has(points, k), has(points, k + 1u), has(points, k + 2u));
+            let clear = clear_of(ways, wanted);
+            for (var n = 0u; n < 3u; n++) {
+                if (clear[n] || (wanted[n] && k + n == lowest(rest))) {
+                    atomicOr(&seen[3u * place + ((k + n) >> 5u)], 1u << ((k + n) & 31u));
                 }
             }
         }
