@@ -32,7 +32,7 @@ const PAIRINGS: vec3<u32> = vec3<u32>(3, 20, 47);
 
 // Moving triangles that may be in the cell, and those that lie on it or beyond it along x. Where there are more of either than there is
 // room for, the walls' own lists are gone through.
-const MOST_LISTED: u32 = 512;
+override MOST_LISTED: u32 = 512;
 var<workgroup> close: array<u32, 512>;
 var<workgroup> close_count: atomic<u32>;
 var<workgroup> ahead: array<u32, 512>;

@@ -78,8 +78,8 @@ pub struct Body {
 }
 
 /// Marks beside the number of a triangle in the lists of rows.
-const EARLIER_Y: u32 = 1 << 31;
-const EARLIER_Z: u32 = 1 << 30;
+pub(super) const EARLIER_Y: u32 = 1 << 31;
+pub(super) const EARLIER_Z: u32 = 1 << 30;
 
 impl Lists {
     /// `each` tells of every triangle in ascending order the places that list it, the same each time.

@@ -54,7 +54,12 @@ impl Cloud {
     }
 
     pub fn run(&self, step: GpuStep, seed: u32) -> Rig {
+        self.run_with(&[], step, seed)
+    }
+
+    pub fn run_with(&self, constants: &[(&'static str, f64)], step: GpuStep, seed: u32) -> Rig {
         let mut rig = self.rig(step, seed);
+        constants.iter().for_each(|(name, value)| rig.constant(name, *value));
         self.put_parts(&mut rig);
         collide(&rig, self.start.len() - 1);
         let parted = rig.counter(0);

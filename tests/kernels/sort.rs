@@ -220,11 +220,24 @@ fn particles_of_cells_are_arranged() {
         next += count as usize;
     }
     let parted = cells.index([2, 3, 4]);
+    // A wall that is drawn in the first of these cells has moved by one and a half along x; its box is larger.
     let (low, high) = ([5, 2, 2], [6, 3, 2]);
     let moved = |of: u32| {
         let [nx, ny, _] = world.grid.cells;
         let at = [of % nx, of / nx % ny, of / (nx * ny)];
-        (0..3).all(|k| (low[k]..=high[k]).contains(&at[k]))
+        at[0] == 6 && (0..3).all(|k| (low[k]..=high[k]).contains(&at[k]))
+    };
+    let mut list = world.walls.list.clone();
+    let begin = list.len() as u32;
+    list.extend([0, begin, begin + 1]);
+    let moving = GpuMotion {
+        moved: [3 << (cells.bits - 1), 0, 0],
+        low,
+        high,
+        cells: begin + 1,
+        drawn_low: low,
+        drawn_size: [1; 3],
+        ..GpuMotion::default()
     };
     let mut start = vec![0u32; cells.count() + 1];
     for &c in &cell {
@@ -269,8 +282,9 @@ fn particles_of_cells_are_arranged() {
         rig.constant("PARTED_GAS", f64::from(u8::from(walls)));
         if walls {
             let mut table = [GpuMotion::default(); MOTION_ENTRIES];
-            table[0] = GpuMotion { low, high, ..GpuMotion::default() };
+            table[0] = moving;
             rig.uniform("motions", &table);
+            rig.put("wall_list", &list);
             rig.constant("MOVING", 1.0);
             rig.constant("MOTIONS", 1.0);
         }

@@ -1,6 +1,7 @@
 //! Which cells each triangle touches, and what the other cells are.
 
 use super::*;
+use crate::geometry::triangle_grid::{EARLIER_Y, EARLIER_Z};
 use crate::geometry::{CLEARANCE_UNIT, CellClass, Grid, TriangleGrid, clearances};
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;
@@ -61,6 +62,51 @@ proptest! {
         }
         // Both answers occur, so either kind of mistake would be seen.
         prop_assert!(listed > 100 && unlisted > 100);
+    }
+
+    /// A wall that moves is in the lists of its own box alone, each cell's as if it were at rest; a row has those of its cells, marked
+    /// where a row before it has them too.
+    #[test]
+    fn a_body_has_the_lists_of_its_cells(turn in prop::array::uniform3(-1.0..1.0f64), margin in 0.0..0.02f64) {
+        let vessel = scene(turn);
+        let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.11).unwrap();
+        let at_rest = TriangleGrid::build(&vessel, &grid, margin).unwrap();
+        let rest = vessel.without(|wall| wall == 1);
+        let moves = |wall: usize| (wall == 1).then_some(0);
+        let built = TriangleGrid::build_still(&vessel, &rest, &grid, margin, 1, moves).unwrap();
+        let body = &built.bodies[0];
+        let of_body = |t: &u32| vessel.triangles[*t as usize].wall == 1;
+        let [nx, ny, nz] = body.size;
+        let mut found = 0;
+        for cell in 0..grid.cell_count() {
+            let (own, others): (Vec<u32>, Vec<u32>) = at_rest.in_cell(cell).iter().partition(|t| of_body(t));
+            prop_assert_eq!(built.in_cell(cell), &others[..]);
+            let [gx, gy, _] = grid.cells.map(|n| n as usize);
+            let at = [cell % gx, cell / gx % gy, cell / gx / gy];
+            let there: [i64; 3] = std::array::from_fn(|axis| at[axis] as i64 - i64::from(body.low[axis]));
+            if (0..3).all(|axis| (0..i64::from(body.size[axis])).contains(&there[axis])) {
+                let [x, y, z] = there.map(|n| n as u32);
+                prop_assert_eq!(body.cells.of_place(((z * ny + y) * nx + x) as usize), &own[..]);
+                found += own.len();
+            } else {
+                prop_assert!(own.is_empty());
+            }
+        }
+        prop_assert!(found > 20);
+        let row = |y: u32, z: u32| body.rows.of_place((z * ny + y) as usize);
+        let number = |entry: u32| entry & !(EARLIER_Y | EARLIER_Z);
+        let holds = |y: u32, z: u32, t: u32| row(y, z).iter().any(|&entry| number(entry) == t);
+        for (z, y) in (0..nz).flat_map(|z| (0..ny).map(move |y| (z, y))) {
+            prop_assert!(row(y, z).windows(2).all(|two| number(two[0]) < number(two[1])));
+            for x in 0..nx {
+                let own = body.cells.of_place(((z * ny + y) * nx + x) as usize);
+                prop_assert!(own.iter().all(|&t| holds(y, z, t)));
+            }
+            for &entry in row(y, z) {
+                let earlier = [y > 0 && holds(y - 1, z, number(entry)), z > 0 && holds(y, z - 1, number(entry))];
+                prop_assert_eq!([entry & EARLIER_Y > 0, entry & EARLIER_Z > 0], earlier);
+            }
+        }
     }
 
     /// Of a cell without triangles every point is what the class says.
