@@ -58,7 +58,7 @@ pub use step::Sampling;
 pub use stock::{Initial, Stock, initial_particles};
 pub use switch::{Decided, Deviations, SwitchState};
 pub use tuning::HaloOptions;
-pub use uniform::run_uniform;
+pub use uniform::{NoChamber, run_uniform};
 
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
@@ -95,9 +95,9 @@ pub enum SimulationError {
     Checkpoint(#[from] CheckpointError),
     #[error(transparent)]
     Resume(#[from] RunStateError),
-    #[error("{what}, ({:.4}, {:.4}, {:.4}) m, is in no chamber: a control volume knows nothing there", point[0], point[1], point[2])]
-    #[diagnostic(help("move it into the gas, or leave it out"))]
-    NoChamber { what: String, point: [f64; 3] },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    NoChamber(#[from] NoChamber),
     #[error("the method `control-volume` has no particles to share out or to send to a device")]
     #[diagnostic(help("`corpuscle run` does the run; for particles ask for another `method` in [model]"))]
     NoParticles,

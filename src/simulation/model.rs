@@ -1,5 +1,7 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
+use glam::DVec3;
+
 use crate::geometry::{GeometryError, Vessel, region_contains};
 use crate::plan::{
     Choice, Limit, Measured, MeasuredVent, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
@@ -12,6 +14,7 @@ use super::coats::Coats;
 use super::flow_only::{self, Part};
 use super::moving::Moving;
 use super::outlook::outlook;
+use super::uniform::{Known, NoChamber};
 
 pub struct Model {
     pub scene: Scene,
@@ -65,11 +68,15 @@ pub enum ModelError {
     #[error("vent \"{vent}\": its place borders on the chambers {chambers}, and a vent empties one")]
     #[diagnostic(help("say which with `chamber`, or give one vent for each"))]
     VentOfSeveral { vent: String, chambers: String },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    NoChamber(#[from] NoChamber),
 }
 
 impl Model {
     /// # Errors
-    /// If the walls are not closed, an orifice is not in the gas, or no plan can be made.
+    /// If the walls are not closed, an orifice is not in the gas, no plan can be made, or a control volume, which the run is or may become,
+    /// knows nothing of a probe or a surface.
     pub fn new(mut scene: Scene) -> Result<Model, ModelError> {
         let mut seen = Seen::new(&scene)?;
         let mut choice = None;
@@ -83,6 +90,9 @@ impl Model {
             choice = Some(chosen);
         }
         let plan = plan(&scene, &seen.measured)?;
+        if plan.method == Method::ControlVolume || scene.model.switch.is_some() {
+            Known::of(&scene, &seen.vessel)?;
+        }
         let Seen { vessel, coats, moving, probe_volumes, .. } = seen;
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
     }
@@ -268,23 +278,42 @@ fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
         .collect()
 }
 
-/// A ring of points just inside each orifice's disc must lie in the gas.
+/// Each orifice's disc must lie in the gas: a ring of points just inside its edge does, and no wall crosses it.
 fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
     for orifice in &scene.orifices {
+        let refused = |point: DVec3| ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() };
         let radius = (orifice.area / std::f64::consts::PI).sqrt();
-        let normal = glam::DVec3::from(orifice.direction);
+        let normal = DVec3::from(orifice.direction);
         let (u, v) = normal.any_orthonormal_pair();
-        let center = glam::DVec3::from(orifice.position) + normal * (1e-4 * radius);
+        let center = DVec3::from(orifice.position) + normal * (1e-4 * radius);
+        let radius = 0.999 * radius;
         for k in 0..=8 {
             let angle = std::f64::consts::TAU * f64::from(k) / 8.0;
-            let arm = if k == 8 { 0.0 } else { 0.999 * radius };
-            let point = (center + arm * (libm::cos(angle) * u + libm::sin(angle) * v)).to_array();
-            if !vessel.is_gas(point) {
-                return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point });
+            let arm = if k == 8 { 0.0 } else { radius };
+            let point = center + arm * (libm::cos(angle) * u + libm::sin(angle) * v);
+            if !vessel.is_gas(point.into()) {
+                return Err(refused(point));
             }
+        }
+        let corners = vessel.triangles.iter().map(|triangle| triangle.vertices.map(|v| vessel.vertices[v as usize]));
+        let crossed = corners.filter_map(|corners| nearest_crossing(corners.map(DVec3::from), center, normal));
+        if let Some(point) = crossed.into_iter().find(|point| point.distance(center) < radius) {
+            return Err(refused(point));
         }
     }
     Ok(())
+}
+
+/// Where a triangle crosses a plane, the point that is nearest to one of the plane.
+fn nearest_crossing(corners: [DVec3; 3], center: DVec3, normal: DVec3) -> Option<DVec3> {
+    let above = corners.map(|corner| normal.dot(corner - center));
+    let mut ends = (0..3).map(|k| (k, (k + 1) % 3)).filter(|&(a, b)| (above[a] > 0.0) != (above[b] > 0.0));
+    let mut end = || ends.next().map(|(a, b)| corners[a].lerp(corners[b], above[a] / (above[a] - above[b])));
+    let (from, to) = (end()?, end()?);
+    let along = to - from;
+    let share = (center - from).dot(along) / along.length_squared();
+    // (Of a triangle that touches the plane in a point alone the share is no number.)
+    Some(from + along * if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
 }
 
 #[cfg(test)]
@@ -295,6 +324,45 @@ mod tests {
 
     fn model(text: &str) -> Model {
         Model::new(parse(text, "test.toml", std::path::Path::new("")).unwrap()).unwrap()
+    }
+
+    const BOX: &str = "end_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+        [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
+        [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n";
+
+    fn refusal(text: &str) -> Option<String> {
+        let scene = parse(text, "test.toml", std::path::Path::new("")).unwrap();
+        Model::new(scene).err().map(|error| error.to_string())
+    }
+
+    /// A plate may cross a disc between all points of its ring.
+    #[test]
+    fn an_orifice_that_a_wall_crosses_is_refused() {
+        let with = |height: f64| {
+            let plate = format!(
+                "[[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.05, 0.05, {height}]\nnormal = [0.0, 0.0, 1.0]\n\
+                 u = [1.0, 0.0, 0.0]\nsize = [0.12, 0.12]\nthickness = 0.002\n"
+            );
+            let orifice = "[[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\n\
+                area = 0.002\ngas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 2.0], [1e-3, 2.0]]\n";
+            refusal(&format!("{BOX}{plate}{orifice}"))
+        };
+        let refused = with(0.06).expect("a plate crosses the disc");
+        assert!(refused.contains("orifice \"inlet\": its disc is not in the gas: (0.0000, 0.0500, 0.0"), "{refused}");
+        // The disc's radius is 25.2 mm.
+        assert_eq!(with(0.0765), None);
+    }
+
+    /// What a run would only find when it switches, or writes its rows, is refused before.
+    #[test]
+    fn a_probe_that_a_control_volume_does_not_know_is_refused() {
+        let probe = "[[probe]]\nname = \"p\"\nregion = { sphere = { center = [-0.01, 0.05, 0.05], radius = 0.03 } }\n";
+        let with = |model: &str| refusal(&format!("{BOX}{probe}[model]\n{model}\n"));
+        for model in ["switch = 2.5e-4", "method = \"control-volume\""] {
+            let refused = with(model).expect(model);
+            assert!(refused.contains("the middle of probe \"p\""), "{refused}");
+        }
+        assert_eq!(with("particles = 1000"), None);
     }
 
     /// Vents, heat and fast walls by the one table: a vent of more than hits its place for particles alone, heat that is cut for

@@ -64,7 +64,10 @@ impl<'a> Switching<'a> {
     /// # Errors
     /// If the run is to switch, and a probe or a surface lies in no chamber.
     pub fn new(model: &'a Model) -> Result<Switching<'a>, SimulationError> {
-        let asked = model.scene.model.switch.map(|switch| Ok::<_, SimulationError>((switch, Known::of(model)?)));
+        let asked = model.scene.model.switch.map(|switch| {
+            let known = Known::of(&model.scene, &model.vessel)?;
+            Ok::<_, SimulationError>((switch, known))
+        });
         Ok(Switching { model, asked: asked.transpose()?, state: SwitchState::default() })
     }
 

@@ -11,6 +11,9 @@ use crate::plan::amounts::Amounts;
 use crate::plan::population::openings;
 use crate::scene::{GAS_CONSTANT, Opening, Scene};
 
+/// Means over the rows are taken over so many at most: a solution costs as much as the times it is wanted at.
+const MOST_TIMES: u32 = 2000;
+
 /// Groups of chambers, and what flows between them.
 #[derive(Debug, Clone)]
 pub struct Course {
@@ -20,7 +23,7 @@ pub struct Course {
     pub volumes: Vec<f64>,
     pub control: ControlVolume,
     pub initial: Vec<Reservoir>,
-    /// Middles of the rows of the history, s.
+    /// Middles of the rows of the history, s; of very many rows those of as many equal stretches as [`MOST_TIMES`].
     pub times: Vec<f64>,
     /// Of a row, s.
     pub window: f64,
@@ -94,7 +97,8 @@ impl Course {
         };
         let rows = scene.output.rows.max(1);
         let window = scene.end_time / f64::from(rows);
-        let times = (0..rows).map(|row| window * (f64::from(row) + 0.5)).collect();
+        let count = rows.min(MOST_TIMES);
+        let times = (0..count).map(|k| scene.end_time * (f64::from(k) + 0.5) / f64::from(count)).collect();
         Course { group, volumes, control, initial, times, window }
     }
 
