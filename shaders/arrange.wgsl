@@ -2,7 +2,7 @@
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
 // order by itself; those of other cells are listed.
 //
-// Reads `bins`, `cell_start`, `particles`, `cell_volume` and `motions`; writes `sorted` (lay.wgsl), of cells of more than MEMBERS and of
+// Reads `bins`, `cell_start`, `particles`, `cell_volume`, `motions` and `wall_list`; writes `sorted` (lay.wgsl), of cells of more than MEMBERS and of
 // the listed `slots`, and appends to `crowded`. One thread per particle as they lie in `particles`.
 
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;

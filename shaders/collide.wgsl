@@ -1,7 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl drawn.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 // The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //
-// Reads `cell_start`, `cell_volume`, `motions`; reads and writes `sorted`, appends the cells that walls part
+// Reads `cell_start`, `cell_volume`, `motions`, `wall_list`; reads and writes `sorted`, appends the cells that walls part
 // to `parted`, those that moving walls may touch to `moved`, others of more particles to `crowds`, and among other devices leaves the
 // number of a cell's candidates with its first particle, in `neighbour_count`, for the balance. One thread per cell; each works on its
 // own particles, in order of their ids, in which these need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.

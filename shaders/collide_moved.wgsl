@@ -132,11 +132,13 @@ fn in_wall(p0: vec3<u32>, p1: vec3<u32>, p2: vec3<u32>) -> vec3<bool> {
     var depth = vec3<i32>(0);
     let count = atomicLoad(&ahead_count);
     if (count <= MOST_LISTED) {
-        for (var k = 0u; k < count; k++) {
+        var k = 0u;
+        for (; k < count; k++) {
             let triangle = triangles[ahead[k]];
             let way = bitcast<vec3<u32>>(motion_of(triangle.motion).moved);
             depth += crossings(triangle, p0 - way, p1 - way, p2 - way);
         }
+        through(k, count);
         return depth > vec3<i32>(0);
     }
     for (var m = 0u; m < MOTIONS; m++) {
@@ -205,15 +207,24 @@ fn left_open(triangle: Triangle, way: vec3<u32>, ways: Ways, open: vec3<bool>) -
     );
 }
 
+// After a loop that goes on while k < end and a way is open.
+fn through_ways(k: u32, end: u32, open: vec3<bool>) {
+    if (any(open)) {
+        through(k, end);
+    }
+}
+
 // Which of the wanted ways have no wall across them.
 fn clear_of(ways: Ways, wanted: vec3<bool>) -> vec3<bool> {
     var open = wanted;
     let count = atomicLoad(&close_count);
     if (count <= MOST_LISTED) {
-        for (var k = 0u; k < count && any(open); k++) {
+        var k = 0u;
+        for (; k < count && any(open); k++) {
             let triangle = triangles[close[k]];
             open = left_open(triangle, bitcast<vec3<u32>>(motion_of(triangle.motion).moved), ways, open);
         }
+        through_ways(k, count, open);
     } else {
         for (var m = 0u; m < MOTIONS; m++) {
             let motion = motion_of(m);
@@ -226,19 +237,21 @@ fn clear_of(ways: Ways, wanted: vec3<bool>) -> vec3<bool> {
                 for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                     let list = drawn_list(motion, drawn, y, z);
                     var k = list.x;
-                    for (; k < list.y; k++) {
+                    for (; k < list.y && any(open); k++) {
                         open = left_open(triangles[wall_list[k]], way, ways, open);
                     }
-                    through(k, list.y);
+                    through_ways(k, list.y, open);
                 }
             }
         }
     }
     if (still_parts) {
         let list = row_list(Cells(here, here), here.y, here.z);
-        for (var k = list.x; k < list.y && any(open); k++) {
+        var k = list.x;
+        for (; k < list.y && any(open); k++) {
             open = left_open(triangles[wall_list[k]], vec3<u32>(0u), ways, open);
         }
+        through_ways(k, list.y, open);
     }
     return open;
 }

@@ -28,6 +28,8 @@ struct Projected {
     x: [f64; 3],
     /// (y, z) in quanta.
     corners: [[i64; 2]; 3],
+    /// Twice its area seen along x, positive where the normal is along +x; not zero.
+    area: i128,
     wall: u32,
 }
 
@@ -54,11 +56,13 @@ impl LineIndex {
         let fixed = |p: DVec3| [quanta(p.y, origin[0], scale), quanta(p.z, origin[1], scale)];
         let triangles: Vec<Projected> = triangles
             .map(|(t, wall)| {
-                let corners = t.map(|v| vertices[v as usize]);
-                Projected { x: corners.map(|p| p.x), corners: corners.map(fixed), wall }
+                let places = t.map(|v| vertices[v as usize]);
+                let corners = places.map(fixed);
+                let area = cross_product(corners[0], corners[1], corners[2]);
+                Projected { x: places.map(|p| p.x), corners, area, wall }
             })
             // A triangle seen edge-on is never crossed.
-            .filter(|t| t.area() != 0)
+            .filter(|t| t.area != 0)
             .collect();
         let wanted = (2.0 * triangles.len() as f64).sqrt() as u32;
         let shift = BITS - wanted.clamp(1, 1024).next_power_of_two().trailing_zeros();
@@ -128,31 +132,26 @@ fn cross_product(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i128 {
 }
 
 impl Projected {
-    fn area(&self) -> i128 {
-        let [a, b, c] = self.corners;
-        cross_product(a, b, c)
-    }
-
     fn cross(&self, q: [i64; 2]) -> Option<Crossing> {
-        let area = self.area();
-        let weights: [i128; 3] =
-            std::array::from_fn(|k| cross_product(self.corners[(k + 1) % 3], self.corners[(k + 2) % 3], q));
-        for (k, &weight) in weights.iter().enumerate() {
+        let mut weights = [0; 3];
+        for (k, own) in weights.iter_mut().enumerate() {
             let (a, b) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
+            let weight = cross_product(a, b, q);
             // On the edge: the sign after moving q by (e, e^2).
             let moved = match weight {
                 0 if b[1] != a[1] => i128::from(a[1] - b[1]),
                 0 => i128::from(b[0] - a[0]),
                 weight => weight,
             };
-            if moved.signum() != area.signum() {
+            if (moved < 0) != (self.area < 0) {
                 return None;
             }
+            *own = weight;
         }
         // From one corner, so that a triangle across x has its x exactly.
-        let [_, u, v] = weights.map(|w| w as f64 / area as f64);
+        let [_, u, v] = weights.map(|w: i128| w as f64 / self.area as f64);
         let x = self.x[0] + (u * (self.x[1] - self.x[0]) + v * (self.x[2] - self.x[0]));
-        Some(Crossing { x, sign: area.signum() as i32, wall: self.wall })
+        Some(Crossing { x, sign: self.area.signum() as i32, wall: self.wall })
     }
 }
 

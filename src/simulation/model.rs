@@ -7,7 +7,7 @@ use crate::plan::{
     Choice, Limit, Measured, MeasuredVent, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
     plan, significant,
 };
-use crate::scene::{Method, Opening, Scene};
+use crate::scene::{Method, Opening, Orifice, Scene};
 use crate::subdomain::Memory;
 
 use super::coats::Coats;
@@ -92,6 +92,9 @@ impl Model {
         let plan = plan(&scene, &seen.measured)?;
         if plan.method == Method::ControlVolume || scene.model.switch.is_some() {
             Known::of(&scene, &seen.vessel)?;
+        }
+        if plan.method != Method::ControlVolume {
+            check_discs(&scene, &seen.vessel)?;
         }
         let Seen { vessel, coats, moving, probe_volumes, .. } = seen;
         Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
@@ -278,27 +281,38 @@ fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
         .collect()
 }
 
-/// Each orifice's disc must lie in the gas: a ring of points just inside its edge does, and no wall crosses it.
+/// The middle of an orifice's disc, lifted a little off its wall, the disc's normal, and its radius, a little less, m.
+fn disc_of(orifice: &Orifice) -> (DVec3, DVec3, f64) {
+    let radius = (orifice.area / std::f64::consts::PI).sqrt();
+    let normal = DVec3::from(orifice.direction);
+    (DVec3::from(orifice.position) + normal * (1e-4 * radius), normal, 0.999 * radius)
+}
+
+/// A ring of points just inside each orifice's disc must lie in the gas.
 fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
     for orifice in &scene.orifices {
-        let refused = |point: DVec3| ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() };
-        let radius = (orifice.area / std::f64::consts::PI).sqrt();
-        let normal = DVec3::from(orifice.direction);
+        let (center, normal, radius) = disc_of(orifice);
         let (u, v) = normal.any_orthonormal_pair();
-        let center = DVec3::from(orifice.position) + normal * (1e-4 * radius);
-        let radius = 0.999 * radius;
         for k in 0..=8 {
             let angle = std::f64::consts::TAU * f64::from(k) / 8.0;
             let arm = if k == 8 { 0.0 } else { radius };
             let point = center + arm * (libm::cos(angle) * u + libm::sin(angle) * v);
             if !vessel.is_gas(point.into()) {
-                return Err(refused(point));
+                return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() });
             }
         }
+    }
+    Ok(())
+}
+
+/// No wall may cross a disc on which particles are born.
+fn check_discs(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
+    for orifice in &scene.orifices {
+        let (center, normal, radius) = disc_of(orifice);
         let corners = vessel.triangles.iter().map(|triangle| triangle.vertices.map(|v| vessel.vertices[v as usize]));
         let crossed = corners.filter_map(|corners| nearest_crossing(corners.map(DVec3::from), center, normal));
         if let Some(point) = crossed.into_iter().find(|point| point.distance(center) < radius) {
-            return Err(refused(point));
+            return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() });
         }
     }
     Ok(())
@@ -351,6 +365,26 @@ mod tests {
         assert!(refused.contains("orifice \"inlet\": its disc is not in the gas: (0.0000, 0.0500, 0.0"), "{refused}");
         // The disc's radius is 25.2 mm.
         assert_eq!(with(0.0765), None);
+    }
+
+    /// An orifice as wide as a cylinder of facets has its ring on their corners; a control volume has no use for its disc.
+    #[test]
+    fn an_orifice_as_wide_as_its_cylinder_is_for_control_volumes() {
+        let with = |share: f64, model: &str| {
+            let area = share * std::f64::consts::PI * 0.05 * 0.05;
+            refusal(&format!(
+                "end_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+                 [[wall]]\nname = \"tube\"\nshape = \"cylinder\"\nbase = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\n\
+                 radius = 0.05\nheight = 0.2\ngas = \"inside\"\n\
+                 [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+                 [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.0, 0.0]\ndirection = [1.0, 0.0, 0.0]\narea = {area}\n\
+                 gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.1], [1e-3, 0.1]]\n[model]\n{model}\n"
+            ))
+        };
+        assert!(with(1.0, "particles = 1000").expect("facets cut some off").contains("not in the gas"));
+        assert_eq!(with(1.0, "method = \"control-volume\""), None);
+        // 48 facets.
+        assert_eq!(with(0.999 * (std::f64::consts::PI / 48.0).cos().powi(2), "particles = 1000"), None);
     }
 
     /// What a run would only find when it switches, or writes its rows, is refused before.

@@ -73,10 +73,10 @@ fn a_light_gas_beside_a_hot_wall_is_tallied() {
     let model = model(text);
     let run = run(&model, Options::default());
     assert!(run.outcome.audit.verdict(&AuditLimits::default()).is_empty());
-    // As `shaders/tally.wgsl` counts it, of the two gases and the two temperatures: 256 v0^2 at the mean of 200 K.
-    let room = 256.0 * 8.314 * 200.0 / 0.028;
+    // That room: twice 256 v0^2 (the gases are 14 times apart) at the mean of 200 K. With it this run ended at .094 ms.
+    let room = 2.0 * 256.0 * 8.314 * 200.0 / 0.028;
     let fastest = run.outcome.particles.iter().map(|p| 0.5 * p.velocity.map(|v| f64::from(v * v)).iter().sum::<f64>());
     let fastest = fastest.fold(0.0, f64::max);
     println!("{:.2} of the room that there was", fastest / room);
-    assert!(fastest > 0.4 * room, "the check can fail: some come near it");
+    assert!(fastest > 0.6 * room, "the check can fail: at the end, too, some come near it");
 }

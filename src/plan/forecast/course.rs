@@ -97,8 +97,7 @@ impl Course {
         };
         let rows = scene.output.rows.max(1);
         let window = scene.end_time / f64::from(rows);
-        let count = rows.min(MOST_TIMES);
-        let times = (0..count).map(|k| scene.end_time * (f64::from(k) + 0.5) / f64::from(count)).collect();
+        let times = times(scene.end_time, rows);
         Course { group, volumes, control, initial, times, window }
     }
 
@@ -174,9 +173,23 @@ fn vents(scene: &Scene, measured: &Measured, group: &[usize]) -> Vec<OpenVent> {
     open.collect()
 }
 
+/// The middles of the rows, or of as many equal stretches as there may be times, s.
+fn times(end_time: f64, rows: u32) -> Vec<f64> {
+    let count = rows.min(MOST_TIMES);
+    (0..count).map(|k| end_time * (f64::from(k) + 0.5) / f64::from(count)).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::groups;
+    use super::{MOST_TIMES, groups, times};
+
+    #[test]
+    fn many_rows_are_few_times() {
+        assert_eq!(times(2.0, 4), [0.25, 0.75, 1.25, 1.75]);
+        let few = times(1.0, 1_000_000);
+        assert_eq!(few.len(), MOST_TIMES as usize);
+        assert!((few.iter().sum::<f64>() / f64::from(MOST_TIMES) - 0.5).abs() < 1e-12);
+    }
 
     #[test]
     fn chambers_that_touch_are_one() {
