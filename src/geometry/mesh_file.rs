@@ -141,18 +141,32 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
     let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
     // Positions and faces are all that matters here: no material files, normals or texture coordinates.
     let mut kept = String::new();
+    let mut vertices = 0;
+    // Each face's line, the vertices before it, and what it says.
+    let mut faces = Vec::new();
     for (first, line) in statements(text) {
         match line.split_whitespace().next() {
             Some("v" | "f") => {
                 let wrong = |wanted: &str| format!("line {first}: found `{}`, allowed: {wanted}", shortened(&line));
                 sound(&line).map_err(wrong)?;
                 kept.extend([line.as_str(), "\n"]);
+                if line.split_whitespace().next() == Some("v") {
+                    vertices += 1;
+                } else {
+                    faces.push((first, vertices, line));
+                }
             }
             Some(word) if !BESIDE.contains(&word) => {
                 let word = shortened(word);
                 return Err(format!("line {first}: no statement `{word}` is read; walls are of `v` and `f`"));
             }
             _ => {}
+        }
+    }
+    for (first, before, line) in &faces {
+        if let Some(index) = vertices_of(line).find(|&index| !is_there(index, *before, vertices)) {
+            let there = if index > 0 { format!("{vertices} in the file") } else { format!("{before} before it") };
+            return Err(format!("line {first}: found a face with vertex {index}, allowed: one of the {there}"));
         }
     }
     let options =
@@ -196,6 +210,16 @@ fn sound(line: &str) -> Result<(), &'static str> {
     }
     let named = |word: &str| word.split('/').next().and_then(|index| index.parse::<i32>().ok()).is_some_and(|i| i != 0);
     if words.all(named) { Ok(()) } else { Err("numbers of vertices, from 1, or from the last with -1") }
+}
+
+/// The numbers of a face's vertices, without those of their textures and normals.
+fn vertices_of(face: &str) -> impl Iterator<Item = i64> {
+    face.split_whitespace().skip(1).filter_map(|word| word.split('/').next().and_then(|index| index.parse().ok()))
+}
+
+/// Numbers count from 1, or back from the last before the face with -1.
+fn is_there(index: i64, before: usize, all: usize) -> bool {
+    index.unsigned_abs() as usize <= if index > 0 { all } else { before }
 }
 
 fn shortened(text: &str) -> String {

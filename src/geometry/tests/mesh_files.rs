@@ -221,6 +221,16 @@ fn files_that_are_no_meshes_are_unreadable_or_empty_and_never_panic() {
         ("capitals.stl", &with("SOLID x"), "take 16084 bytes, the file has 16086"),
         ("two.obj", b"# two\n v 0 0\n", "line 2: found ` v 0 0`, allowed: three numbers"),
         ("half.obj", b"v 0 0 0\nf 1 \\\n1.5 1\n", "line 2: found `f 1  1.5 1`, allowed: numbers of vertices"),
+        (
+            "bounds.obj",
+            b"v 0 0 0\n\nf 1/7 1 2/1/1\n",
+            "line 3: found a face with vertex 2, allowed: one of the 1 in the file",
+        ),
+        (
+            "back.obj",
+            b"v 0 0 0\nf -1 -1 -2\nv 0 0 0\n",
+            "line 2: found a face with vertex -2, allowed: one of the 1 before it",
+        ),
         ("surface.obj", b"v 0 0 0\nsurf 0 1 0 1 1 2\n", "line 2: no statement `surf` is read"),
     ] {
         let text = error_of(name, bytes).to_string();
