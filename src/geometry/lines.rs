@@ -133,7 +133,7 @@ fn cross_product(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i128 {
 
 impl Projected {
     fn cross(&self, q: [i64; 2]) -> Option<Crossing> {
-        let mut weights = [0; 3];
+        let mut weights = [0i128; 3];
         for (k, own) in weights.iter_mut().enumerate() {
             let (a, b) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
             let weight = cross_product(a, b, q);
@@ -149,7 +149,8 @@ impl Projected {
             *own = weight;
         }
         // From one corner, so that a triangle across x has its x exactly.
-        let [_, u, v] = weights.map(|w: i128| w as f64 / self.area as f64);
+        let area = self.area as f64;
+        let (u, v) = (weights[1] as f64 / area, weights[2] as f64 / area);
         let x = self.x[0] + (u * (self.x[1] - self.x[0]) + v * (self.x[2] - self.x[0]));
         Some(Crossing { x, sign: self.area.signum() as i32, wall: self.wall })
     }
