@@ -31,7 +31,7 @@ const MOST_PARTS: u32 = 8;
 const PAIRINGS: vec3<u32> = vec3<u32>(3, 20, 47);
 
 // Moving triangles that may be in the cell, and those that lie on it or beyond it along x. Where there are more of either than there is
-// room for, the walls' own lists are gone through.
+// room for, the walls' own lists are gone through. (No more than 512, the room; a test gives less.)
 override MOST_LISTED: u32 = 512;
 var<workgroup> close: array<u32, 512>;
 var<workgroup> close_count: atomic<u32>;

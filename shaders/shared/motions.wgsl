@@ -4,7 +4,7 @@
 struct Motion {
     // Since the start of the run, at the start of the step, quanta.
     moved: vec3<i32>,
-    // Where in `wall_list` it says where the triangles begin of each cell in which it is drawn (walls.wgsl).
+    // Where in `wall_list` it says where the triangles begin of each cell in which it is drawn (drawn.wgsl).
     cells: u32,
     // m/s.
     velocity: vec3<f32>,

@@ -491,4 +491,15 @@ mod tests {
         assert_eq!((audit.mass_vented, audit.enthalpy_vented), (vented.mass, vented.enthalpy));
         assert!(audit.mass_vented > 0.3 * audit.mass_start && audit.energy_error().abs() < 1e-12, "{audit:?}");
     }
+
+    #[test]
+    fn a_probe_in_a_wall_is_refused() {
+        let text = format!(
+            "{TWO}[[probe]]\nname = \"in the shell\"\nregion = {{ sphere = {{ center = [0.1025, 0.05, 0.05], radius = 0.02 }} }}\n"
+        );
+        let mut scene = parse(&text, "test.toml", std::path::Path::new("")).unwrap();
+        scene.model.method = Some(Method::ControlVolume);
+        let error = Model::new(scene).err().map(|error| error.to_string()).unwrap();
+        assert!(error.contains("in the shell") && error.contains("no chamber"), "{error}");
+    }
 }

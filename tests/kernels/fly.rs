@@ -10,7 +10,7 @@ use crate::oracle::walls::{Triangle, crossings};
 use crate::rig::*;
 
 const COUNT: usize = 2000;
-const DT: f32 = 3e-5;
+pub const DT: f32 = 3e-5;
 
 /// How many of the device's wall times are outside the bounds of the f64 test against `walls`: triangles as they are at the start of the
 /// step, and their velocity.
