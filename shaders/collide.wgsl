@@ -11,7 +11,6 @@
 @group(0) @binding(54) var<storage, read_write> moved: array<u32>;
 @group(0) @binding(62) var<storage, read_write> crowds: array<u32>;
 
-var<workgroup> collisions: atomic<u32>;
 
 // The numbers of a cell's particles by their ids, the first eight and the others.
 var<private> by_id: vec2<u32>;
@@ -153,48 +152,40 @@ fn collide(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let bin = place_of(group.x + group.y * groups.x, groups.x * groups.y) * WORKGROUP + thread;
-    if (bin < step.bins) {
-        let begin = cell_start[bin];
-        let bin_end = cell_start[bin + 1u];
-        var candidates = 0u;
-        if (bin_end > begin + 1u) {
-            let cell = index_of(bin);
-            let entry = cell_volume[cell];
-            var count = bin_end - begin;
-            if (moving_in(cell_of(bin))) {
-                moved[append_group(LIST_MOVED)] = bin;
-            } else if ((entry & PARTED) != 0u) {
-                parted[append(LIST_PARTED)] = bin;
-            } else {
-                if (count <= MEMBERS) {
-                    put_in_order(begin, count);
-                    while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
-                        count--;
-                    }
-                    if (count > 1u) {
-                        let bulk = bulk_of_few(begin, count);
-                        let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
-                        candidates = done.candidates;
-                        if (done.collisions > 0u) {
-                            atomicAdd(&collisions, done.collisions);
-                        }
-                    }
-                } else {
-                    crowds[append(LIST_CROWDS)] = bin;
+    if (bin >= step.bins) {
+        return;
+    }
+    let begin = cell_start[bin];
+    let bin_end = cell_start[bin + 1u];
+    var candidates = 0u;
+    if (bin_end > begin + 1u) {
+        let cell = index_of(bin);
+        let entry = cell_volume[cell];
+        var count = bin_end - begin;
+        if (moving_in(cell_of(bin))) {
+            moved[append_group(LIST_MOVED)] = bin;
+        } else if ((entry & PARTED) != 0u) {
+            parted[append(LIST_PARTED)] = bin;
+        } else {
+            if (count <= MEMBERS) {
+                put_in_order(begin, count);
+                while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+                    count--;
                 }
-            }
-        }
-        if (step.peers > 0u) {
-            for (var s = begin; s < bin_end; s++) {
-                neighbour_count[s] = select(0u, candidates, s == begin);
+                if (count > 1u) {
+                    let bulk = bulk_of_few(begin, count);
+                    let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);
+                    candidates = done.candidates;
+                    count_collisions(done.collisions, cell);
+                }
+            } else {
+                crowds[append(LIST_CROWDS)] = bin;
             }
         }
     }
-    workgroupBarrier();
-    if (thread == 0u) {
-        let number = atomicLoad(&collisions);
-        if (number > 0u) {
-            count_collisions(number);
+    if (step.peers > 0u) {
+        for (var s = begin; s < bin_end; s++) {
+            neighbour_count[s] = select(0u, candidates, s == begin);
         }
     }
 }

@@ -183,9 +183,7 @@ fn collide_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if (count > 1u) {
         let bulk = bulk_of(begin, count, 0u);
         let done = collide_members(begin, count, bulk, bitcast<f32>(cell_volume[cell]), cell, 0u);
-        if (done.collisions > 0u) {
-            count_collisions(done.collisions);
-        }
+        count_collisions(done.collisions, cell);
         if (step.peers > 0u) {
             neighbour_count[begin] = done.candidates;
         }

@@ -2,8 +2,8 @@
 // The neighbour lists, as far as they are short (search.wgsl).
 //
 // Reads what the search does and `sorted`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
-// nobody has chosen; appends longer lists to `long_lists`, those with neighbours that may be
-// behind a wall to the second words of `choices`, which nobody needs yet, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
+// nobody has chosen; appends lists that are longer, or have neighbours that may be
+// behind a wall, to the second words of `choices`, which nobody needs yet, for `complete_lists`, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
 // candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
 
@@ -16,7 +16,6 @@ const KEPT: u32 = 4;
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(15) var<storage, read_write> choices: array<u32>;
-@group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
 // Who has a list: of all its neighbours, or only of those who have it in theirs.
 struct Listed {
@@ -33,11 +32,18 @@ fn listed_of(s: u32) -> Listed {
     return Listed(all, all || notes_at(layer));
 }
 
+// Marks a list as incomplete. (Who may meet a wall is marked as such, and was appended when its flight started.)
+fn to_complete(list: u32, mark: u32) {
+    if ((atomicOr(&layers[list], mark) & (INCOMPLETE | NEAR)) == 0u) {
+        choices[2u * append(LIST_INCOMPLETE) + 1u] = list;
+    }
+}
+
 fn enter(list: u32, k: u32, entry: u32) {
     if (k < DIRECT) {
         neighbours[direct_entry(list, k)] = entry;
     } else if (k == DIRECT) {
-        long_lists[append(LIST_LONG)] = list;
+        to_complete(list, LONG);
     }
 }
 
@@ -46,12 +52,6 @@ fn note(list: u32, entry: u32) {
     let k = atomicAdd(&neighbour_count[list], 1u);
     if (k < DIRECT) {
         neighbours[direct_entry(list, k)] = entry;
-    }
-}
-
-fn to_screen(s: u32) {
-    if ((atomicOr(&layers[s], UNSCREENED) & UNSCREENED) == 0u) {
-        choices[2u * append(LIST_SCREEN) + 1u] = s;
     }
 }
 
@@ -125,7 +125,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             if (own.all) {
                 enter(s, own_place + p, j);
                 if (near_wall) {
-                    to_screen(s);
+                    to_complete(s, UNSCREENED);
                 }
                 if (collide) {
                     to_choose(s, 0u);
@@ -136,7 +136,7 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
             if (theirs.all) {
                 enter(j, atomicAdd(&neighbour_count[j], 1u), s);
                 if (near_wall) {
-                    to_screen(j);
+                    to_complete(j, UNSCREENED);
                 }
                 if (collide) {
                     to_choose(j, 0u);

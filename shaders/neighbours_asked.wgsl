@@ -1,13 +1,11 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl
 // The neighbour lists of the ghosts that were asked (asked.wgsl), as far as they are short (search.wgsl).
 //
-// Reads what the search does; reads and writes `layers`; writes `neighbours` and `neighbour_count`, and appends longer lists to
-// `long_lists`. One thread per ghost that was asked, which writes its own list: the others, who may be searching as well, leave
-// it alone.
+// Reads what the search does; reads and writes `layers`; writes `neighbours` and `neighbour_count`. One thread per ghost that was asked, which writes its
+// own list: the others, who may be searching as well, leave it alone.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(58) var<storage, read_write> long_lists: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_asked(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -17,11 +15,7 @@ fn neighbours_asked(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_w
     }
     let found = search(s, DIRECT, NOBODY);
     atomicStore(&neighbour_count[s], found.count);
-    if (found.count > DIRECT) {
-        // The rounds have their pairs in the first half.
-        long_lists[arrayLength(&neighbour_count) + append(LIST_LONG_LATE)] = s;
-    }
     tell_cut_short();
     let walls = found.count > 0u && (found.flags & NEAR_WALL) != 0u;
-    layers[s] |= SEARCHED | select(0u, UNSCREENED, walls);
+    layers[s] |= SEARCHED | select(0u, UNSCREENED, walls) | select(0u, LONG, found.count > DIRECT);
 }

@@ -3,7 +3,7 @@
 //
 // Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
 // `sorted`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, where ghosts wait until they are asked also
-// `firsts`, clears what the search and the rounds use, and appends those that may meet a wall to `near_walls`. One thread per particle as they lie in
+// `firsts`, marks those that may meet a wall, and clears what the search and the rounds use. One thread per particle as they lie in
 // `particles`. Its place is a function of the set, not of any order (slots.wgsl).
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -15,7 +15,6 @@
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(44) var<storage, read_write> firsts: array<Packed>;
-@group(0) @binding(24) var<storage, read_write> near_walls: array<u32>;
 
 // The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
 fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
@@ -71,7 +70,6 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     middles[place] = packed(middle) | flags;
     neighbour_count[place] = 0u;
     if (may_hit(particle.position, particle.velocity, birth_time(own_id), step.dt)) {
-        near_walls[append(LIST_NEAR_WALLS)] = place;
         mark |= NEAR;
     }
     layers[place] = mark;

@@ -1,16 +1,20 @@
 //! uses: step.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
-// Reads `chunk_sums` and `stretch_sums`; reads counts and writes starts in `cell_start`, by fours, up to a whole chunk. One
-// thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
+// Reads `chunk_sums` and `stretch_sums`, of few stretches the sums themselves, of more what `scan_stretches` made of them; reads counts and writes
+// starts in `cell_start`, by fours, up to a whole chunk. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
 // count is read.
 
 override CHUNK: u32;
+// So many stretches are summed here, by each chunk.
+override FEW_STRETCHES: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
-@group(0) @binding(29) var<storage, read> stretch_sums: array<u32>;
+@group(0) @binding(29) var<storage, read> stretch_sums: array<vec4<u32>>;
+
+const FOUR: vec4<u32> = vec4<u32>(0u, 1u, 2u, 3u);
 
 // Where the particles of the cells of a four start, of which `before` are before it, and of the next one.
 struct Starts {
@@ -30,18 +34,29 @@ fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     if (chunk > step.bins / CHUNK) {
         return;
     }
+    // Of the stretches before its own, by fours; of many it is known.
+    let stretch = chunk / WORKGROUP;
+    let stretch_sum = stretch_sums[stretch / 4u];
+    var before = stretch_sum[stretch % 4u];
+    if (step.bins / (CHUNK * WORKGROUP) < FEW_STRETCHES) {
+        var earlier = select(vec4<u32>(0u), stretch_sum, FOUR < vec4<u32>(stretch % 4u));
+        for (var four = 0u; four < stretch / 4u; four++) {
+            earlier += stretch_sums[four];
+        }
+        before = earlier.x + earlier.y + earlier.z + earlier.w;
+    }
     // Of the chunks before it in its stretch, by fours.
     let last = chunk / 4u;
     var sum = vec4<u32>(0u);
-    for (var four = chunk / WORKGROUP * (WORKGROUP / 4u); four < last; four += 4u) {
+    for (var four = stretch * (WORKGROUP / 4u); four < last; four += 4u) {
         sum += chunk_sums[four];
         sum += select(vec4<u32>(0u), chunk_sums[four + 1u], four + 1u < last);
         sum += select(vec4<u32>(0u), chunk_sums[four + 2u], four + 2u < last);
         sum += select(vec4<u32>(0u), chunk_sums[four + 3u], four + 3u < last);
     }
     let among = chunk_sums[last];
-    sum += select(vec4<u32>(0u), among, vec4<u32>(0u, 1u, 2u, 3u) < vec4<u32>(chunk % 4u));
-    var before = stretch_sums[chunk / WORKGROUP] + sum.x + sum.y + sum.z + sum.w;
+    sum += select(vec4<u32>(0u), among, FOUR < vec4<u32>(chunk % 4u));
+    before += sum.x + sum.y + sum.z + sum.w;
     let own = among[chunk % 4u];
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;

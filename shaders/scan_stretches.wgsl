@@ -1,5 +1,5 @@
 //! uses: step.wgsl shares.wgsl
-// Scan, part 2: the sums of the stretches become their exclusive prefix sums.
+// Scan, part 2, where there are more than a few stretches: their sums become exclusive prefix sums.
 //
 // Reads and writes `stretch_sums`. One workgroup; each thread takes one contiguous share.
 

@@ -1,7 +1,7 @@
 // Slots of the counters that the host reads some steps late (src/subdomain/counters.rs).
 
 const PAIRS: u32 = 0;               // 0 .. 32: lengths of the lists of this step, see lists.wgsl
-const COLLISIONS_LOW: u32 = 32;     // since the last read, two words
+const COLLISIONS_LOW: u32 = 32;     // of the rounds since the last read, two words
 const COLLISIONS_HIGH: u32 = 33;
 const LOST: u32 = 34;               // lost pairs in the sampled steps
 const SAMPLED: u32 = 35;            // collisions in the sampled steps
@@ -22,7 +22,10 @@ const FAST_PAIRS: u32 = 49;         // collisions of pairs faster than the plan'
 const GHOST_CANDIDATES: u32 = 50;    // of CANDIDATES those of ghosts
 const GHOST_WALLS: u32 = 51;         // ghosts that may meet a wall in that step
 const CUT_SHORT: u32 = 52;           // threads whose loops the device ended too soon (turns.wgsl)
+// Collisions in cells since the last read, in COLLISION_COUNTS parts of two words, so that few threads count up the same word.
+const CELL_COLLISIONS: u32 = 53;
+const COLLISION_COUNTS: u32 = 32;
 // On a device alone, whose lists had too little room: one more than the place of the step in its interval, after whose search nothing
 // changes until the host has made room; and how many particles are in `sorted` then. The host alone clears them.
-const HELD: u32 = 53;
-const HELD_PARTICLES: u32 = 54;
+const HELD: u32 = 117;
+const HELD_PARTICLES: u32 = 118;

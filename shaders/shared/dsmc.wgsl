@@ -131,9 +131,12 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
     return done;
 }
 
-fn count_collisions(number: u32) {
-    let old = atomicAdd(&counters[COLLISIONS_LOW], number);
-    if (old + number < old) {
-        atomicAdd(&counters[COLLISIONS_HIGH], 1u);
+fn count_collisions(number: u32, cell: u32) {
+    if (number > 0u) {
+        let low = CELL_COLLISIONS + 2u * (cell % COLLISION_COUNTS);
+        let old = atomicAdd(&counters[low], number);
+        if (old + number < old) {
+            atomicAdd(&counters[low + 1u], 1u);
+        }
     }
 }

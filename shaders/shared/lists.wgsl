@@ -12,8 +12,9 @@ const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
 const LIST_CROWDS: u32 = 3;
+// How many may meet a wall in the step; they are marked in `layers`, and in no list.
 const LIST_NEAR_WALLS: u32 = 9;
-const LIST_SCREEN: u32 = 10;
+const LIST_INCOMPLETE: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
 const LIST_BORDER: u32 = 12;
 const LIST_CHANGED: u32 = 13;
@@ -21,10 +22,7 @@ const LIST_OUTBOX: u32 = 14;
 const LIST_UPDATES: u32 = 15;
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
-// Neighbour lists that are longer than DIRECT, and those among them of ghosts that were asked; and the entries of
-// all their tails.
-const LIST_LONG: u32 = 27;
-const LIST_LONG_LATE: u32 = 28;
+// The entries of the tails of neighbour lists.
 const LIST_TAILS: u32 = 29;
 const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
@@ -36,7 +34,7 @@ const GROUP_LIMIT: u32 = 65535;
 @group(0) @binding(19) var<storage, read_write> dispatches: array<atomic<u32>>;
 
 // (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs, `pack`, over
-// the border, and `neighbours`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
+// the border, and `start_flights` and `neighbours`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
 //
 // The place of a new entry; makes sure that the list's dispatch covers it.
 fn append(list: u32) -> u32 {

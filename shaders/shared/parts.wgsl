@@ -45,9 +45,7 @@ fn collide_part(begin: u32, end: u32, volume: f32, cell: u32, part: u32) -> u32 
         return 0u;
     }
     let done = collide_members(begin, count, bulk_of(begin, count, part), volume, cell, part);
-    if (done.collisions > 0u) {
-        count_collisions(done.collisions);
-    }
+    count_collisions(done.collisions, cell);
     return done.candidates;
 }
 

@@ -15,6 +15,8 @@ use super::walls::Walls;
 pub const CHUNK: u64 = 64;
 /// Those of a workgroup, of a thread each.
 const STRETCH: u64 = CHUNK * WORKGROUP as u64;
+/// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
+pub const FEW_STRETCHES: u64 = 64;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).
@@ -182,7 +184,7 @@ impl CellBuffers {
         Ok(CellBuffers {
             capacity: bins,
             chunk_sums: device.storage::<u32>("chunk_sums", (bins / STRETCH + 1) * (STRETCH / CHUNK))?,
-            stretch_sums: device.storage::<u32>("stretch_sums", CellBuffers::stretch_bytes(bins) / 4)?,
+            stretch_sums: device.storage::<u32>("stretch_sums", bins / STRETCH + 1)?,
             cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
         })
     }
@@ -194,9 +196,9 @@ impl CellBuffers {
         4 * CHUNK * (bins / CHUNK + 1)
     }
 
-    /// Of the sums of their stretches.
-    pub fn stretch_bytes(bins: u64) -> u64 {
-        4 * (bins / STRETCH + 1)
+    /// Whether so many bins are few stretches.
+    pub fn few_stretches(bins: u64) -> bool {
+        bins / STRETCH < FEW_STRETCHES
     }
 
     pub fn bytes(&self) -> u64 {
@@ -280,10 +282,9 @@ pub struct ParticleBuffers {
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds, or the `crowds` of the method `cell`.
     pub bins: wgpu::Buffer,
-    /// Of the exchange `border`, of the sort `slots`, of the search `long_lists`, among others also of ghosts that are searched for late; afterwards
-    /// the `pairs` of the rounds, half as many.
+    /// Of the exchange `border`, of the sort `slots`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `crowded` and `order_by_id`, or `near_walls`, `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub middles: wgpu::Buffer,
@@ -394,8 +395,8 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle" | "pack" | "neighbours", "dispatches") | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
-            ("receive", "dispatches") => &fixed.rechoose_dispatches,
+            ("settle" | "pack" | "start_flights" | "neighbours" | "receive", "dispatches")
+            | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
             ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,
@@ -414,8 +415,8 @@ impl<'a> Buffers<'a> {
             (_, "particles" | "flights" | "neighbours") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "crowds" | "choices") => &particle.bins,
-            (_, "border" | "slots" | "long_lists" | "pairs") => &particle.slots,
-            (_, "crowded" | "order_by_id" | "near_walls" | "rechoose" | "bouncing") => &particle.rare,
+            (_, "border" | "slots" | "pairs") => &particle.slots,
+            (_, "crowded" | "order_by_id" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "middles") => &particle.middles,
             (_, "neighbour_count") => &particle.neighbour_count,

@@ -5,7 +5,7 @@ use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::{CHUNK, COAT_WORDS, SURFACE_COPIES, SURFACE_WORDS, VENT_WORDS};
+use super::buffers::{CHUNK, COAT_WORDS, FEW_STRETCHES, SURFACE_COPIES, SURFACE_WORDS, VENT_WORDS};
 use super::nearness;
 use super::scales::Scales;
 use super::walls::Walls;
@@ -127,6 +127,7 @@ pub fn constants(
         ("TOLERANCE", walls.tolerance),
         ("CLEARANCE_UNIT", CLEARANCE_UNIT),
         ("CHUNK", CHUNK as f64),
+        ("FEW_STRETCHES", FEW_STRETCHES as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("CAPPED", flag(features.capped)),

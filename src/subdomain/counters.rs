@@ -1,7 +1,10 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words that are read.
-pub const WORDS: usize = 53;
+pub const WORDS: usize = CELL_COLLISIONS + 2 * COLLISION_COUNTS;
+/// Collisions in cells, in so many parts of two words.
+const CELL_COLLISIONS: usize = 53;
+const COLLISION_COUNTS: usize = 32;
 /// Words of the buffer: the last, `HELD` and `HELD_PARTICLES`, are read only of a device that is held.
 pub const ALL_WORDS: usize = WORDS + 2;
 pub const HELD: usize = WORDS;
@@ -62,9 +65,11 @@ pub struct Counters {
 
 impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
+        let two_words = |words: &[u32]| u64::from(words[0]) | (u64::from(words[1]) << 32);
+        let in_cells: u64 = words[CELL_COLLISIONS..].chunks_exact(2).map(two_words).sum();
         Counters {
             // Less those that another device counts.
-            collisions: (u64::from(words[32]) | (u64::from(words[33]) << 32)) - u64::from(words[44]),
+            collisions: two_words(&words[32..34]) + in_cells - u64::from(words[44]),
             lost: words[34],
             sampled: words[35],
             tails_wanted: words[TAILS_WANTED],

@@ -19,13 +19,10 @@ const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
 const LIST_CROWDS: u32 = 3;
-const LIST_NEAR_WALLS: u32 = 9;
-const LIST_SCREEN: u32 = 10;
+const LIST_INCOMPLETE: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
-const LIST_LONG: u32 = 27;
-const LIST_LONG_LATE: u32 = 28;
 
 /// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
 /// the ghosts that were asked.
@@ -37,6 +34,9 @@ pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ASKED: u32 = 2;
+
+/// Cells that a thread empties (`shaders/reset.wgsl`).
+const RESET_CELLS: u64 = 16;
 
 /// Particles per workgroup of the tally: WORKGROUP threads x CHUNK_LOOPS.
 const TALLY_CHUNK: u64 = 64 * 32;
@@ -121,7 +121,7 @@ impl Subdomain {
         let slot = StepSlot { dt: dt as f32, near2, ..self.at_rest(device) };
         self.write_parameters(device, &slot);
         let mut rec = Recording::new(device);
-        self.kernels.reset.dispatch(rec.phase("lists"), 0, [1, 1, 1]);
+        self.reset(&mut rec, "lists");
         self.bin(&mut rec, &slot);
         self.scan(&mut rec, &slot);
         self.sort(&mut rec, &slot);
@@ -249,9 +249,16 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
+    /// Empties lists and cells.
+    fn reset(&self, rec: &mut Recording<'_>, phase: &'static str) {
+        let cells = if self.kernels.sort.is_some() { CellBuffers::start_bytes(self.bins()) / 4 } else { 1 };
+        let groups = threads(rec.device(), cells.div_ceil(RESET_CELLS));
+        self.kernels.reset.dispatch(rec.phase(phase), 0, groups);
+    }
+
     pub fn inject(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let device = rec.device();
-        self.kernels.reset.dispatch(rec.phase("inject"), 0, [1, 1, 1]);
+        self.reset(rec, "inject");
         if let (Some(kernel), true) = (&self.kernels.inject, step.newborns > 0) {
             let newborns = threads(device, u64::from(step.newborns));
             kernel.dispatch(rec.phase("inject"), self.offset(device, step, 0), newborns);
@@ -260,11 +267,6 @@ impl Subdomain {
 
     /// The particles that are here; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if self.kernels.sort.is_some() {
-            let encoder = rec.encoder();
-            encoder.clear_buffer(&self.cell.cell_start, 0, Some(CellBuffers::start_bytes(self.bins())));
-            encoder.clear_buffer(&self.cell.stretch_sums, 0, Some(CellBuffers::stretch_bytes(self.bins())));
-        }
         let slots = u64::from(step.count) + u64::from(step.newborns);
         self.bin_slots(rec, step, slots);
     }
@@ -283,7 +285,9 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
             kernels.scan_sums.dispatch(pass, offset, chunks);
-            kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
+            if !CellBuffers::few_stretches(self.bins()) {
+                kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
+            }
             kernels.scan_cells.dispatch(pass, offset, chunks);
         }
     }
@@ -297,7 +301,6 @@ impl Subdomain {
             kernels.scatter.dispatch(pass, offset, slots);
             kernels.order.dispatch(pass, offset, slots);
             kernels.start_flights.dispatch(pass, offset, all(device, step));
-            kernels.wall_times.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_NEAR_WALLS);
         }
         if let Some(kernels) = &self.kernels.cells {
             let pass = rec.phase("sort");
@@ -312,8 +315,7 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
-            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_LONG);
-            kernels.screen.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_SCREEN);
+            kernels.complete_lists.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_INCOMPLETE);
         }
     }
 
@@ -376,9 +378,7 @@ impl Subdomain {
         if let Some(neighbours_asked) = kernels.neighbours_asked.as_ref().filter(|_| self.place.asks()) {
             let offset = self.asked_offset(rec.device(), step, round);
             let pass = rec.phase(phase);
-            neighbours_asked.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
-            kernels.lengthen.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_LONG_LATE);
-            for kernel in [&kernels.screen, &kernels.choose_asked] {
+            for kernel in [neighbours_asked, &kernels.complete_lists, &kernels.choose_asked] {
                 kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
             }
         }

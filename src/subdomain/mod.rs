@@ -62,7 +62,7 @@ pub struct Remembered {
 enum Kept {
     /// No interval is ever run again.
     Nothing,
-    /// A device alone is held where it had too little room, and goes on from there (`shaders/lengthen.wgsl`).
+    /// A device alone is held where it had too little room, and goes on from there (`shaders/complete_lists.wgsl`).
     Held,
     /// Whether one must is known when all ranks' tallies are: each interval has a copy of the particles before it.
     Copy(wgpu::Buffer),

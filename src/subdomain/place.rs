@@ -28,7 +28,7 @@ pub struct GridCells {
 /// in has chosen it; all choices are functions of the state, so this changes no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Ghosts {
-    /// Those that were chosen: little work, four dispatches more a round.
+    /// Those that were chosen: little work, three dispatches more a round.
     Asked,
     /// All, with the own particles.
     All,

@@ -7,7 +7,7 @@ use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep};
 
 use crate::choose::{Cloud, DT};
 use crate::neighbour_lists::{
-    DIRECT, TAILS, lengthen, lists, put_flights, put_room, put_to_screen, tails_of, to_screen_of,
+    DIRECT, TAILS, complete_lists, lists, put_flights, put_room, put_to_complete, tails_of, to_complete_of,
 };
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -21,11 +21,10 @@ const PASS: u32 = 2;
 /// Marks of `layers`.
 const ASKED: u32 = 0x800;
 const SEARCHED: u32 = 0x1000;
-const UNSCREENED: u32 = 0x2000;
 
 /// Layers 0 to 2, most of them own; other marks must not matter.
 fn layers(stream: &mut Stream) -> Vec<u32> {
-    let mark = |k: u32| if k == 0 { SHARED | NEAR } else { 0 };
+    let mark = |k: u32| if k == 0 { SHARED | LISTED } else { 0 };
     (0..COUNT).map(|_| [0, 0, 1, 2][stream.below(4) as usize] | mark(stream.below(3))).collect()
 }
 
@@ -91,8 +90,8 @@ fn those_that_are_asked_choose_as_if_they_had_not_waited() {
     assert!(asked.len() > 20 && silent > 20, "{} asked, {silent} silent", asked.len());
 }
 
-/// A ghost that waits has no list; once it is asked it gets the one it would have had, and is marked for the
-/// screening where that would have been.
+/// A ghost that waits has no list; once it is asked it gets the one it would have had, and is marked to have it completed
+/// where that would have been.
 #[test]
 fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
     let mut stream = Stream::new(72);
@@ -118,45 +117,51 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
         rig.set_counter(LIST_ASKED, asked.len() as u32);
         rig.step(step_of(&cloud, ghosts));
         rig.run(if ghosts == PASS { "neighbours_asked" } else { "neighbours" }, COUNT);
-        lengthen(&rig, ghosts == PASS);
-        // What was done is not done again.
-        lengthen(&rig, ghosts == PASS);
         // Who may choose in the first round is not at issue.
-        let marks: Vec<u32> = rig.get::<u32>("layers", COUNT).iter().map(|mark| mark & (CHOOSES - 1)).collect();
+        let marks =
+            || -> Vec<u32> { rig.get::<u32>("layers", COUNT).iter().map(|mark| mark & (CHOOSES - 1)).collect() };
+        let incomplete = marks();
+        let list = if ghosts == PASS { LIST_ASKED } else { LIST_INCOMPLETE };
+        complete_lists(&rig, list);
+        // What was done is not done again.
+        complete_lists(&rig, list);
+        let complete = marks();
+        for (s, mark) in complete.iter().enumerate() {
+            assert_eq!(*mark, incomplete[s] & !(UNSCREENED | LONG), "{s}");
+        }
         let mut lists = lists(&rig, COUNT, TAILS);
         // Their order is of no matter.
         lists.iter_mut().for_each(|list| list.sort_unstable());
-        (lists, marks, to_screen_of(&rig, COUNT))
+        (lists, incomplete, to_complete_of(&rig, COUNT))
     };
     let asked: Vec<u32> = (0..COUNT as u32).filter(|&s| layers[s as usize] & 0xff == 1 && s % 3 == 0).collect();
     let known = asked[0] as usize;
-    let (all, _, screened) = run(ALL, &layers, &[0; 4][..0]);
+    let (all, marked, completed) = run(ALL, &layers, &[0; 4][..0]);
     let (waiting, marks, others) = run(WAIT, &layers, &[0; 4][..0]);
     for (s, mark) in marks.iter().enumerate() {
-        let unscreened = if others.contains(&(s as u32)) { UNSCREENED } else { 0 };
-        assert_eq!(*mark, layers[s] | unscreened, "{s}");
+        let incomplete = if others.contains(&(s as u32)) { marked[s] & (UNSCREENED | LONG) } else { 0 };
+        assert_eq!(*mark, layers[s] | incomplete, "{s}");
     }
     let mut before = layers.clone();
     before[known] |= SEARCHED;
     let (late, marks, none) = run(PASS, &before, &asked);
-    assert!(none.is_empty(), "the screening of those asked has no list of its own");
+    assert!(none.is_empty(), "those asked have no other list");
     for s in 0..COUNT {
         let waits = layers[s] & 0xff == 1;
         // Where ghosts wait, the outermost do not list who has them in theirs.
         let has_none = waits || layers[s] & 0xff >= DEPTH;
         assert_eq!(waiting[s], if has_none { vec![] } else { all[s].clone() }, "{s}");
-        assert_eq!(others.contains(&(s as u32)), !waits && screened.contains(&(s as u32)), "{s}");
+        assert_eq!(others.contains(&(s as u32)), !waits && completed.contains(&(s as u32)), "{s}");
         if asked.contains(&(s as u32)) && s != known {
             assert_eq!(late[s], all[s], "{s}");
-            let unscreened = if screened.contains(&(s as u32)) { UNSCREENED } else { 0 };
-            assert_eq!(marks[s], layers[s] | SEARCHED | unscreened, "{s}");
+            assert_eq!(marks[s], marked[s] | SEARCHED, "{s}");
         } else {
             assert_eq!(late[s], vec![NOBODY; 3], "{s}: not asked, or searched before");
             assert_eq!(marks[s], before[s], "{s}");
         }
     }
     assert!(asked.iter().any(|&s| all[s as usize].len() > DIRECT), "some lists are long");
-    let to_screen = asked.iter().filter(|s| screened.contains(s)).count();
+    let to_screen = asked.iter().filter(|&&s| marked[s as usize] & UNSCREENED != 0).count();
     assert!(to_screen > 0 && to_screen < asked.len(), "some are clear of walls, some are not: {to_screen}");
 }
 
@@ -166,15 +171,15 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
     let mut stream = Stream::new(73);
     let world = crate::screen::parted_tank();
     let cloud = Cloud::new(&mut stream, world, COUNT, 1.0);
-    let layers: Vec<u32> = vec![1; COUNT];
+    let layers: Vec<u32> = vec![1 | UNSCREENED; COUNT];
     let screened: Vec<u32> = (0..COUNT as u32).collect();
     let near_walls = vec![1u32 << 31; COUNT];
     let lists = |rig: &Rig| lists(rig, COUNT, tails_of(cloud.lists.iter().map(Vec::len)));
     let mut rig = rig_of(&cloud, &layers);
-    put_to_screen(&mut rig, COUNT, &screened);
+    put_to_complete(&mut rig, COUNT, &screened);
     rig.put("middles", &near_walls);
     rig.step(step_of(&cloud, ALL));
-    rig.run("screen", COUNT);
+    rig.run("complete_lists", COUNT);
     let early = lists(&rig);
     let hidden: usize = cloud.lists.iter().zip(&early).map(|(before, after)| before.len() - after.len()).sum();
 
@@ -185,16 +190,16 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
     let flights: Vec<GpuFlight> =
         cloud.flights.iter().map(|flight| GpuFlight { start: 0.5 * DT, collisions: 1, ..*flight }).collect();
     let late = |from: &[GpuParticle]| {
-        let mut rig = rig_of(&cloud, &vec![1 | UNSCREENED; COUNT]);
+        let mut rig = rig_of(&cloud, &layers);
         rig.put("sorted", &changed);
         put_flights(&mut rig, &flights);
-        put_to_screen(&mut rig, COUNT, &[]);
+        put_to_complete(&mut rig, COUNT, &[]);
         rig.put("middles", &near_walls);
         rig.put("firsts", from);
         rig.put("asked", &screened[..COUNT - 1]);
         rig.set_counter(LIST_ASKED, COUNT as u32 - 1);
         rig.step(step_of(&cloud, PASS));
-        rig.run("screen", COUNT);
+        rig.run("complete_lists", COUNT);
         assert_eq!(rig.get::<u32>("layers", COUNT)[..COUNT - 1], vec![1; COUNT - 1], "screened once");
         lists(&rig)
     };

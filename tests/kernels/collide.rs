@@ -170,7 +170,7 @@ fn cells_conserve_and_collide_at_the_rate_of_their_pairs() {
         let rig = cloud.run(first_step(), seed);
         let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
         assert_eq!((rig.counter(LOST), rig.counter(BLOCKED), rig.counter(0)), (0, 0, 0));
-        found += rig.counter(32);
+        found += rig.cell_collisions();
         let mut changed = 0;
         for cell in 0..cloud.start.len() - 1 {
             let range = cloud.cell(cell);
@@ -194,7 +194,7 @@ fn cells_conserve_and_collide_at_the_rate_of_their_pairs() {
             }
         }
         // A collision changes two, who may collide again.
-        assert!(changed > rig.counter(32) && changed <= 2 * rig.counter(32));
+        assert!(changed > rig.cell_collisions() && changed <= 2 * rig.cell_collisions());
     }
     let (error, found) = (expected.sqrt(), f64::from(found));
     println!("{found} collisions of {expected:.1} +- {error:.1}");
@@ -243,7 +243,7 @@ fn the_order_in_which_particles_lie_changes_no_bit() {
         let rig = cloud.run(GpuStep { newborn_first_id: limit, newborns: limit, ..GpuStep::default() }, 2);
         let mut after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());
         after.sort_by_key(GpuParticle::id);
-        (after, rig.counter(32))
+        (after, rig.cell_collisions())
     };
     for (count, sizes) in
         [(2600, 0..=CROWDED), (6000, CROWDED..=23), (10_000, 23..=37), (16_000, 38..=55), (21_000, 55..=FULL + 4)]

@@ -207,7 +207,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("cell_start", &start);
     rig.put("slots", &crowd.particles.iter().map(GpuParticle::id).collect::<Vec<_>>());
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-    for buffer in ["middles", "cells", "neighbour_count", "near_walls"] {
+    for buffer in ["middles", "cells", "neighbour_count"] {
         rig.put(buffer, &vec![9u32; COUNT]);
     }
     let (low, high) = (crowd.near.low, crowd.near.high);

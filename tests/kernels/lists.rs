@@ -5,21 +5,34 @@ use corpuscle::subdomain::{GpuNewborn, GpuParticle, GpuStep};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
-/// `reset` empties the lists and their dispatches and touches no other counter.
+/// `reset` empties the lists and their dispatches, and cells and their sums as far as it has threads for, and touches no other counter.
 #[test]
 fn reset_empties_every_list_and_nothing_else() {
     let mut rig = Rig::new(&World::plain());
     let mut stream = Stream::new(1);
-    let noise: Vec<u32> = (0..3 * LISTS).map(|_| stream.word() | 1).collect();
-    rig.put("counters", &noise[..COUNTERS]);
+    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    rig.put("counters", &noise);
     rig.put("dispatches", &noise);
     rig.put("rechoose_dispatches", &noise);
     rig.put("asked_dispatches", &noise);
-    rig.run_groups("reset", [1, 1, 1]);
+    let cells: Vec<u32> = (0..5 * 1024).map(|_| stream.word() | 1).collect();
+    let sums = &cells[..200];
+    rig.put("cell_start", &cells);
+    rig.put("stretch_sums", sums);
+    rig.run_groups("reset", [2, 1, 1]);
+    for (buffer, before, emptied) in [("cell_start", &cells[..], 2048), ("stretch_sums", sums, 128)] {
+        let left: Vec<u32> = rig.get(buffer, before.len());
+        assert_eq!(left[..emptied], vec![0; emptied], "{buffer}");
+        // The check can fail: there were more.
+        assert_eq!(left[emptied..], before[emptied..], "{buffer}");
+    }
+    // Folded into two dimensions, and more threads than there are cells.
+    rig.run_groups("reset", [2, 4, 1]);
+    assert_eq!(rig.get::<u32>("cell_start", cells.len()), vec![0; cells.len()]);
     let counters: Vec<u32> = rig.get("counters", COUNTERS);
     assert_eq!(counters[..LISTS], [0; LISTS]);
     // The check can fail: what is not a list keeps its noise.
-    assert_eq!(counters[LISTS..], noise[LISTS..COUNTERS]);
+    assert_eq!(counters[LISTS..], noise[LISTS..]);
     let empty = [[0u32, 1, 1]; LISTS];
     assert_eq!(rig.get::<[u32; 3]>("dispatches", LISTS), empty);
     assert_eq!(rig.get::<[u32; 3]>("rechoose_dispatches", LISTS), empty);

@@ -9,7 +9,7 @@ use corpuscle::subdomain::{CellTable, GpuFlight, GpuMotion, GpuParticle, GpuStep
 
 use crate::collide::{Cloud, DIAMETER, DT, first_step, sums};
 use crate::fly::{self, outside_bounds};
-use crate::neighbour_lists::{self, put_flights};
+use crate::neighbour_lists::{self, put_flights, put_to_complete};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, minus, norm};
 use crate::oracle::walls::Triangle;
@@ -118,7 +118,7 @@ fn collisions(cloud: &Cloud, seeds: u32) -> f64 {
     let of = |seed: u32| {
         let rig = cloud.run(first_step(), seed);
         assert_eq!(rig.counter(LOST), 0);
-        f64::from(rig.counter(32) - rig.counter(BLOCKED))
+        f64::from(rig.cell_collisions() - rig.counter(BLOCKED))
     };
     (0..seeds).map(of).sum()
 }
@@ -260,7 +260,7 @@ fn without_room_for_the_triangles_of_a_cell_the_results_are_the_same() {
         let [listed, gone_through] = [512.0, 0.0].map(|most| {
             let rig = cloud.run_with(&[("MOST_LISTED", most)], GpuStep { peers: 1, ..first_step() }, 3);
             let words = ["layers", "neighbour_count"].map(|name| rig.get::<u32>(name, count));
-            (rig.get::<GpuParticle>("sorted", count), words, rig.counter(32), rig.counter(BLOCKED))
+            (rig.get::<GpuParticle>("sorted", count), words, rig.cell_collisions(), rig.counter(BLOCKED))
         });
         assert!(listed.2 > 50 && listed.0 != cloud.particles, "{} collisions", listed.2);
         assert!(listed == gone_through);
@@ -306,9 +306,9 @@ fn flights_meet_a_moving_wall_where_it_is() {
     let mut timed = rig();
     timed.put("sorted", &particles);
     put_flights(&mut timed, &flights);
-    timed.put("near_walls", &(0..COUNT as u32).collect::<Vec<_>>());
-    timed.set_counter(LIST_NEAR_WALLS, COUNT as u32);
-    timed.run("wall_times", COUNT);
+    put_to_complete(&mut timed, COUNT, &(0..COUNT as u32).collect::<Vec<_>>());
+    timed.put("layers", &vec![NEAR; COUNT]);
+    timed.run("complete_lists", COUNT);
     let found: Vec<GpuFlight> = neighbour_lists::flights(&timed, COUNT);
     let both = |ball: &[Triangle], velocity: Vector| [(resting.clone(), [0.0; 3]), (ball.to_vec(), velocity)];
     let wrong = |walls: &[(Vec<Triangle>, Vector)]| outside_bounds(&world, walls, &particles, &flights, &found);

@@ -1,5 +1,5 @@
 //! Flights and neighbour lists as the kernels keep them (`shaders/shared/neighbour_list.wgsl`), written and read by their definition; and
-//! `lengthen` by hand.
+//! `complete_lists` by hand.
 
 use corpuscle::subdomain::GpuFlight;
 
@@ -31,10 +31,7 @@ pub fn put_room(rig: &mut Rig, count: usize, room: usize) {
         records.iter_mut().for_each(|record| record[RECORD - DIRECT..].fill(NOBODY));
         *tails = vec![NOBODY; room];
     });
-    rig.put("long_lists", &vec![NOBODY; 2 * count]);
-    [LIST_LONG, LIST_LONG_LATE, LIST_TAILS, LIST_SCREEN, LIST_RECHOOSE]
-        .into_iter()
-        .for_each(|list| rig.set_counter(list, 0));
+    [LIST_TAILS, LIST_INCOMPLETE, LIST_RECHOOSE].into_iter().for_each(|list| rig.set_counter(list, 0));
 }
 
 pub fn put_lists(rig: &mut Rig, lists: &[Vec<u32>]) {
@@ -69,26 +66,26 @@ pub fn lists(rig: &Rig, count: usize, tails: usize) -> Vec<Vec<u32>> {
     (0..count).map(list).collect()
 }
 
-/// Runs the kernel over the lists that `neighbours` found to be long, in its first pass or in one over those asked.
-pub fn lengthen(rig: &Rig, late: bool) {
-    let long = rig.counter(if late { LIST_LONG_LATE } else { LIST_LONG });
-    rig.run("lengthen", long as usize);
+/// Runs the kernel over the particles of a list, those that are to be completed or those that were asked.
+pub fn complete_lists(rig: &Rig, list: usize) {
+    rig.run("complete_lists", rig.counter(list) as usize);
 }
 
-/// The lists that `neighbours` wants screened, in ascending order.
-pub fn to_screen_of(rig: &Rig, count: usize) -> Vec<u32> {
+/// The particles whose flights or lists are to be completed, in ascending order.
+pub fn to_complete_of(rig: &Rig, count: usize) -> Vec<u32> {
     let words: Vec<[u32; 2]> = rig.get("choices", count);
-    let mut listed: Vec<u32> = words[..rig.counter(LIST_SCREEN) as usize].iter().map(|[_, second]| *second).collect();
+    let mut listed: Vec<u32> =
+        words[..rig.counter(LIST_INCOMPLETE) as usize].iter().map(|[_, second]| *second).collect();
     listed.sort_unstable();
     listed
 }
 
-/// Lists to be screened.
-pub fn put_to_screen(rig: &mut Rig, count: usize, these: &[u32]) {
+/// These are to be completed, as their marks say.
+pub fn put_to_complete(rig: &mut Rig, count: usize, these: &[u32]) {
     let mut words = vec![[NOBODY; 2]; count];
     words.iter_mut().zip(these).for_each(|(word, &list)| word[1] = list);
     rig.put("choices", &words);
-    rig.set_counter(LIST_SCREEN, these.len() as u32);
+    rig.set_counter(LIST_INCOMPLETE, these.len() as u32);
 }
 
 /// How many entries the tails of such lists have.

@@ -1,11 +1,13 @@
-//! `neighbours` and `lengthen` against a search of all pairs: exactly.
+//! `neighbours` and `complete_lists` against a search of all pairs: exactly.
 
 use std::collections::BTreeSet;
 
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 
 use crate::choose::{DIAMETER, DT};
-use crate::neighbour_lists::{DIRECT, TAILS, lengthen, lists, put_flights, put_room, tails_of, to_screen_of};
+use crate::neighbour_lists::{
+    DIRECT, TAILS, complete_lists, lists, put_flights, put_room, put_to_complete, tails_of, to_complete_of,
+};
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
@@ -18,6 +20,8 @@ struct Crowd {
     rig: Rig,
     /// Of the step, s.
     dt: f32,
+    /// Of the halo, 0 on a device alone.
+    depth: u32,
 }
 
 fn crowd(seed: u32) -> Crowd {
@@ -40,6 +44,11 @@ fn crowd(seed: u32) -> Crowd {
     crowd_at(World::plain(), middles, of)
 }
 
+/// Some of a crowd are marked so.
+fn may_meet_a_wall(s: usize) -> bool {
+    s.is_multiple_of(7)
+}
+
 /// Mid-step points in the order of their cells.
 fn crowd_at(world: World, middles: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
     let cells = world.cells();
@@ -52,7 +61,8 @@ fn crowd_at(world: World, middles: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
     rig.put("cells", &of);
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     rig.put("choices", &vec![[7u32; 2]; COUNT]);
-    Crowd { world, middles, rig, dt: 0.0 }
+    put_flights(&mut rig, &free_flights(COUNT));
+    Crowd { world, middles, rig, dt: 0.0, depth: 0 }
 }
 
 impl Crowd {
@@ -62,13 +72,17 @@ impl Crowd {
 
     /// With room for tails of so many entries.
     fn run_near(&mut self, tails: usize, near2: u32) -> Vec<Vec<u32>> {
-        self.rig.step(GpuStep { count: COUNT as u32, near2, dt: self.dt, ..GpuStep::default() });
+        let (count, dt, depth) = (COUNT as u32, self.dt, self.depth);
+        self.rig.step(GpuStep { count, near2, dt, depth, ..GpuStep::default() });
         put_room(&mut self.rig, COUNT, tails);
         self.rig.put("neighbour_count", &vec![0u32; COUNT]);
-        self.rig.put("layers", &vec![0u32; COUNT]);
+        // As `start_flights` leaves it.
+        self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
+        let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
+        put_to_complete(&mut self.rig, COUNT, &near);
         self.rig.put("rechoose", &vec![NOBODY; COUNT]);
         self.rig.run("neighbours", COUNT);
-        lengthen(&self.rig, false);
+        complete_lists(&self.rig, LIST_INCOMPLETE);
         lists(&self.rig, COUNT, tails)
     }
 
@@ -121,15 +135,19 @@ fn all_are_found(among_others: bool) {
     let lengths = || expected.iter().map(BTreeSet::len);
     assert!(lengths().any(|length| length > DIRECT) && lengths().any(|length| length <= DIRECT));
     assert_eq!(crowd.rig.counter(LIST_TAILS) as usize, tails_of(lengths()));
-    // Those with a neighbour, of which one or they themselves are near a wall.
+    // Those that may meet a wall, whose lists are long, or with a neighbour, of which one or they themselves are near a wall: each once.
     let near_wall = |s: u32| crowd.world.class(cells.index(cells.cell(crowd.middles[s as usize]))) != CLEAR;
     let to_screen = |s: &u32| {
         let list = &expected[*s as usize];
         !list.is_empty() && (near_wall(*s) || list.iter().any(|&j| near_wall(j)))
     };
-    let screened: Vec<u32> = (0..COUNT as u32).filter(to_screen).collect();
-    assert_eq!(to_screen_of(&crowd.rig, COUNT), screened);
-    assert!(screened.len() < COUNT, "some are clear of walls");
+    let long = |s: &u32| expected[*s as usize].len() > DIRECT;
+    let incomplete: Vec<u32> =
+        (0..COUNT as u32).filter(|s| may_meet_a_wall(*s as usize) || to_screen(s) || long(s)).collect();
+    assert_eq!(to_complete_of(&crowd.rig, COUNT), incomplete);
+    assert!(incomplete.len() < COUNT, "some are short and clear of walls");
+    assert!(incomplete.iter().any(|s| !long(s)) && incomplete.iter().any(|s| !to_screen(s)));
+    assert!(crowd.rig.get::<u32>("layers", COUNT).iter().all(|mark| mark & (UNSCREENED | LONG) == 0));
     // The check can fail: the packed rule is wider than the edge of a cell, but by few pairs.
     let total: usize = lists.iter().map(Vec::len).sum();
     assert!(beyond > 0 && beyond < total / 10, "{beyond} of {total}");
@@ -170,10 +188,13 @@ fn tails_without_room_are_reported_with_the_room_they_need() {
     let long = expected.iter().filter(|list| list.len() > DIRECT).count();
     assert!(cut > 0 && cut < long, "{cut} of {long}");
     // A device alone is held there, with all its particles; one among others is not.
-    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word)), [0, 0]);
-    crowd.rig.constant("HALO", 0.0);
-    crowd.run_near(room, CELL_NEAR2);
     assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word) as usize), [1, COUNT]);
+    for word in [HELD, HELD_PARTICLES] {
+        crowd.rig.set_counter(word, 0);
+    }
+    crowd.depth = 2;
+    crowd.run_near(room, CELL_NEAR2);
+    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word)), [0, 0]);
     // With that room all have it.
     let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
     assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
@@ -205,7 +226,7 @@ fn slots_behind_the_last_cell_hold_nobody() {
 fn the_outermost_ghosts_list_those_alone_who_choose() {
     let mut crowd = crowd(14);
     let pairs = crowd.all_pairs();
-    let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | NEAR } else { 0 }).collect();
+    let layers: Vec<u32> = (0..COUNT as u32).map(|s| (s % 4) | if s % 3 == 0 { SHARED | LISTED } else { 0 }).collect();
     let layer = |s: usize| layers[s] & 0xff;
     // All choose, or the outermost of those who would wait.
     for (depth, ghosts) in [(2, 0), (3, 0), (2, 1), (0, 0)] {
@@ -223,8 +244,9 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
             ..GpuStep::default()
         });
         crowd.rig.run("neighbours", COUNT);
-        let long = crowd.rig.counter(LIST_LONG) as usize;
-        lengthen(&crowd.rig, false);
+        let marks: Vec<u32> = crowd.rig.get("layers", COUNT);
+        let long = marks.iter().filter(|&mark| mark & LONG != 0).count();
+        complete_lists(&crowd.rig, LIST_INCOMPLETE);
         let counts: Vec<u32> = crowd.rig.get("neighbour_count", COUNT);
         let records: Vec<[u32; RECORD]> = crowd.rig.get("neighbours", COUNT);
         let (mut noted, mut cut, mut longer) = (0, 0, 0);

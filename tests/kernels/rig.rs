@@ -19,7 +19,7 @@ pub const LISTS: usize = 32;
 pub const LIST_CROWDED: usize = 2;
 pub const LIST_CROWDS: usize = 3;
 pub const LIST_NEAR_WALLS: usize = 9;
-pub const LIST_SCREEN: usize = 10;
+pub const LIST_INCOMPLETE: usize = 10;
 pub const LIST_BOUNCE: usize = 11;
 pub const LIST_BORDER: usize = 12;
 pub const LIST_CHANGED: usize = 13;
@@ -31,8 +31,6 @@ pub const COUNT_DROPPED: usize = 31;
 pub const LOST: usize = 34;
 pub const SAMPLED: usize = 35;
 pub const TAILS_WANTED: usize = 36;
-pub const LIST_LONG: usize = 27;
-pub const LIST_LONG_LATE: usize = 28;
 pub const LIST_TAILS: usize = 29;
 pub const OUTSIDE: usize = 37;
 pub const OVERSHOOT: usize = 38;
@@ -50,8 +48,9 @@ pub const GHOST_WALLS: usize = 51;
 pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
-pub const HELD: usize = 53;
-pub const HELD_PARTICLES: usize = 54;
+pub const CELL_COLLISIONS: usize = 53;
+pub const HELD: usize = 117;
+pub const HELD_PARTICLES: usize = 118;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -65,6 +64,8 @@ pub const SOLID: u32 = 3;
 pub const SHARED: u32 = 0x100;
 pub const LISTED: u32 = 0x200;
 pub const NEAR: u32 = 0x400;
+pub const UNSCREENED: u32 = 0x2000;
+pub const LONG: u32 = 0x4000;
 pub const CHOOSES: u32 = 0x10000;
 /// Words of a particle's flight and the beginning of its neighbour list.
 pub const RECORD: usize = 8;
@@ -277,6 +278,9 @@ impl Rig {
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
         rig.put("step_words", &[0u32; 8]);
+        for buffer in ["cell_start", "stretch_sums", "cells", "middles", "neighbour_count"] {
+            rig.put(buffer, &[0u32; 4]);
+        }
         rig
     }
 
@@ -340,6 +344,13 @@ impl Rig {
 
     pub fn counter(&self, slot: usize) -> u32 {
         self.get::<u32>("counters", COUNTERS)[slot]
+    }
+
+    /// Collisions in cells, whatever parts they are counted in.
+    pub fn cell_collisions(&self) -> u32 {
+        let words: Vec<u32> = self.get("counters", COUNTERS);
+        assert!(words[CELL_COLLISIONS + 1..HELD].iter().step_by(2).all(|&high| high == 0));
+        words[CELL_COLLISIONS..HELD].iter().step_by(2).sum()
     }
 
     /// Runs a kernel over workgroups.

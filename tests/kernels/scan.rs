@@ -11,6 +11,7 @@ const STRETCH: usize = 64 * CHUNK;
 fn rig(cells: usize) -> Rig {
     let mut rig = Rig::new(&World::plain());
     rig.constant("CHUNK", CHUNK as f64);
+    rig.constant("FEW_STRETCHES", 0.0);
     rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, ..Default::default() });
     rig
 }
@@ -31,7 +32,7 @@ fn prefix(counts: &[u32]) -> Vec<u32> {
 }
 
 /// Numbers of cells around whole fours, chunks and workgroups of chunks.
-const CELLS: [usize; 8] = [4, 61, 62, 63, 64, 64 * 64 - 1, 64 * 64 + 4, 30_001];
+const CELLS: [usize; 8] = [4, 61, 62, 63, 64, 64 * 64 - 1, 64 * 64 + 4, 90_001];
 
 /// The counts, and zeros to the end of the chunk that has the cell behind the last.
 fn with_end(counts: &[u32]) -> Vec<u32> {
@@ -98,6 +99,15 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         of_chunks.resize(64 * (cells / STRETCH + 1), 7);
         rig.put("chunk_sums", &of_chunks);
         rig.put("stretch_sums", &of_stretches[..cells / STRETCH + 1]);
+        rig.put("cell_start", &all);
+        rig.run("scan_cells", cells / CHUNK + 1);
+        assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
+        // Few stretches are summed here.
+        let stretches = cells / STRETCH + 1;
+        rig.constant("FEW_STRETCHES", stretches as f64);
+        let mut of_stretches = sums(&all, STRETCH);
+        of_stretches.resize(stretches.next_multiple_of(4), 7);
+        rig.put("stretch_sums", &of_stretches);
         rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);

@@ -1,9 +1,9 @@
-//! `screen`: neighbours behind a wall leave the lists, against a crossing test in f64.
+//! `complete_lists`: neighbours behind a wall leave the lists, against a crossing test in f64.
 
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuFlight, GpuStep};
 
-use crate::neighbour_lists::{DIRECT, put_flights, put_lists, put_to_screen, tails_of};
+use crate::neighbour_lists::{DIRECT, put_flights, put_lists, put_to_complete, tails_of};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::along;
 use crate::oracle::walls::parted;
@@ -55,9 +55,10 @@ fn lists_lose_exactly_those_behind_a_wall() {
     // All but the last are to be screened.
     let mut screened: Vec<u32> = (0..COUNT as u32 - 1).collect();
     stream.shuffle(&mut screened);
-    put_to_screen(&mut rig, COUNT, &screened);
+    put_to_complete(&mut rig, COUNT, &screened);
+    rig.put("layers", &vec![UNSCREENED; COUNT]);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
-    rig.run("screen", screened.len());
+    rig.run("complete_lists", screened.len());
     let kept = crate::neighbour_lists::lists(&rig, COUNT, tails_of(lists.iter().map(Vec::len)));
     // Triangles reach the tolerance beyond their edges; f32 coordinates of .1 m err by a tenth of that.
     let slack = 4.0 * world.walls.tolerance;

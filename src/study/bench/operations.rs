@@ -130,7 +130,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let filled = work.chunks * CHUNK as f64 / 4.0;
             let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
             // Of the others of a stretch half come before, in the mean.
-            let before = counted.turn("scan_cells", "for (var four = chunk / WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
+            let before =
+                counted.turn("scan_cells", "for (var four = stretch * (WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
             let sum = counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64);
             (own + before + sum) * chunks
                 + counted.turn("scan_sums", "for (")? * (fours / 8.0)
