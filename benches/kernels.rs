@@ -184,7 +184,7 @@ impl Bench {
             ("stretch_sums", device.storage::<u32>("stretch_sums", chunks.div_ceil(64) as u64)?),
             ("cell_start", device.storage::<u32>("cell_start", all.len() as u64)?),
         ];
-        let constants = [("CHUNK", chunk as f64)];
+        let constants = [("CHUNK", chunk as f64), ("FEW_STRETCHES", 0.0)];
         let mut dispatches = Vec::new();
         for (name, groups) in [
             ("scan_sums", self.groups(chunks, 64)),

@@ -17,6 +17,8 @@ pub const CHUNK: u64 = 64;
 const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 /// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
 pub const FEW_STRETCHES: u64 = 64;
+/// Cells that a thread empties (`shaders/reset.wgsl`).
+pub const RESET_CELLS: u64 = 16;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).

@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, RECORD, step_stride};
+use super::buffers::{CHUNK, CellBuffers, RECORD, RESET_CELLS, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -34,9 +34,6 @@ pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ASKED: u32 = 2;
-
-/// Cells that a thread empties (`shaders/reset.wgsl`).
-const RESET_CELLS: u64 = 16;
 
 /// Particles per workgroup of the tally: WORKGROUP threads x CHUNK_LOOPS.
 const TALLY_CHUNK: u64 = 64 * 32;

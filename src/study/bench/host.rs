@@ -4,13 +4,19 @@ use std::time::SystemTime;
 
 use serde_json::{Value, json};
 
-/// The environment variable by which lavapipe is told how many threads to take.
+/// The environment variable by which lavapipe is told how many threads to hand its work to.
 pub const THREADS: &str = "LP_NUM_THREADS";
 
 /// Of a software device: as many as it is told to take, or all cores.
 pub fn threads() -> f64 {
-    let told = std::env::var(THREADS).ok().and_then(|text| text.parse::<usize>().ok()).filter(|&n| n > 0);
-    told.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1) as f64
+    told_threads(std::env::var(THREADS).ok().as_deref())
+        .or_else(|| std::thread::available_parallelism().ok().map(usize::from))
+        .unwrap_or(1) as f64
+}
+
+/// Told to hand its work to none it does it in the thread that takes the commands.
+fn told_threads(told: Option<&str>) -> Option<usize> {
+    told?.parse().ok().map(|threads: usize| threads.max(1))
 }
 
 /// This moment, this host and this build, as JSON.
@@ -104,6 +110,12 @@ mod tests {
         assert_eq!(cpu_name(Some(text)).as_deref(), Some("A Processor 9000"));
         assert_eq!(cpu_name(Some("processor\t: 0\n")), None);
         assert_eq!(cpu_name(None), None);
+    }
+
+    #[test]
+    fn a_device_that_hands_its_work_to_nobody_is_one_thread() {
+        let told = [None, Some("many"), Some("0"), Some("1"), Some("8")].map(told_threads);
+        assert_eq!(told, [None, None, Some(1), Some(1), Some(8)]);
     }
 
     #[test]

@@ -19,12 +19,13 @@
 
 use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
 use crate::scene::Method;
-use crate::subdomain::CROWD;
+use crate::subdomain::{CROWD, RESET_CELLS};
 
 use super::work::{CHUNK, Work};
 
-/// The kernels of a step of a device alone, but for those of rare work.
-const COUNTED: [&str; 21] = [
+/// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count.
+const COUNTED: [&str; 22] = [
+    "reset",
     "inject",
     "bin",
     "arrange",
@@ -34,8 +35,8 @@ const COUNTED: [&str; 21] = [
     "scatter",
     "order",
     "start_flights",
-    "wall_times",
     "neighbours",
+    "complete_lists",
     "collide",
     "collide_crowded",
     "choose",
@@ -53,6 +54,7 @@ const FEWEST_TURNS: f64 = 4.0;
 
 // Beginnings of lines of the kernels, by which their branches and loops are found.
 const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
+const MEETING_WALLS: &str = "if (step.ghosts != GHOSTS_ASKED && (layers";
 const MUTUAL: &str = "if (other == NOBODY";
 const LISTED: &str = "for (var k = 0u; k < listed";
 const IN_ORDER: &str = "if (count <= MEMBERS)";
@@ -90,11 +92,10 @@ impl Counted {
     }
 
     /// The flight's way along the walls of one cell, up to which side the first shows.
-    fn walls(&self, kernel: &str) -> Option<Operations> {
-        let kernel = self.of(kernel)?;
+    fn walls(stretch: &Stretch) -> Option<Operations> {
         let rows = ["for (var z = ", "for (var y = "];
-        let rows = rows.iter().map(|text| Some(kernel.inner(text)?.straight())).sum::<Option<Operations>>()?;
-        Some(rows + kernel.inner("for (; k < list.y")?.around("if (approach <= 0.0)")?[0])
+        let rows = rows.iter().map(|text| Some(stretch.inner(text)?.straight())).sum::<Option<Operations>>()?;
+        Some(rows + stretch.inner("for (; k < list.y")?.around("if (approach <= 0.0)")?[0])
     }
 
     /// An entry of the list of one that chooses, up to the first test that most fail, and the rest.
@@ -123,7 +124,9 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
     Some(match phase {
-        "inject" => counted.straight("inject")? * work.newborns,
+        "inject" => {
+            counted.straight("inject")? * work.newborns + counted.straight("reset")? * (cells / RESET_CELLS as f64)
+        }
         "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
@@ -140,13 +143,15 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         }
         "sort" if rounds => {
             let order = counted.away_from_walls("order")? + counted.turn("order", "for (var k = begin >> 2u")?;
-            let walls = (counted.straight("wall_times")? + counted.walls("wall_times")?) * work.near_walls;
-            (counted.straight("scatter")? + order + counted.straight("start_flights")?) * n + walls
+            (counted.straight("scatter")? + order + counted.straight("start_flights")?) * n
         }
         "sort" => counted.straight("arrange")? * n,
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
+            let meeting = counted.of("complete_lists")?.inner(MEETING_WALLS)?;
+            let walls = counted.straight("complete_lists")? + meeting.straight() + Counted::walls(meeting)?;
             counted.straight("neighbours")? * n
+                + walls * work.near_walls
                 + counted.turn("neighbours", "for (; k < turns")? * turns
                 + counted.turn("neighbours", "for (; p < found")? * (0.5 * candidates)
         }
@@ -161,13 +166,12 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             counted.choices(work.lost_choosers, entries)? + alone * work.lost_choosers
         }
         "collide" => {
-            let cell = counted.straight("collide")? + counted.turn("collide", "if (bin < step.bins)")?;
             let few = counted.turn("collide", IN_ORDER)? + counted.turn("collide", COLLIDING)?;
             let crowds = counted.of("collide_crowded")?;
             let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * f64::from(turns)).sum::<Operations>();
             let crowd = crowds.straight() + crowds.inner(FITTING)?.straight() + network;
             let crowd = crowd + counted.turn("collide_crowded", COLLIDING)?;
-            cell * cells
+            counted.straight("collide")? * cells
                 + counted.turn("collide", "if (bin_end > begin + 1u)")? * work.shared
                 + few * work.few
                 + crowd * (work.shared - work.few)
@@ -179,7 +183,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             // Each hit as one of a flight of its own: the way to the wall and the way from it.
             let turn = counted.of("bounce")?.inner("loop {")?;
             let last = turn.around("if (hit.triangle == NOBODY)")?[0];
-            let hit = counted.straight("bounce")? + turn.straight() + last + counted.walls("bounce")? * 2.0;
+            let hit =
+                counted.straight("bounce")? + turn.straight() + last + Counted::walls(counted.of("bounce")?)? * 2.0;
             flight * n + hit * work.bounces
         }
         "tally" => {
@@ -270,7 +275,7 @@ mod tests {
             ("choosers", Work { choosers: 9.0, ..work }, &["choose", "settle"]),
             ("lost", Work { lost_choosers: 9.0, ..work }, &["lost"]),
             ("pairs", Work { candidates: 90.0, ..work }, &["neighbours"]),
-            ("walls", Work { near_walls: 9.0, ..work }, &["sort"]),
+            ("walls", Work { near_walls: 9.0, ..work }, &["neighbours"]),
             ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
             ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
             ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),

@@ -28,10 +28,11 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     // Its entry and its choice in.
     let matched = 3.0 * WORD;
     Some(match phase {
-        "inject" => work.newborns * (NEWBORN + PARTICLE),
+        // The cells' counters are emptied.
+        "inject" => work.newborns * (NEWBORN + PARTICLE) + cells * WORD,
         // State in; cell and place in the cell out; the cells' counters in and out.
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
-        // Counters in, and the starts out in their place; sums of stretches of cells out. (The counters are cleared outside of the phases.)
+        // Counters in, and the starts out in their place; sums of stretches of cells out.
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
         "sort" => {
@@ -131,6 +132,7 @@ mod tests {
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
+        assert_eq!(bytes("inject", cell, &cells), Some(64.0 * 4.0));
         let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };
         assert_eq!(
             ["choose", "settle", "lost"].map(|phase| bytes(phase, rounds, &chosen)),
