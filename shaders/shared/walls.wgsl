@@ -59,7 +59,8 @@ struct Hit {
 
 override TOLERANCE: f32;
 
-// Of each cell near walls: where its triangles start in `wall_list`, and its clearance.
+// Of each cell near walls: where its triangles start in `wall_list`, and its clearance, a plane, or SEVERAL and the number of the first of two entries
+// that have up to three.
 @group(0) @binding(20) var<storage, read> wall_start: array<vec2<u32>>;
 @group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
 // The classes of sixteen cells, two bits each, and how many cells before these are near walls: cut, or beside one that is.
@@ -103,17 +104,36 @@ fn near_among(classes: vec2<u32>, cell: u32) -> u32 {
 // What a step of a clearance is, in cells along a normal of 127.
 override CLEARANCE_UNIT: f32;
 
-// Whether the way between two points, the second less than a cell from the first, lies before the plane that all walls in the 27 cells
-// around are behind. `c` is near walls, the `near`-th that is, and the nearest cell to the first point; of one that is not in it nothing is known.
-fn before_walls(c: vec3<u32>, near: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
-    let plane = wall_start[near].y;
+const SEVERAL: u32 = 0x80;
+// All points are before it.
+const NO_PLANE: u32 = 0x80000000;
+
+// Whether two points, seen from the middle of a cell, are before a plane.
+fn before_plane(plane: u32, from_middle: vec3<f32>, to_middle: vec3<f32>) -> bool {
     let normal = vec3<f32>(bitcast<vec3<i32>>(vec3<u32>(plane << 24u, plane << 16u, plane << 8u)) >> vec3<u32>(24u));
     let least = f32(bitcast<i32>(plane) >> 24u) * (CLEARANCE_UNIT * f32(1u << CELL_BITS));
+    return min(dot(normal, from_middle), dot(normal, to_middle)) > least;
+}
+
+// Whether the way between two points, the second less than a cell from the first, lies before all planes of which each wall in the 27 cells
+// around is behind one. `c` is near walls, the `near`-th that is, and the nearest cell to the first point; of one that is not in it nothing is known.
+fn before_walls(c: vec3<u32>, near: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
     let middle = (c << vec3<u32>(CELL_BITS)) + (1u << (CELL_BITS - 1u));
     let from_middle = vec3<f32>(bitcast<vec3<i32>>(p - middle));
     let to_middle = vec3<f32>(bitcast<vec3<i32>>(q - middle));
-    return all(abs(from_middle) <= vec3<f32>(f32(1u << (CELL_BITS - 1u))))
-        && min(dot(normal, from_middle), dot(normal, to_middle)) > least;
+    if (any(abs(from_middle) > vec3<f32>(f32(1u << (CELL_BITS - 1u))))) {
+        return false;
+    }
+    let plane = wall_start[near].y;
+    if ((plane >> 24u) != SEVERAL) {
+        return before_plane(plane, from_middle, to_middle);
+    }
+    let pair = wall_start[plane & 0xffffffu];
+    if (!before_plane(pair.x, from_middle, to_middle) || !before_plane(pair.y, from_middle, to_middle)) {
+        return false;
+    }
+    let third = wall_start[(plane & 0xffffffu) + 1u].x;
+    return third == NO_PLANE || before_plane(third, from_middle, to_middle);
 }
 
 // Whether a point of the triangle's plane (relative to corner a) is at most `reach` outside its edges.

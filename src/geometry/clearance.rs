@@ -1,36 +1,45 @@
-//! A plane for each cell near walls that all walls in it and the 26 cells around lie behind, so that a flight whose ends are
-//! both before it meets none: a line that starts and ends on one side of a plane does not cross it.
+//! Up to [`PLANES`] planes for each cell near walls, of which each wall in it and the 26 cells around lies behind one, so that a flight whose ends are
+//! both before all of them meets none: a line that starts and ends on one side of a plane does not cross it.
 //!
-//! One word a cell: three signed bytes of a normal, its largest component 127 or -127, and the least of normal . (place -
-//! middle of the cell), in [`CLEARANCE_UNIT`] cells. All is rounded away from the walls. Of the normals of these walls and the mean of
-//! them it is the one that leaves the middle of the cell farthest before the plane: beside one flat wall that wall, to less than a
-//! tenth of a cell; along an edge a chamfer; and no help between two walls that face each other.
+//! A plane is one word: three signed bytes of a normal, its largest component 127 or -127, and the least of normal . (place -
+//! middle of the cell), in [`CLEARANCE_UNIT`] cells. All is rounded away from the walls. Alone it is, of the normals of these walls and the mean of
+//! them, the one that leaves the middle of the cell farthest before the plane: beside one flat wall that wall, to less than a
+//! tenth of a cell; along an edge a chamfer. Where more of the cell lies before several, one or two are planes that walls lie in, and the
+//! last is the best of the walls that are not behind these: in an edge or a corner, or between two walls that face each other, the walls themselves.
 
 use glam::DVec3;
 
 use super::sampling::map;
-use super::{CellClass, FixedTriangle, Grid, TriangleGrid};
+use super::{CellClass, Grid, TriangleGrid};
 
 /// What one step of the least is, in cells along a normal of 127. No place of the 27 cells has more than 1.5 x 3 x 127 = 571.5.
 pub const CLEARANCE_UNIT: f64 = 5.0;
-/// No place is before a plane with this least: 635.
-const NOWHERE: i8 = 127;
+/// No place is before this plane: 0 > 635.
+pub const NOWHERE: u32 = 0x7f00_0000;
+/// The leasts of planes are less than this, and more than that of [`NO_PLANE`].
+const LEASTS: f64 = 127.0;
+/// All places are before this one.
+pub const NO_PLANE: u32 = 0x8000_0000;
+/// Planes of a cell.
+pub const PLANES: usize = 3;
 /// Of a least, more than rounding of f32 makes of it.
 const SLACK: f64 = 0.01;
 /// So many triangles around a cell and directions of them are looked at, and where there are more triangles, no place is before a
 /// plane: what it costs to find planes stays a small part of a set-up, whatever the mesh.
 const MOST_TRIANGLES: usize = 64;
 const MOST_NORMALS: usize = 8;
+/// And so many planes that walls lie in.
+const MOST_FACES: usize = 6;
 
 /// One of each cell that is [`CellClass::Gas`] or [`CellClass::Cut`], in order. `margin` (m) must be that with which the lists were built.
-pub fn clearances(triangles: &TriangleGrid, grid: &Grid, margin: f64) -> Vec<u32> {
+pub fn clearances(triangles: &TriangleGrid, grid: &Grid, margin: f64) -> Vec<[u32; PLANES]> {
     let near: Vec<usize> = (0..triangles.class.len())
         .filter(|&cell| matches!(triangles.class[cell], CellClass::Gas | CellClass::Cut))
         .collect();
     map(near.len(), |k, _| clearance(triangles, grid, margin / grid.cell, near[k]))
 }
 
-fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) -> u32 {
+fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) -> [u32; PLANES] {
     let [nx, ny, _] = grid.cells.map(|n| n as usize);
     let place = [cell % nx, cell / nx % ny, cell / nx / ny];
     let mut near: Vec<u32> = Vec::new();
@@ -43,39 +52,155 @@ fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) ->
     }
     near.sort_unstable();
     near.dedup();
-    let nowhere = encoded(DVec3::ZERO, f64::from(NOWHERE));
+    let nowhere = [NOWHERE, NO_PLANE, NO_PLANE];
     if near.len() > MOST_TRIANGLES {
         return nowhere;
     }
     let middle = DVec3::from(place.map(|i| i as f64 + 0.5));
-    let near: Vec<&FixedTriangle> = near.iter().map(|&k| &triangles.triangles[k as usize]).collect();
-    let mut corners = Vec::new();
-    for triangle in &near {
-        let per_cell = f64::from(1u32 << grid.cell_bits);
+    let per_cell = f64::from(1u32 << grid.cell_bits);
+    let mut walls: Vec<(DVec3, Vec<DVec3>)> = Vec::new();
+    for triangle in near.iter().map(|&k| &triangles.triangles[k as usize]) {
         let drawn = triangle.corners.map(|corner| DVec3::from(corner.map(|q| f64::from(q) / per_cell)) - middle);
-        corners.extend(clipped(drawn.to_vec(), 1.5 + margin));
+        let seen = clipped(drawn.to_vec(), 1.5 + margin);
+        // What of it is seen from another cell of these alone is too far away.
+        if !seen.is_empty() {
+            walls.push((DVec3::from(triangle.normal.map(f64::from)), seen));
+        }
     }
     // Beside a wall that none of these cells lists (the end of the grid) nothing is known.
-    let mut best = (f64::INFINITY, nowhere);
-    let mut normals: Vec<DVec3> = Vec::new();
-    for normal in near.iter().map(|triangle| DVec3::from(triangle.normal.map(f64::from))) {
-        if !normals.contains(&normal) {
-            normals.push(normal);
+    Around::new(&walls, margin).planes().unwrap_or(nowhere)
+}
+
+/// Which of the walls around a cell: a bit of each.
+type Set = u64;
+
+fn set_of(walls: impl Iterator<Item = bool>) -> Set {
+    walls.enumerate().fold(0, |set, (k, is_in)| set | Set::from(is_in) << k)
+}
+
+/// A plane that the walls of some set lie behind.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: DVec3,
+    least: f64,
+}
+
+/// The walls around a cell, and the directions that planes may have.
+struct Around {
+    margin: f64,
+    normals: Vec<DVec3>,
+    /// By direction and wall, how far it reaches along that.
+    heights: Vec<Vec<f64>>,
+    /// By direction the walls that do not face the other way.
+    facing: Vec<Set>,
+    /// The walls that face in the direction, and those behind their plane, these included; of the mean direction none.
+    faces: Vec<(Set, Set)>,
+    all: Set,
+}
+
+impl Around {
+    /// Of walls with their normals and their corners, as far as they are near.
+    fn new(walls: &[(DVec3, Vec<DVec3>)], margin: f64) -> Around {
+        let mut normals: Vec<DVec3> = Vec::new();
+        for (normal, _) in walls {
+            if !normals.contains(normal) {
+                normals.push(*normal);
+            }
         }
+        let mean: DVec3 = normals.iter().sum();
+        normals.truncate(MOST_NORMALS);
+        let same = |normal: &DVec3| set_of(walls.iter().map(|(own, _)| own == normal));
+        let own: Vec<Set> = normals.iter().map(same).collect();
+        normals.push(mean);
+        let scaled = normals.iter().map(|normal| (normal * (127.0 / normal.abs().max_element())).round());
+        let normals: Vec<DVec3> = scaled.filter(|normal| normal.is_finite()).collect();
+        let height = |normal: DVec3, corners: &[DVec3]| corners.iter().map(|c| c.dot(normal)).fold(f64::MIN, f64::max);
+        let heights: Vec<Vec<f64>> =
+            normals.iter().map(|&n| walls.iter().map(|(_, corners)| height(n, corners)).collect()).collect();
+        let faces = own
+            .into_iter()
+            .zip(&heights)
+            .map(|(own, heights)| {
+                let top = highest(heights, own);
+                (own, set_of(heights.iter().map(|&height| height <= top)))
+            })
+            .collect();
+        let facing = normals.iter().map(|n| set_of(walls.iter().map(|(own, _)| own.dot(*n) > 0.0))).collect();
+        Around { margin, normals, heights, facing, faces, all: set_of(walls.iter().map(|_| true)) }
     }
-    let mean: DVec3 = normals.iter().sum();
-    normals.truncate(MOST_NORMALS);
-    normals.push(mean);
-    for normal in normals {
-        let normal = (normal * (127.0 / normal.abs().max_element())).round();
-        let farthest = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
-        let least = ((farthest + margin * normal.length()) / CLEARANCE_UNIT + SLACK).ceil();
-        let depth = least / normal.length();
-        if least < f64::from(NOWHERE) && depth < best.0 {
-            best = (depth, encoded(normal, least.max(-127.0)));
+
+    /// The plane of this direction behind which these walls lie, if there is one. If the first of them faces the other way what is before the plane is
+    /// behind the wall, and no gas.
+    fn behind(&self, direction: usize, walls: Set) -> Option<Plane> {
+        let (normal, heights) = (self.normals[direction], &self.heights[direction]);
+        let first = highest(heights, walls);
+        if highest(heights, walls & self.facing[direction]) < first {
+            return None;
         }
+        let farthest = first + self.margin * normal.length();
+        let least = (farthest / CLEARANCE_UNIT + SLACK).ceil().max(-LEASTS);
+        (least < LEASTS).then_some(Plane { normal, least })
     }
-    best.1
+
+    /// The plane behind which these walls lie, from which the middle of the cell is farthest.
+    fn best(&self, walls: Set) -> Option<Plane> {
+        let depth = |plane: &Plane| plane.least / plane.normal.length();
+        let planes = (0..self.normals.len()).filter_map(|direction| self.behind(direction, walls));
+        planes.min_by(|a, b| depth(a).total_cmp(&depth(b)))
+    }
+
+    /// The planes of these faces, and the best of the other walls.
+    fn after(&self, faces: &[usize]) -> Option<Vec<Plane>> {
+        let mut left = self.all;
+        let mut planes = Vec::with_capacity(PLANES);
+        for &face in faces {
+            planes.push(self.behind(face, self.faces[face].0)?);
+            left &= !self.faces[face].1;
+        }
+        if left != 0 {
+            planes.push(self.best(left)?);
+        }
+        Some(planes)
+    }
+
+    /// One, or as many as leave more of the cell free.
+    fn planes(&self) -> Option<[u32; PLANES]> {
+        if self.all == 0 {
+            return None;
+        }
+        let count = self.faces.len().min(MOST_FACES);
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        let ways = std::iter::once(vec![]).chain((0..count).map(|a| vec![a])).chain(pairs.map(|pair| pair.to_vec()));
+        let mut chosen = (0, None);
+        for planes in ways.filter_map(|faces| self.after(&faces)) {
+            let free = places_before(&planes);
+            if chosen.1.is_none() || free > chosen.0 {
+                chosen = (free, Some(planes));
+            }
+            if chosen.0 == PLACES.pow(3) {
+                break;
+            }
+        }
+        let mut words = [NO_PLANE; PLANES];
+        words.iter_mut().zip(chosen.1?).for_each(|(word, plane)| *word = encoded(plane.normal, plane.least));
+        Some(words)
+    }
+}
+
+/// Places along an axis of a cell that are looked at.
+const PLACES: usize = 4;
+
+/// How many of them lie before all planes.
+fn places_before(planes: &[Plane]) -> usize {
+    let at = |k: usize| (k as f64 + 0.5) / PLACES as f64 - 0.5;
+    let places =
+        (0..PLACES.pow(3)).map(|k| DVec3::new(at(k % PLACES), at(k / PLACES % PLACES), at(k / PLACES / PLACES)));
+    let before = |place: DVec3, plane: &Plane| place.dot(plane.normal) > plane.least * CLEARANCE_UNIT;
+    places.filter(|&place| planes.iter().all(|plane| before(place, plane))).count()
+}
+
+fn highest(heights: &[f64], walls: Set) -> f64 {
+    heights.iter().enumerate().filter(|(k, _)| walls >> k & 1 == 1).map(|(_, &height)| height).fold(f64::MIN, f64::max)
 }
 
 fn encoded(normal: DVec3, least: f64) -> u32 {

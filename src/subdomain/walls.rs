@@ -1,11 +1,18 @@
 //! The walls as the device sees them: triangles in quanta, and the lists of the cells they touch.
 
-use crate::geometry::{CellClass, Grid, Lists, TriangleGrid, clearances};
+use std::collections::HashMap;
+
+use crate::geometry::{CellClass, Grid, Lists, NO_PLANE, NOWHERE, TriangleGrid, clearances};
 
 use super::layout::{GpuMotion, GpuTriangle};
 
 /// No surface tally.
 const NOBODY: u32 = u32::MAX;
+
+/// Marks the number of an entry that has several planes, which no plane is: a normal with this least is none but `NO_PLANE`.
+const SEVERAL: u32 = NO_PLANE;
+/// The last such number.
+const LAST_SEVERAL: usize = 1 << 24;
 
 /// How far behind a wall a particle may be by rounding, and how far a triangle reaches beyond its edges,
 /// as a share of the longest side of the vessel. f32 sums of coordinates err by some 1e-7 of it.
@@ -14,7 +21,8 @@ const TOLERANCE: f64 = 1e-6;
 pub struct Walls {
     pub triangles: Vec<GpuTriangle>,
     /// First entry in `list` of each cell that has walls or is beside one that has, and its
-    /// [`clearance`](crate::geometry::clearances); and the end.
+    /// [`clearance`](crate::geometry::clearances), where it has several planes `SEVERAL` and the number of the entry that has them; and the end. Behind these,
+    /// in two entries each, such planes, those that cells have in common once.
     pub start: Vec<[u32; 2]>,
     /// Triangles by cell; behind them those of each wall that moves, by cell and by row, and where these begin.
     pub list: Vec<u32>,
@@ -106,10 +114,23 @@ impl Walls {
             class[triangle_grid.class.len() / 16][1] = start.len() as u32;
         }
         let tolerance = Walls::tolerance(grid);
-        for (entry, clearance) in start.iter_mut().zip(clearances(triangle_grid, grid, tolerance)) {
-            entry[1] = clearance;
-        }
+        let clearances = clearances(triangle_grid, grid, tolerance);
         start.extend(triangle_grid.start.last().map(|end| [*end, 0]));
+        let mut known = HashMap::new();
+        for (near, planes) in clearances.into_iter().enumerate() {
+            let [first, second, third] = planes;
+            let several = second != NO_PLANE && start.len() < LAST_SEVERAL;
+            start[near][1] = match known.get(&planes) {
+                _ if second == NO_PLANE => first,
+                Some(&entry) => entry,
+                None if several => {
+                    let entry = SEVERAL | start.len() as u32;
+                    start.extend([[first, second], [third, NO_PLANE]]);
+                    *known.entry(planes).or_insert(entry)
+                }
+                None => NOWHERE,
+            };
+        }
         Walls {
             triangles,
             start,
@@ -176,6 +197,7 @@ fn parting(triangle_grid: &TriangleGrid, grid: &Grid, parts: impl Fn(usize) -> b
 mod tests {
     use crate::geometry::Vessel;
     use crate::scene;
+    use std::collections::BTreeSet;
     use std::path::Path;
 
     use super::*;
@@ -206,7 +228,14 @@ mod tests {
                 listed += usize::from(ends[0] < ends[1]);
                 near += usize::from(matches!(built.class[cell], CellClass::Gas | CellClass::Cut));
             }
-            assert_eq!(walls.start.len(), near + 1, "an entry for each cell near walls, and the end");
+            // An entry for each cell near walls, and the end; behind it those of several planes, two each.
+            let several = walls.start[..near].iter().filter(|[_, plane]| plane >> 24 == SEVERAL >> 24);
+            let numbers: BTreeSet<usize> = several.map(|[_, plane]| (plane & 0xff_ffff) as usize).collect();
+            assert!(
+                !numbers.is_empty()
+                    && numbers.iter().eq((near + 1..walls.start.len()).step_by(2).collect::<Vec<_>>().iter())
+            );
+            assert!(numbers.iter().all(|&at| walls.start[at][1] != NO_PLANE && walls.start[at + 1][1] == NO_PLANE));
             assert!(listed > 0 && listed < near && near < grid.cell_count());
             filled[usize::from(grid.cell_count().is_multiple_of(16))] = true;
         }

@@ -168,15 +168,25 @@ impl World {
                 let first = cell / 16 * 16;
                 let near = (first..cell).filter(|&before| ![CLEAR, SOLID].contains(&self.class(before))).count();
                 let entry = self.walls.start[self.walls.class[first as usize / 16][1] as usize + near];
-                let [x, y, z, least] = entry[1].to_le_bytes().map(|byte| f64::from(byte as i8));
+                // One plane, or the number of the entries with several.
+                let planes = match entry[1].to_le_bytes() {
+                    [a, b, c, 0x80] => {
+                        let at = u32::from_le_bytes([a, b, c, 0]) as usize;
+                        self.walls.start[at..at + 2].as_flattened().to_vec()
+                    }
+                    _ => vec![entry[1]],
+                };
                 let size = f64::from(1u32 << cells.bits);
                 let from_middle = |p: [u32; 3]| -> Vector {
                     std::array::from_fn(|k| Cells::signed(p[k]) as f64 / size - f64::from(place[k]) - 0.5)
                 };
                 let [from, to] = ends.map(from_middle);
-                let along = |p: Vector| x * p[0] + y * p[1] + z * p[2];
-                from.iter().any(|d| d.abs() > 0.5)
-                    || along(from).min(along(to)) <= corpuscle::geometry::CLEARANCE_UNIT * least
+                let before = |plane: &u32| {
+                    let [x, y, z, least] = plane.to_le_bytes().map(|byte| f64::from(byte as i8));
+                    let along = |p: Vector| x * p[0] + y * p[1] + z * p[2];
+                    along(from).min(along(to)) > corpuscle::geometry::CLEARANCE_UNIT * least
+                };
+                from.iter().any(|d| d.abs() > 0.5) || !planes.iter().all(before)
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::triangle_grid::{EARLIER_Y, EARLIER_Z};
 use crate::geometry::{CLEARANCE_UNIT, CellClass, Grid, TriangleGrid, clearances};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::details::intersection_test_aabb_triangle;
 use parry3d_f64::shape::Triangle;
@@ -184,10 +184,12 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
     assert!(matches!(&error, GeometryError::DegenerateOnGrid { wall, .. } if wall == "wall `speck`"), "{error}");
 }
 
-/// Whether a place is before the plane of a cell's clearance, as `shaders/shared/walls.wgsl` has it.
-fn is_before(word: u32, from_middle: DVec3) -> bool {
-    let [x, y, z, least] = word.to_le_bytes().map(|byte| f64::from(byte as i8));
-    DVec3::new(x, y, z).dot(from_middle) > CLEARANCE_UNIT * least
+/// Whether a place is before all planes of a cell's clearance, as `shaders/shared/walls.wgsl` has it.
+fn is_before(planes: [u32; 3], from_middle: DVec3) -> bool {
+    planes.iter().all(|word| {
+        let [x, y, z, least] = word.to_le_bytes().map(|byte| f64::from(byte as i8));
+        DVec3::new(x, y, z).dot(from_middle) > CLEARANCE_UNIT * least
+    })
 }
 
 proptest! {
@@ -219,7 +221,7 @@ proptest! {
                             if !offset.abs().cmple(reach).all() {
                                 continue;
                             }
-                            prop_assert!(!is_before(plane, offset / grid.cell), "cell {} {:x} {}", cell, plane, offset);
+                            prop_assert!(!is_before(plane, offset / grid.cell), "cell {} {:x?} {}", cell, plane, offset);
                         }
                     }
                 }
@@ -237,9 +239,9 @@ proptest! {
     }
 }
 
-/// In the middle of a face of a box the plane is the face, to two units at most.
+/// In a box the planes are its faces, to two units at most: beside a face, along an edge, and in a corner.
 #[test]
-fn beside_a_flat_wall_the_plane_is_the_wall() {
+fn beside_flat_walls_the_planes_are_the_walls() {
     let size = DVec3::new(1.0, 1.03, 0.97);
     let vessel = Vessel::build(&[tank(size.to_array())]).unwrap();
     let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
@@ -248,22 +250,50 @@ fn beside_a_flat_wall_the_plane_is_the_wall() {
     let sliver = 2.0 * CLEARANCE_UNIT / 127.0;
     let near: Vec<usize> =
         (0..grid.cell_count()).filter(|&c| matches!(built.class[c], CellClass::Gas | CellClass::Cut)).collect();
-    let mut faces = 0;
+    let mut found = [0; 4];
     for (cell, plane) in near.iter().zip(planes) {
         let (low, high) = cell_box(&grid, *cell);
         let middle = 0.5 * (low + high);
+        if !(middle.cmpgt(DVec3::ZERO) & middle.cmplt(size)).all() {
+            continue;
+        }
         let away = |axis: usize| middle[axis].min(size[axis] - middle[axis]) / grid.cell;
-        let close: Vec<usize> = (0..3).filter(|&axis| away(axis) < 1.6).collect();
-        let &[axis] = close.as_slice() else { continue };
-        let inward = if middle[axis] < 0.5 * size[axis] { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
-        let wall = -inward * away(axis);
-        assert!(
-            !is_before(plane, wall + 1e-3 * inward) && is_before(plane, wall + sliver * inward),
-            "{cell} {plane:x}"
-        );
-        let beside = DVec3::AXES[(axis + 1) % 3];
-        assert!(is_before(plane, wall + sliver * inward + 1.4 * beside), "{cell} {plane:x}");
-        faces += 1;
+        let close: Vec<usize> = (0..3).filter(|&axis| away(axis) < 1.5).collect();
+        let inward = |axis: usize| if middle[axis] < 0.5 * size[axis] { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
+        // A sliver before all of them, and a little before one and a sliver before the others.
+        let before: DVec3 = close.iter().map(|&axis| (sliver - away(axis)) * inward(axis)).sum();
+        assert!(is_before(plane, before), "{cell} {plane:x?}");
+        for &axis in &close {
+            assert!(!is_before(plane, before + (1e-3 - sliver) * inward(axis)), "{cell} {plane:x?}");
+        }
+        if let &[axis] = close.as_slice() {
+            let beside = DVec3::AXES[(axis + 1) % 3];
+            assert!(is_before(plane, before + 1.4 * beside), "{cell} {plane:x?}");
+        }
+        found[close.len()] += 1;
     }
-    assert!(faces > 100, "{faces}");
+    assert!(found[1] > 100 && found[2] > 50 && found[3] >= 8, "{found:?}");
+}
+
+/// Between two walls that face each other there is a plane for either, and they leave all between free.
+#[test]
+fn between_walls_that_face_each_other_each_has_its_plane() {
+    let vessel = Vessel::build(&[tank([1.0, 1.0, 0.1])]).unwrap();
+    let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.1).unwrap();
+    let built = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();
+    let near = (0..grid.cell_count()).filter(|&c| matches!(built.class[c], CellClass::Gas | CellClass::Cut));
+    let sliver = 2.0 * CLEARANCE_UNIT / 127.0 * grid.cell;
+    let mut between = 0;
+    for (cell, planes) in near.zip(clearances(&built, &grid, 1e-6)) {
+        let (low, high) = cell_box(&grid, cell);
+        let middle = 0.5 * (low + high);
+        if middle.truncate().cmpge(DVec2::splat(0.2)).all() && middle.truncate().cmple(DVec2::splat(0.8)).all() {
+            for z in [sliver, 0.05, 0.1 - sliver] {
+                let place = middle.with_z(z) - middle;
+                assert!(is_before(planes, place / grid.cell), "{cell} {planes:x?} {place}");
+            }
+            between += 1;
+        }
+    }
+    assert!(between > 30, "{between}");
 }
