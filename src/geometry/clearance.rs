@@ -91,7 +91,7 @@ struct Around {
     normals: Vec<DVec3>,
     /// By direction and wall, how far it reaches along that.
     heights: Vec<Vec<f64>>,
-    /// By direction the walls that do not face the other way.
+    /// By direction the walls that face it by less than a right angle.
     facing: Vec<Set>,
     /// The walls that face in the direction, and those behind their plane, these included; of the mean direction none.
     faces: Vec<(Set, Set)>,
@@ -129,8 +129,8 @@ impl Around {
         Around { margin, normals, heights, facing, faces, all: set_of(walls.iter().map(|_| true)) }
     }
 
-    /// The plane of this direction behind which these walls lie, if there is one. If the first of them faces the other way what is before the plane is
-    /// behind the wall, and no gas.
+    /// The plane of this direction behind which these walls lie, if there is one. Where the first of them does not face the direction, what is before the plane
+    /// is behind that wall, and so no gas: there is none.
     fn behind(&self, direction: usize, walls: Set) -> Option<Plane> {
         let (normal, heights) = (self.normals[direction], &self.heights[direction]);
         let first = highest(heights, walls);
