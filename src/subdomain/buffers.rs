@@ -17,6 +17,10 @@ pub const CHUNK: u64 = 64;
 const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 /// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
 pub const FEW_STRETCHES: u64 = 64;
+/// Whether so many bins are few stretches.
+pub fn few_stretches(bins: u64) -> bool {
+    bins / STRETCH < FEW_STRETCHES
+}
 /// Cells that a thread empties (`shaders/reset.wgsl`).
 pub const RESET_CELLS: u64 = 16;
 /// Words per zone and gas (`shaders/tally.wgsl`).
@@ -196,11 +200,6 @@ impl CellBuffers {
     /// Of the starts of so many bins and of the end, which kernels write by chunks.
     pub fn start_bytes(bins: u64) -> u64 {
         4 * CHUNK * (bins / CHUNK + 1)
-    }
-
-    /// Whether so many bins are few stretches.
-    pub fn few_stretches(bins: u64) -> bool {
-        bins / STRETCH < FEW_STRETCHES
     }
 
     pub fn bytes(&self) -> u64 {

@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, RECORD, RESET_CELLS, step_stride};
+use super::buffers::{CHUNK, CellBuffers, RECORD, RESET_CELLS, few_stretches, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -246,9 +246,15 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
-    /// Empties lists and cells.
+    /// Empties lists and cells; of many cells by clears of buffers, each of which a small step would wait for.
     fn reset(&self, rec: &mut Recording<'_>, phase: &'static str) {
-        let cells = if self.kernels.sort.is_some() { CellBuffers::start_bytes(self.bins()) / 4 } else { 1 };
+        let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
+        let mut cells = CellBuffers::start_bytes(bins) / 4;
+        if !few_stretches(bins) {
+            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(4 * cells));
+            rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
+            cells = 1;
+        }
         let groups = threads(rec.device(), cells.div_ceil(RESET_CELLS));
         self.kernels.reset.dispatch(rec.phase(phase), 0, groups);
     }
@@ -282,7 +288,7 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
             kernels.scan_sums.dispatch(pass, offset, chunks);
-            if !CellBuffers::few_stretches(self.bins()) {
+            if !few_stretches(self.bins()) {
                 kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
             }
             kernels.scan_cells.dispatch(pass, offset, chunks);

@@ -28,7 +28,8 @@ use crate::gpu::{BoundKernel, Constants, Device, GpuError, PhaseTimer, Readback,
 use crate::plan::Plan;
 
 pub use buffers::{
-    BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, RESET_CELLS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, most_particles,
+    BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, RESET_CELLS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, few_stretches,
+    most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};

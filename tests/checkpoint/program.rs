@@ -130,7 +130,7 @@ impl Program {
         command
             .env("NODEVICE_SELECT", "1")
             .env("NO_COLOR", "1")
-            .env("LP_NUM_THREADS", "1")
+            .env("LP_NUM_THREADS", "0")
             // More ranks than cores, also as root.
             .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
             .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")

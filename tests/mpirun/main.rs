@@ -162,7 +162,7 @@ fn mpirun(ranks: usize, case: &str) -> String {
         .args(["--bind-to", "none", "-n", &ranks.to_string()])
         .arg(std::env::current_exe().unwrap())
         .env(CASE, case)
-        .env("LP_NUM_THREADS", "1")
+        .env("LP_NUM_THREADS", "0")
         // More ranks than cores, also as root.
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")

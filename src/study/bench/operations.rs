@@ -125,7 +125,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let entries = candidates / n.max(1.0);
     Some(match phase {
         "inject" => {
-            counted.straight("inject")? * work.newborns + counted.straight("reset")? * (cells / RESET_CELLS as f64)
+            counted.straight("inject")? * work.newborns
+                + counted.straight("reset")? * (work.emptied / RESET_CELLS as f64)
         }
         "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
         "scan" => {

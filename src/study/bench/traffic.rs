@@ -28,8 +28,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     // Its entry and its choice in.
     let matched = 3.0 * WORD;
     Some(match phase {
-        // The cells' counters are emptied.
-        "inject" => work.newborns * (NEWBORN + PARTICLE) + cells * WORD,
+        "inject" => work.newborns * (NEWBORN + PARTICLE) + work.emptied * WORD,
         // State in; cell and place in the cell out; the cells' counters in and out.
         "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
         // Counters in, and the starts out in their place; sums of stretches of cells out.
@@ -132,7 +131,8 @@ mod tests {
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
-        assert_eq!(bytes("inject", cell, &cells), Some(64.0 * 4.0));
+        let emptied = Work { emptied: 64.0, ..Work::default() };
+        assert_eq!(bytes("inject", cell, &emptied), Some(64.0 * 4.0));
         let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };
         assert_eq!(
             ["choose", "settle", "lost"].map(|phase| bytes(phase, rounds, &chosen)),

@@ -2,7 +2,7 @@
 
 use crate::geometry::Grid;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS};
+use crate::subdomain::{GpuParticle, MEMBERS, few_stretches};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -14,6 +14,8 @@ pub struct Work {
     pub particle_steps: f64,
     /// Cells times steps, and of these the ones that hold a particle, and two or more.
     pub cell_steps: f64,
+    /// Of them those that a kernel empties: of many the buffers are cleared, outside of the phases.
+    pub emptied: f64,
     pub filled: f64,
     pub shared: f64,
     /// Particles in cells with two or more.
@@ -63,6 +65,7 @@ impl Work {
             steps,
             particle_steps,
             cell_steps: cells * steps,
+            emptied: if few_stretches(cells as u64) { cells * steps } else { 0.0 },
             filled: filled * steps,
             shared: shared * steps,
             gathered: gathered * steps,
