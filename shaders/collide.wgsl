@@ -11,7 +11,6 @@
 @group(0) @binding(54) var<storage, read_write> moved: array<u32>;
 @group(0) @binding(62) var<storage, read_write> crowds: array<u32>;
 
-
 // The numbers of a cell's particles by their ids, the first eight and the others.
 var<private> by_id: vec2<u32>;
 

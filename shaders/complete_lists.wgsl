@@ -104,10 +104,11 @@ fn complete_lists(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     // A pass over those that were asked later finds it done.
     let marks = layers[s];
     layers[s] = marks & ~INCOMPLETE;
-    if ((marks & LONG) != 0u && !lengthen(s)) {
-        return;
+    var whole = true;
+    if ((marks & LONG) != 0u) {
+        whole = lengthen(s);
     }
-    if ((marks & UNSCREENED) != 0u) {
+    if (whole && (marks & UNSCREENED) != 0u) {
         screen(s);
     }
     tell_cut_short();

@@ -12,7 +12,7 @@ const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
 const LIST_CROWDS: u32 = 3;
-// How many may meet a wall in the step; they are marked in `layers`, and in no list.
+// Only the number of those that may meet a wall in the step, who are in other lists.
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_INCOMPLETE: u32 = 10;
 const LIST_BOUNCE: u32 = 11;

@@ -15,7 +15,7 @@ use super::{CellClass, Grid, TriangleGrid};
 /// What one step of the least is, in cells along a normal of 127. No place of the 27 cells has more than 1.5 x 3 x 127 = 571.5.
 pub const CLEARANCE_UNIT: f64 = 5.0;
 /// No place is before this plane: 0 > 635.
-pub const NOWHERE: u32 = 0x7f00_0000;
+const NOWHERE: u32 = 0x7f00_0000;
 /// The leasts of planes are less than this, and more than that of [`NO_PLANE`].
 const LEASTS: f64 = 127.0;
 /// All places are before this one.
@@ -31,15 +31,22 @@ const MOST_NORMALS: usize = 8;
 /// And so many planes that walls lie in.
 const MOST_FACES: usize = 6;
 
+/// The planes of a cell, [`NO_PLANE`] behind the last, and the one that all walls are behind, [`NOWHERE`] if there is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Clearance {
+    pub planes: [u32; PLANES],
+    pub alone: u32,
+}
+
 /// One of each cell that is [`CellClass::Gas`] or [`CellClass::Cut`], in order. `margin` (m) must be that with which the lists were built.
-pub fn clearances(triangles: &TriangleGrid, grid: &Grid, margin: f64) -> Vec<[u32; PLANES]> {
+pub fn clearances(triangles: &TriangleGrid, grid: &Grid, margin: f64) -> Vec<Clearance> {
     let near: Vec<usize> = (0..triangles.class.len())
         .filter(|&cell| matches!(triangles.class[cell], CellClass::Gas | CellClass::Cut))
         .collect();
     map(near.len(), |k, _| clearance(triangles, grid, margin / grid.cell, near[k]))
 }
 
-fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) -> [u32; PLANES] {
+fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) -> Clearance {
     let [nx, ny, _] = grid.cells.map(|n| n as usize);
     let place = [cell % nx, cell / nx % ny, cell / nx / ny];
     let mut near: Vec<u32> = Vec::new();
@@ -52,7 +59,7 @@ fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) ->
     }
     near.sort_unstable();
     near.dedup();
-    let nowhere = [NOWHERE, NO_PLANE, NO_PLANE];
+    let nowhere = Clearance { planes: [NOWHERE, NO_PLANE, NO_PLANE], alone: NOWHERE };
     if near.len() > MOST_TRIANGLES {
         return nowhere;
     }
@@ -164,7 +171,7 @@ impl Around {
     }
 
     /// One, or as many as leave more of the cell free.
-    fn planes(&self) -> Option<[u32; PLANES]> {
+    fn planes(&self) -> Option<Clearance> {
         if self.all == 0 {
             return None;
         }
@@ -181,9 +188,10 @@ impl Around {
                 break;
             }
         }
-        let mut words = [NO_PLANE; PLANES];
-        words.iter_mut().zip(chosen.1?).for_each(|(word, plane)| *word = encoded(plane.normal, plane.least));
-        Some(words)
+        let encoded = |plane: Plane| encoded(plane.normal, plane.least);
+        let mut planes = [NO_PLANE; PLANES];
+        planes.iter_mut().zip(chosen.1?).for_each(|(word, plane)| *word = encoded(plane));
+        Some(Clearance { planes, alone: self.best(self.all).map_or(NOWHERE, encoded) })
     }
 }
 

@@ -25,7 +25,7 @@ mod vessel;
 
 pub use blocks::block_volumes;
 pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
-pub use clearance::{CLEARANCE_UNIT, NO_PLANE, NOWHERE, clearances};
+pub use clearance::{CLEARANCE_UNIT, Clearance, NO_PLANE, clearances};
 pub use closed::check_closed;
 pub use error::GeometryError;
 pub use grid::{Grid, GridError};

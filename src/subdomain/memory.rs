@@ -18,7 +18,7 @@ pub struct Memory {
 }
 
 /// Its class, and its share of how many cells before sixteen are near walls; whether a wall may part the gas there: bytes of a cell
-/// (`DomainBuffers`). Eight more of each cell near walls, and their lists, are not counted.
+/// (`DomainBuffers`). Eight more of each cell near walls, their lists and sets of planes are not counted.
 const WALLS_OF_A_CELL: f64 = 8.0 / 16.0 + 1.0 / 8.0;
 /// What walls at rest leave of it, and its place in the list of those that moving walls touch.
 const MOVED_OF_A_CELL: f64 = size_of::<GpuStillGas>() as f64 + 4.0;

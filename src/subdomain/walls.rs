@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::geometry::{CellClass, Grid, Lists, NO_PLANE, NOWHERE, TriangleGrid, clearances};
+use crate::geometry::{CellClass, Clearance, Grid, Lists, NO_PLANE, TriangleGrid, clearances};
 
 use super::layout::{GpuMotion, GpuTriangle};
 
@@ -11,8 +11,8 @@ const NOBODY: u32 = u32::MAX;
 
 /// Marks the number of an entry that has several planes, which no plane is: a normal with this least is none but `NO_PLANE`.
 const SEVERAL: u32 = NO_PLANE;
-/// The last such number.
-const LAST_SEVERAL: usize = 1 << 24;
+/// Entries with several planes, at most: beside curved walls few cells have theirs in common. Cells beyond have one.
+const MOST_SEVERAL: usize = 1 << 20;
 
 /// How far behind a wall a particle may be by rounding, and how far a triangle reaches beyond its edges,
 /// as a share of the longest side of the vessel. f32 sums of coordinates err by some 1e-7 of it.
@@ -117,18 +117,18 @@ impl Walls {
         let clearances = clearances(triangle_grid, grid, tolerance);
         start.extend(triangle_grid.start.last().map(|end| [*end, 0]));
         let mut known = HashMap::new();
-        for (near, planes) in clearances.into_iter().enumerate() {
+        let most = (start.len() + MOST_SEVERAL).min(1 << 24);
+        for (near, Clearance { planes, alone }) in clearances.into_iter().enumerate() {
             let [first, second, third] = planes;
-            let several = second != NO_PLANE && start.len() < LAST_SEVERAL;
             start[near][1] = match known.get(&planes) {
                 _ if second == NO_PLANE => first,
                 Some(&entry) => entry,
-                None if several => {
+                None if start.len() + 2 <= most => {
                     let entry = SEVERAL | start.len() as u32;
                     start.extend([[first, second], [third, NO_PLANE]]);
                     *known.entry(planes).or_insert(entry)
                 }
-                None => NOWHERE,
+                None => alone,
             };
         }
         Walls {

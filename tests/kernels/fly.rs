@@ -1,4 +1,4 @@
-//! `wall_times` within a bound of f64, `advect` to the last bit of v dt.
+//! `complete_lists` within a bound of f64, `advect` to the last bit of v dt.
 
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep};

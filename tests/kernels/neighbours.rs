@@ -9,6 +9,7 @@ use crate::neighbour_lists::{
     DIRECT, TAILS, complete_lists, lists, put_flights, put_room, put_to_complete, tails_of, to_complete_of,
 };
 use crate::oracle::random::Stream;
+use crate::oracle::walls::parted;
 use crate::rig::*;
 
 const COUNT: usize = 1500;
@@ -168,6 +169,44 @@ fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
         assert!(total < before && total > 0, "{near2}");
         before = total;
     }
+}
+
+/// Long lists get their tail and lose from it who stands behind a wall, by one thread; some are short then.
+#[test]
+fn tails_lose_exactly_those_behind_a_wall() {
+    let world = crate::screen::parted_tank();
+    let cells = world.cells();
+    let mut stream = Stream::new(20);
+    // At rest, so that flights start where the search looks.
+    let mut particles = world.particles(&mut stream, COUNT, 0.0);
+    particles.sort_by_key(|p| cells.index(cells.cell(p.position)));
+    let middles: Vec<[u32; 3]> = particles.iter().map(|p| p.position).collect();
+    let of = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let mut crowd = crowd_at(world, middles, of);
+    crowd.rig.put("sorted", &particles);
+    let found = crowd.run();
+    let near_wall = |s: usize| crowd.world.class(cells.index(cells.cell(crowd.middles[s]))) != CLEAR;
+    let place = |s: usize| crowd.world.metres(crowd.middles[s]);
+    let slack = 4.0 * crowd.world.walls.tolerance;
+    let (mut lost, mut shortened, mut long) = (0, 0, 0);
+    for (s, (list, pairs)) in found.iter().zip(crowd.all_pairs()).enumerate() {
+        let list: BTreeSet<u32> = list.iter().copied().collect();
+        assert!(list.is_subset(&pairs), "particle {s}");
+        for &j in &pairs {
+            let other = j as usize;
+            let tested = near_wall(s) || near_wall(other);
+            match parted(&crowd.world.triangles, place(s), place(other), slack) {
+                Some(true) if tested => assert!(!list.contains(&j), "{s} has {j}, behind a wall"),
+                None if tested => {}
+                _ => assert!(list.contains(&j), "{s} lacks {j}"),
+            }
+        }
+        lost += pairs.len() - list.len();
+        shortened += usize::from(pairs.len() > DIRECT && list.len() <= DIRECT);
+        long += usize::from(list.len() > DIRECT && list.len() < pairs.len());
+    }
+    // The check can fail: many are behind the plate.
+    assert!(lost > 100 && shortened > 0 && long > 50, "{lost} lost, {shortened} shortened, {long} long");
 }
 
 /// Where there is no room for all tails, some lists keep what is interleaved, and what all wanted is told.

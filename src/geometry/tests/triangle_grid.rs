@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::triangle_grid::{EARLIER_Y, EARLIER_Z};
-use crate::geometry::{CLEARANCE_UNIT, CellClass, Grid, TriangleGrid, clearances};
+use crate::geometry::{CLEARANCE_UNIT, CellClass, Clearance, Grid, TriangleGrid, clearances};
 use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::details::intersection_test_aabb_triangle;
@@ -185,11 +185,13 @@ fn triangles_off_the_grid_or_below_its_resolution_are_errors() {
 }
 
 /// Whether a place is before all planes of a cell's clearance, as `shaders/shared/walls.wgsl` has it.
-fn is_before(planes: [u32; 3], from_middle: DVec3) -> bool {
-    planes.iter().all(|word| {
-        let [x, y, z, least] = word.to_le_bytes().map(|byte| f64::from(byte as i8));
-        DVec3::new(x, y, z).dot(from_middle) > CLEARANCE_UNIT * least
-    })
+fn is_before(clearance: Clearance, from_middle: DVec3) -> bool {
+    clearance.planes.iter().all(|&plane| is_before_plane(plane, from_middle))
+}
+
+fn is_before_plane(plane: u32, from_middle: DVec3) -> bool {
+    let [x, y, z, least] = plane.to_le_bytes().map(|byte| f64::from(byte as i8));
+    DVec3::new(x, y, z).dot(from_middle) > CLEARANCE_UNIT * least
 }
 
 proptest! {
@@ -221,6 +223,7 @@ proptest! {
                             if !offset.abs().cmple(reach).all() {
                                 continue;
                             }
+                            prop_assert!(!is_before_plane(plane.alone, offset / grid.cell), "cell {} {:x?}", cell, plane);
                             prop_assert!(!is_before(plane, offset / grid.cell), "cell {} {:x?} {}", cell, plane, offset);
                         }
                     }

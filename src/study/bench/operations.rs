@@ -136,7 +136,13 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             // Of the others of a stretch half come before, in the mean.
             let before =
                 counted.turn("scan_cells", "for (var four = stretch * (WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
-            let sum = counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64);
+            // Few stretches are summed by each chunk: half of them, by fours, in the mean.
+            let sum = if work.emptied > 0.0 {
+                let stretches = cells / work.steps.max(1.0) / (CHUNK * CHUNK) as f64;
+                counted.turn("scan_cells", "for (var four = 0u; four < stretch")? * (stretches / 8.0)
+            } else {
+                counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64)
+            };
             (own + before + sum) * chunks
                 + counted.turn("scan_sums", "for (")? * (fours / 8.0)
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
