@@ -1,10 +1,10 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl walls.wgsl
-// Flies the particles that meet no wall to the end of the step.
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl
+// Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
+// device alone, where cells are few, empties these for the next step.
 //
-// Reads `sorted` and in `particles` the flights (without collisions the particles), the number of particles behind
-// `cell_start`, the classes and clearances of the cells and `motions`; writes `particles` (in canonical order; dead slots in place of ghosts), and appends
+// Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `cell_start`, `stretch_sums`, `particles` (in canonical order; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
-// particle, which writes its own slot.
+// particle, which writes its own slot, and as many more as there are cells for.
 
 override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
@@ -12,14 +12,41 @@ override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
+@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
+
+// The list that the step before has filled.
+fn empty_bounces() {
+    let list = bounces_of(step.slot + 1u);
+    atomicStore(&counters[list], 0u);
+    atomicStore(&dispatches[3u * list], 0u);
+    atomicStore(&dispatches[3u * list + 1u], 1u);
+}
+
+// The share of a thread of so many.
+fn empty_cells(thread: u32, threads: u32) {
+    let fours = (step.bins / CHUNK + 1u) * (CHUNK / 4u);
+    for (var four = thread; four < fours; four += threads) {
+        cell_start[four] = vec4<u32>(0u);
+    }
+    if (thread < arrayLength(&stretch_sums)) {
+        stretch_sums[thread] = 0u;
+    }
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let s = linear(id, groups);
+    if (s == 0u) {
+        empty_bounces();
+        atomicStore(&counters[COUNT_DROPPED], 0u);
+    }
+    if (COLLISIONS && step.peers == 0u && few_stretches()) {
+        empty_cells(s, groups.x * groups.y * WORKGROUP);
+    }
     if (s >= step.total || (ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u)) {
         return;
     }
@@ -27,7 +54,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var motion: vec4<f32>;
     if (COLLISIONS) {
         // A slot behind the last particle, or a ghost.
-        var nobody = s >= cell_start[step.bins];
+        var nobody = s >= atomicLoad(&counters[COUNT_PRESENT]);
         if (step.peers > 0u) {
             nobody = (layers[s] & LAYER) != 0u;
         }
@@ -38,6 +65,9 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         place = sorted[s].place;
         motion = sorted[s].motion;
     } else {
+        if (!enter(s)) {
+            return;
+        }
         place = particles[s].place;
         if (VENTS && place.w == NOBODY) {
             return;
@@ -61,7 +91,7 @@ fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             }
             atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         }
-        bouncing[append(LIST_BOUNCE)] = s;
+        bouncing[append(bounces_of(step.slot))] = s;
         return;
     }
     let end = shifted(position, velocity * step.dt);

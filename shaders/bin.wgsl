@@ -1,17 +1,19 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl
-// Counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl
+// Puts the newborns behind the particles, counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
 // are then), and finds those that other devices need.
 //
-// Reads `particles`; writes `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
+// Reads `particles` and `newborns`; writes `particles[count ..]`, `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
 // owned here nor lies in the halo) and the counts where `scan_cells` puts the starts (`cell_start`, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
-// within the cell depends on the order of the threads; `order` replaces it by the rank of the id, `arrange` only in some cells.
+// within the cell depends on the order of the threads; `order` replaces it by the rank of the id, `arrange` only in some cells. On a device that is held
+// (counters.wgsl) nobody is in any cell, and nobody enters.
 
 // What part of the step's flight is flown to the place that decides the cell.
 override FLOWN: f32 = 0.5;
+override ROUNDS_OF_PAIRS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Packed>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<atomic<u32>>;
 @group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
@@ -20,6 +22,10 @@ override FLOWN: f32 = 0.5;
 fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = step.first + linear(id, groups);
     if (i >= step.count + step.newborns + step.arrivals) {
+        return;
+    }
+    if ((ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u) || !enter(i)) {
+        bins[i] = vec2<u32>(NOBODY, 0u);
         return;
     }
     let place = particles[i].place;

@@ -1,14 +1,15 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl slots.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
-// Sort, part 2: the particles in canonical order, by (cell, id).
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
+// Sort: the particles to the places of their cells, in the order in which `bin` has counted them.
 //
-// Reads `slots`, `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
+// Reads `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
 // `sorted`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, where ghosts wait until they are asked also
 // `firsts`, marks those that may meet a wall, and clears what the search and the rounds use. One thread per particle as they lie in
-// `particles`. Its place is a function of the set, not of any order (slots.wgsl).
+// `particles`. In which order the particles of a cell lie is a matter of the order of the threads; nothing that follows asks for it.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
 @group(0) @binding(12) var<storage, read_write> middles: array<u32>;
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
@@ -40,13 +41,14 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
-    let cell = bins[i].x;
+    let bin = bins[i];
+    let cell = bin.x;
     if (cell == NOBODY) {
         return;
     }
     let whole = particles[i];
     let own_id = id_of(whole.place.w);
-    let place = place_by_id(cell, own_id);
+    let place = cell_start[cell] + bin.y;
     sorted[place] = whole;
     let particle = particle_of(whole);
     let place_in_grid = cell_of(cell);

@@ -1,13 +1,9 @@
-//! uses: step.wgsl
+//! uses: step.wgsl counters.wgsl lists.wgsl stretches.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`, of few stretches the sums themselves, of more what `scan_stretches` made of them; reads counts and writes
-// starts in `cell_start`, by fours, up to a whole chunk. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
+// starts in `cell_start`, by fours, up to a whole chunk; writes COUNT_PRESENT. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
 // count is read.
-
-override CHUNK: u32;
-// So many stretches are summed here, by each chunk.
-override FEW_STRETCHES: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<vec4<u32>>;
@@ -38,7 +34,7 @@ fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     let stretch = chunk / WORKGROUP;
     let stretch_sum = stretch_sums[stretch / 4u];
     var before = stretch_sum[stretch % 4u];
-    if (step.bins / (CHUNK * WORKGROUP) < FEW_STRETCHES) {
+    if (few_stretches()) {
         var earlier = select(vec4<u32>(0u), stretch_sum, FOUR < vec4<u32>(stretch % 4u));
         for (var four = 0u; four < stretch / 4u; four++) {
             earlier += stretch_sums[four];
@@ -58,6 +54,9 @@ fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     sum += select(vec4<u32>(0u), among, FOUR < vec4<u32>(chunk % 4u));
     before += sum.x + sum.y + sum.z + sum.w;
     let own = among[chunk % 4u];
+    if (chunk == step.bins / CHUNK) {
+        atomicStore(&counters[COUNT_PRESENT], before + own);
+    }
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;
     if (own == 0u) {

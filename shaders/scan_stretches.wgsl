@@ -1,9 +1,7 @@
-//! uses: step.wgsl shares.wgsl
+//! uses: step.wgsl shares.wgsl stretches.wgsl
 // Scan, part 2, where there are more than a few stretches: their sums become exclusive prefix sums.
 //
 // Reads and writes `stretch_sums`. One workgroup; each thread takes one contiguous share.
-
-override CHUNK: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;

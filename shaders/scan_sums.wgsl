@@ -1,11 +1,8 @@
-//! uses: step.wgsl
-// Scan, part 1: how many particles each chunk of cells has, and each stretch of as many chunks as a workgroup has threads.
+//! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl stretches.wgsl
+// Scan, part 1: how many particles each chunk of cells has, and each stretch; and on a device alone empties the lists of the step before.
 //
 // Reads the counts in `cell_start`, by fours; writes `chunk_sums`, and adds to `stretch_sums` (zero before). One thread per chunk. The cell
-// behind the last, and those up to a whole chunk, are counted as ones without particles.
-
-// Cells of a chunk, a multiple of 32.
-override CHUNK: u32;
+// behind the last, and those up to a whole chunk, are counted as ones without particles. Of the lists those are left that `bin` and `advect` have to do with.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
@@ -15,6 +12,12 @@ override CHUNK: u32;
 @compute @workgroup_size(WORKGROUP)
 fn scan_sums(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let chunk = linear(id, groups);
+    if (step.peers == 0u && chunk < LISTS) {
+        if (chunk != LIST_BOUNCE && chunk != LIST_BOUNCE_ODD && chunk != COUNT_DROPPED) {
+            empty_list(chunk);
+        }
+        empty_parts(chunk);
+    }
     if (chunk > step.bins / CHUNK) {
         return;
     }

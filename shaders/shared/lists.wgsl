@@ -7,7 +7,8 @@
 // LIST_RECHOOSE + r are the particles that choose in round r. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
 // were asked for their choice; LIST_OUTBOX and
-// LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo.
+// LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo,
+// COUNT_PRESENT the particles that are in cells.
 const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
@@ -16,6 +17,7 @@ const LIST_CROWDS: u32 = 3;
 const LIST_NEAR_WALLS: u32 = 9;
 const LIST_INCOMPLETE: u32 = 10;
 const LIST_BOUNCE: u32 = 11;
+const LIST_BOUNCE_ODD: u32 = 27;
 const LIST_BORDER: u32 = 12;
 const LIST_CHANGED: u32 = 13;
 const LIST_OUTBOX: u32 = 14;
@@ -24,8 +26,14 @@ const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
 // The entries of the tails of neighbour lists.
 const LIST_TAILS: u32 = 29;
+const COUNT_PRESENT: u32 = 30;
 const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
+
+// Of the steps at even places in their interval, and of those at odd ones: `advect` empties the one that it does not fill.
+fn bounces_of(slot: u32) -> u32 {
+    return select(LIST_BOUNCE, LIST_BOUNCE_ODD, slot % 2u == 1u);
+}
 
 // Workgroups per dimension of an indirect dispatch.
 const GROUP_LIMIT: u32 = 65535;

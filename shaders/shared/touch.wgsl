@@ -1,3 +1,4 @@
+//! uses: choosers.wgsl
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
@@ -8,8 +9,21 @@ fn to_choose(s: u32, round: u32) {
     let chooses = CHOOSES << round;
     let mark = atomicOr(&layers[s], chooses);
     if ((mark & chooses) == 0u && (mark & LAYER) < max(step.depth, 1u)) {
-        rechoose[append(LIST_RECHOOSE + round)] = s;
+        rechoose[append_chooser(s, round)] = s;
     }
+}
+
+// As `append` of lists.wgsl, to the particle's part of the list.
+fn append_chooser(s: u32, round: u32) -> u32 {
+    let part = part_of_list(s);
+    let k = atomicAdd(&counters[length_of_part(part, round)], 1u);
+    let group = k / WORKGROUP * LIST_PARTS + part;
+    if (k % WORKGROUP == 0u) {
+        let list = LIST_RECHOOSE + round;
+        atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
+        atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
+    }
+    return group * WORKGROUP + k % WORKGROUP;
 }
 
 fn touch(s: u32) {

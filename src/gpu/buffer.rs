@@ -49,15 +49,6 @@ impl Device {
         self.create(name, bytes, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST)
     }
 
-    /// The same, which kernels may write.
-    ///
-    /// # Errors
-    /// If the device has no memory for it.
-    pub fn written_uniform(&self, name: &'static str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        self.create(name, bytes, usage)
-    }
-
     /// A buffer that copies can write and the host can map.
     ///
     /// # Errors

@@ -11,9 +11,9 @@ use super::exchange::Exchange;
 /// as well as with the pairs that are tried.)
 pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
 
-/// In the order of a step; `lost` and `blocks` are once an interval.
+/// In the order of a step; `lost` and `blocks` are once an interval, as is `reset` on a device alone.
 const PHASES: [&str; 14] = [
-    "inject",
+    "reset",
     "bin",
     "exchange",
     "scan",
@@ -60,7 +60,7 @@ pub fn step(
     rounds: u32,
     sampling: Sampling,
 ) -> Result<(), SimulationError> {
-    subdomain.inject(rec, slot);
+    subdomain.reset(rec);
     subdomain.bin(rec, slot);
     exchange.particles(subdomain, rec, slot)?;
     subdomain.scan(rec, slot);

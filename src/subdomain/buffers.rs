@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuError};
 
 use super::cell_table::CellTable;
-use super::constants::{Features, WORKGROUP};
+use super::constants::{Features, WORKGROUP, chooser_parts};
 use super::counters;
 use super::layout::{
     GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate, GpuVent,
@@ -21,8 +21,8 @@ pub const FEW_STRETCHES: u64 = 64;
 pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
 }
-/// Cells that a thread empties (`shaders/reset.wgsl`).
-pub const RESET_CELLS: u64 = 16;
+/// Cells that a thread empties, at most (`shaders/reset.wgsl`, `shaders/advect.wgsl`).
+pub const EMPTIED_CELLS: u64 = 16;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
 /// Words per surface (`shaders/bounce.wgsl`).
@@ -147,7 +147,7 @@ impl FixedBuffers {
         [coats, vents, parted, moved, shares]: [u64; 5],
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
-            step: device.written_uniform("step", step_slots * step_stride(device))?,
+            step: device.uniform("step", step_slots * step_stride(device))?,
             counters: device.storage::<u32>("counters", counters::ALL_WORDS as u64)?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
@@ -285,7 +285,8 @@ pub struct ParticleBuffers {
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the sort `slots`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. Parts of
+    /// `rechoose` leave less than a workgroup's worth of entries free each.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub middles: wgpu::Buffer,
@@ -324,7 +325,7 @@ impl ParticleBuffers {
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
-            rare: device.storage::<u32>("rare", capacity)?,
+            rare: device.storage::<u32>("rare", capacity + u64::from(WORKGROUP) * (chooser_parts(device) - 1))?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
@@ -384,7 +385,7 @@ impl<'a> Buffers<'a> {
             ("bounce", "sums") => &fixed.surface_sums,
             ("blocks", "sums") => &fixed.block_sums,
             ("weigh", "sums") => &exchange.histogram,
-            (_, "step" | "step_words") => &fixed.step,
+            (_, "step") => &fixed.step,
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,

@@ -61,7 +61,7 @@ impl Domain {
             surfaces: SURFACE_COPIES * input.patches.copy_words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
-        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan));
+        let constants = constants(device, plan, features, input.patches, input.walls, &Scales::new(plan));
         Ok(Domain {
             plan: plan.clone(),
             features,

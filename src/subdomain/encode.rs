@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, RECORD, RESET_CELLS, few_stretches, step_stride};
+use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, few_stretches, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -20,7 +20,8 @@ const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
 const LIST_CROWDS: u32 = 3;
 const LIST_INCOMPLETE: u32 = 10;
-const LIST_BOUNCE: u32 = 11;
+/// Of steps at even and at odd places in their interval.
+const LIST_BOUNCE: [u32; 2] = [11, 27];
 const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
 
@@ -52,6 +53,7 @@ impl Subdomain {
         tables: &Tables,
     ) -> Result<Vec<StepSlot>, GpuError> {
         let Steps { first, done, dt, tallied } = *steps;
+        self.emptied = false;
         // Work that was submitted before has seen the tables of its own interval.
         device.write(&self.fixed.coats, 0, &tables.coats);
         device.write(&self.fixed.vents, 0, &tables.vents);
@@ -118,7 +120,7 @@ impl Subdomain {
         let slot = StepSlot { dt: dt as f32, near2, ..self.at_rest(device) };
         self.write_parameters(device, &slot);
         let mut rec = Recording::new(device);
-        self.reset(&mut rec, "lists");
+        self.reset(&mut rec);
         self.bin(&mut rec, &slot);
         self.scan(&mut rec, &slot);
         self.sort(&mut rec, &slot);
@@ -246,8 +248,9 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
-    /// Empties lists and cells; of many cells by clears of buffers, each of which a small step would wait for.
-    fn reset(&self, rec: &mut Recording<'_>, phase: &'static str) {
+    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
+    /// which a small step would wait for.
+    pub fn reset(&self, rec: &mut Recording<'_>) {
         let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
         let mut cells = CellBuffers::start_bytes(bins) / 4;
         if !few_stretches(bins) {
@@ -255,20 +258,13 @@ impl Subdomain {
             rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
             cells = 1;
         }
-        let groups = threads(rec.device(), cells.div_ceil(RESET_CELLS));
-        self.kernels.reset.dispatch(rec.phase(phase), 0, groups);
-    }
-
-    pub fn inject(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        let device = rec.device();
-        self.reset(rec, "inject");
-        if let (Some(kernel), true) = (&self.kernels.inject, step.newborns > 0) {
-            let newborns = threads(device, u64::from(step.newborns));
-            kernel.dispatch(rec.phase("inject"), self.offset(device, step, 0), newborns);
+        if !self.emptied {
+            let groups = threads(rec.device(), cells.div_ceil(EMPTIED_CELLS));
+            self.kernels.reset.dispatch(rec.phase("reset"), 0, groups);
         }
     }
 
-    /// The particles that are here; those that come from other devices are binned as they arrive.
+    /// The particles that are here, and the newborns, which it puts behind them; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let slots = u64::from(step.count) + u64::from(step.newborns);
         self.bin_slots(rec, step, slots);
@@ -301,7 +297,6 @@ impl Subdomain {
         let slots = threads(device, u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals));
         if let Some(kernels) = &self.kernels.collisions {
             let pass = rec.phase("sort");
-            kernels.scatter.dispatch(pass, offset, slots);
             kernels.order.dispatch(pass, offset, slots);
             kernels.start_flights.dispatch(pass, offset, all(device, step));
         }
@@ -409,10 +404,20 @@ impl Subdomain {
         }
         let device = rec.device();
         let offset = self.offset(device, step, 0);
+        // As many threads as particles, or more where they empty cells.
+        let empties = self.kernels.sort.is_some() && self.place.is_alone() && few_stretches(self.bins());
+        let emptying = if empties { self.bins().div_ceil(EMPTIED_CELLS) } else { 0 };
+        let groups = threads(device, u64::from(step.total).max(emptying));
         let pass = rec.phase("advect");
-        self.kernels.advect.dispatch(pass, offset, all(device, step));
-        self.kernels.bounce.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_BOUNCE);
-        if !self.place.is_alone() {
+        self.kernels.advect.dispatch(pass, offset, groups);
+        self.kernels.bounce.dispatch_indirect(
+            pass,
+            offset,
+            &self.fixed.dispatches,
+            LIST_BOUNCE[step.slot as usize % 2],
+        );
+        self.emptied = self.place.is_alone();
+        if !self.emptied {
             self.count = step.total;
         }
     }

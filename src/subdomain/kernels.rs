@@ -7,7 +7,6 @@ use super::constants::Features;
 
 /// What a scene needs is there; what it lacks is not compiled.
 pub struct Kernels<K> {
-    pub inject: Option<K>,
     pub sort: Option<SortKernels<K>>,
     pub collisions: Option<CollisionKernels<K>>,
     pub cells: Option<CellKernels<K>>,
@@ -29,7 +28,6 @@ pub struct SortKernels<K> {
 
 /// Collisions of neighbours, in rounds.
 pub struct CollisionKernels<K> {
-    pub scatter: K,
     pub order: K,
     pub start_flights: K,
     pub neighbours: K,
@@ -100,7 +98,6 @@ impl<K> Kernels<K> {
         };
         let collisions = if features.rounds {
             Some(CollisionKernels {
-                scatter: make("scatter")?,
                 order: make("order")?,
                 start_flights: make("start_flights")?,
                 neighbours: make("neighbours")?,
@@ -136,7 +133,6 @@ impl<K> Kernels<K> {
             None
         };
         Ok(Kernels {
-            inject: if features.orifices { Some(make("inject")?) } else { None },
             sort,
             collisions,
             cells,

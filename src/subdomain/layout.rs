@@ -88,7 +88,7 @@ impl GpuParticle {
     }
 }
 
-/// `Newborn` of `shaders/inject.wgsl`.
+/// `Newborn` of `shaders/shared/newborn.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct GpuNewborn {

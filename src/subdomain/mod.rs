@@ -28,8 +28,8 @@ use crate::gpu::{BoundKernel, Constants, Device, GpuError, PhaseTimer, Readback,
 use crate::plan::Plan;
 
 pub use buffers::{
-    BLOCK_WORDS, CHUNK, COAT_WORDS, MOTION_ENTRIES, RESET_CELLS, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS, few_stretches,
-    most_particles,
+    BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS,
+    few_stretches, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
@@ -94,6 +94,8 @@ pub struct Subdomain {
     count: u32,
     staging: Vec<wgpu::Buffer>,
     spare_staging: Vec<wgpu::Buffer>,
+    /// The last step that was encoded leaves lists and cells empty for the next.
+    emptied: bool,
     /// A copy of the flights of each step, with their lists, before particles take their room.
     watched: Option<wgpu::Buffer>,
 }
@@ -147,6 +149,7 @@ impl Subdomain {
             count: particles.len() as u32,
             staging: Vec::new(),
             spare_staging: Vec::new(),
+            emptied: false,
             watched: None,
             domain,
         };
@@ -208,6 +211,7 @@ impl Subdomain {
     /// If the cells are over the device's limits.
     pub fn move_to(&mut self, device: &Device, place: Place) -> Result<(), GpuError> {
         self.place = place;
+        self.emptied = false;
         let peers = self.gpu_peers();
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
             let bins = bins_of(&self.place, &self.domain);

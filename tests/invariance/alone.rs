@@ -78,7 +78,7 @@ fn room_made_between_recorded_steps_loses_none() {
             let slots = subdomain.begin_interval(&device, &steps, &newborns, &tables).expect("room");
             let mut rec = Recording::new(&device);
             for (k, slot) in slots.iter().enumerate() {
-                subdomain.inject(&mut rec, slot);
+                subdomain.reset(&mut rec);
                 subdomain.bin(&mut rec, slot);
                 subdomain.scan(&mut rec, slot);
                 subdomain.sort(&mut rec, slot);

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::subdomain::{GpuFlight, GpuParticle, GpuStep, GpuUpdate};
+use corpuscle::subdomain::{GpuFlight, GpuNewborn, GpuParticle, GpuStep, GpuUpdate};
 
 use crate::local::Local;
 use crate::neighbour_lists::{self, DIRECT, put_flights, put_lists};
@@ -29,11 +29,17 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
     let cell = |p: &GpuParticle| cells.cell(cells.middle(p.position, p.velocity, DT));
     let of = |p: &GpuParticle| if p.tag == NOBODY { None } else { local.bin(cell(p)) };
     let mut rig = Rig::new(&world);
-    rig.put("particles", &particles);
+    // Those that enter are put there.
+    let entering =
+        |particle: &mut GpuParticle| GpuNewborn { particle: std::mem::take(particle), ..GpuNewborn::default() };
+    let mut slots = particles.clone();
+    rig.put("newborns", &slots[count..count + born].iter_mut().map(entering).collect::<Vec<_>>());
+    rig.put("particles", &slots);
     rig.put("bins", &vec![[7u32; 2]; COUNT]);
     rig.put("cell_start", &vec![0u32; local.step().bins as usize]);
     rig.put("border", &vec![[NOBODY; 2]; COUNT]);
-    let placed = GpuStep { count: count as u32, newborns: born as u32, dt: DT, ..local.step() };
+    let capacity = COUNT as u32;
+    let placed = GpuStep { count: count as u32, newborns: born as u32, capacity, dt: DT, ..local.step() };
     let first = count + born;
     for (here, more) in [(first, 0), (COUNT, arrivals)] {
         let start = if more > 0 { first as u32 } else { 0 };

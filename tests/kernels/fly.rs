@@ -108,16 +108,18 @@ fn advect_flies_the_free_and_lists_the_others() {
         let mut stream = Stream::new(16);
         let mut particles = world.particles(&mut stream, COUNT, 200.0);
         let first_id = 500_000;
-        let born: Vec<GpuNewborn> =
-            (0..50).map(|_| GpuNewborn { start: DT * stream.uniform() as f32, ..GpuNewborn::default() }).collect();
         // Some have got out, to a corner of the grid: without rounds `bounce` counts them.
         let lost = 200..220;
         for particle in &mut particles[lost.clone()] {
             (particle.position, particle.velocity) = ([(1 << cells.bits) / 2; 3], [0.0; 3]);
         }
-        for (k, particle) in particles.iter_mut().enumerate().take(born.len()) {
+        // The last have entered in this step.
+        let first = COUNT - 50;
+        for (k, particle) in particles[first..].iter_mut().enumerate() {
             particle.tag = GpuParticle::tag(0, first_id + k as u32);
         }
+        let entering = |&particle| GpuNewborn { particle, start: DT * stream.uniform() as f32, pad: [0; 3] };
+        let born: Vec<GpuNewborn> = particles[first..].iter().map(entering).collect();
         let flights: Vec<GpuFlight> = free_flights(COUNT)
             .into_iter()
             .map(|flight| GpuFlight {
@@ -130,7 +132,7 @@ fn advect_flies_the_free_and_lists_the_others() {
                 return flights[k].wall < DT;
             }
             // Those that enter in this step go to `bounce`, which knows when.
-            k < born.len() || world.may_hit(&particles[k], 0.0, DT)
+            k >= first || world.may_hit(&particles[k], 0.0, DT)
         };
         let mut rig = Rig::new(&world);
         rig.constant("COLLISIONS", f64::from(u8::from(collisions)));
@@ -148,8 +150,9 @@ fn advect_flies_the_free_and_lists_the_others() {
         rig.put("cell_start", &[0u32]);
         rig.step(GpuStep {
             peers: 1,
-            count: COUNT as u32 - 50,
+            count: first as u32,
             newborns: 50,
+            capacity: COUNT as u32,
             newborn_first_id: first_id,
             dt: DT,
             ..GpuStep::default()
@@ -278,12 +281,48 @@ fn places_behind_the_last_particle_are_dead() {
     put_flights(&mut rig, &free_flights(COUNT));
     rig.put("layers", &vec![1u32; COUNT]);
     rig.put("bouncing", &vec![0u32; COUNT]);
-    let cells: u32 = world.cells().counts.iter().product();
-    rig.put("cell_start", &vec![last as u32; cells as usize + 1]);
+    rig.set_counter(COUNT_PRESENT, last as u32);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("advect", COUNT);
     let found: Vec<GpuParticle> = rig.get("particles", COUNT);
     for s in 0..COUNT {
         assert_eq!(found[s].tag, if s < last { particles[s].tag } else { NOBODY }, "{s}");
+    }
+}
+
+/// On a device alone the cells, where they are few, and the list of those that the step before has left to `bounce` are empty afterwards; among
+/// others, and where cells are many, the cells are left.
+#[test]
+fn cells_are_emptied_for_the_next_step() {
+    let world = World::plain();
+    let mut particles = world.particles(&mut Stream::new(59), 100, 0.0);
+    particles.iter_mut().for_each(|particle| particle.velocity = [9e9; 3]);
+    // Cells of two stretches, and of the chunk behind.
+    let bins = 5000u32;
+    let all = bins as usize / 64 * 64 + 64;
+    for (few, peers, slot) in [(2, 0, 6), (2, 0, 7), (2, 1, 6), (1, 0, 6)] {
+        let mut rig = Rig::new(&world);
+        rig.constant("ROUNDS_OF_PAIRS", 0.0);
+        rig.constant("FEW_STRETCHES", f64::from(few));
+        rig.put("sorted", &particles);
+        rig.put("particles", &particles);
+        rig.put("bouncing", &vec![0u32; 100]);
+        rig.put("cell_start", &vec![9u32; all + 8]);
+        rig.put("stretch_sums", &[9u32; 4]);
+        let (own, other) = if slot % 2 == 0 { (LIST_BOUNCE, LIST_BOUNCE_ODD) } else { (LIST_BOUNCE_ODD, LIST_BOUNCE) };
+        rig.set_counter(COUNT_PRESENT, 100);
+        rig.set_counter(COUNT_DROPPED, 3);
+        rig.set_counter(other, 77);
+        rig.put("dispatches", &[5u32; 3 * LISTS]);
+        rig.step(GpuStep { count: 100, dt: DT, bins, size: [10, 10, 50], peers, slot, ..GpuStep::default() });
+        rig.run("advect", 100);
+        let emptied = few == 2 && peers == 0;
+        let cells: Vec<u32> = rig.get("cell_start", all + 8);
+        assert!(cells[..all].iter().all(|&cell| cell == if emptied { 0 } else { 9 }), "{few} {peers}");
+        assert_eq!(cells[all..], [9; 8]);
+        assert_eq!(rig.get::<u32>("stretch_sums", 4), [if emptied { 0 } else { 9 }; 4]);
+        assert_eq!([rig.counter(own), rig.counter(other), rig.counter(COUNT_DROPPED)], [100, 0, 0]);
+        let sizes: Vec<[u32; 3]> = rig.get("dispatches", LISTS);
+        assert_eq!([sizes[own], sizes[other]], [[5; 3], [0, 1, 5]]);
     }
 }

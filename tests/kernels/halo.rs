@@ -203,9 +203,10 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     let count = crowd.world.cells().count() as u32;
     let start: Vec<u32> = (0..=count).map(|c| bins.partition_point(|&own| own < c) as u32).collect();
     let mut rig = crowd.rig();
-    rig.put("bins", &bins.iter().map(|&bin| [bin, 0]).collect::<Vec<_>>());
+    // They lie in order.
+    let slot = |s: usize| s as u32 - start[bins[s] as usize];
+    rig.put("bins", &(0..COUNT).map(|s| [bins[s], slot(s)]).collect::<Vec<_>>());
     rig.put("cell_start", &start);
-    rig.put("slots", &crowd.particles.iter().map(GpuParticle::id).collect::<Vec<_>>());
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     for buffer in ["middles", "cells", "neighbour_count"] {
         rig.put(buffer, &vec![9u32; COUNT]);

@@ -1,6 +1,6 @@
 //! A device that is held, as its neighbour lists had too little room: what is left as it is, and `recall`.
 
-use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
+use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
 
 use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
@@ -57,7 +57,7 @@ fn a_device_that_is_held_changes_nothing() {
     let nothing = vec![0u32; COUNT];
     rig.put("sorted", &sorted);
     rig.put("particles", &sorted);
-    rig.put("cell_start", &vec![COUNT as u32; world.grid.cell_count() + 1]);
+    rig.set_counter(COUNT_PRESENT, COUNT as u32);
     rig.put("choices", &partners);
     rig.put("rechoose", &chosen);
     rig.put("pairs", &nothing);
@@ -91,15 +91,26 @@ fn a_device_that_is_held_changes_nothing() {
     }
 }
 
-/// The steps that follow have nobody.
+/// In the steps that follow nobody is in any cell, and nobody enters.
 #[test]
 fn the_steps_of_a_device_that_is_held_have_nobody() {
-    let mut rig = Rig::new(&World::plain());
-    let words: Vec<u32> = (1..=1000).collect();
-    rig.put("step_words", &words);
-    rig.run_groups("reset", [1, 1, 1]);
-    assert_eq!(rig.get::<u32>("step_words", words.len()), words);
-    rig.set_counter(HELD, 1);
-    rig.run_groups("reset", [1, 1, 1]);
-    assert_eq!(rig.get::<u32>("step_words", words.len()), vec![0; words.len()]);
+    let world = World::plain();
+    let particles = world.particles(&mut Stream::new(93), COUNT, 300.0);
+    let born = vec![GpuNewborn { particle: particles[1], ..GpuNewborn::default() }; 40];
+    let mut rig = Rig::new(&world);
+    rig.put("newborns", &born);
+    let (count, newborns, capacity) = (COUNT as u32 - 40, 40, COUNT as u32);
+    rig.step(GpuStep { count, newborns, capacity, ..GpuStep::default() });
+    for held in [0, 1] {
+        rig.put("particles", &particles);
+        rig.put("bins", &[[7u32; 2]; COUNT]);
+        rig.put("cell_start", &vec![0u32; world.grid.cell_count()]);
+        rig.set_counter(HELD, held);
+        rig.run("bin", COUNT);
+        let counted: u32 = rig.get::<u32>("cell_start", world.grid.cell_count()).iter().sum();
+        assert_eq!(counted, if held == 1 { 0 } else { COUNT as u32 });
+        let bins: Vec<[u32; 2]> = rig.get("bins", COUNT);
+        assert!(bins.iter().all(|bin| (bin[0] == NOBODY) == (held == 1)));
+        assert_eq!(rig.get::<GpuParticle>("particles", COUNT) == particles, held == 1);
+    }
 }

@@ -1,4 +1,4 @@
-//! `reset`, `inject` and `lost`: exactly.
+//! `reset`, newborns and `lost`: exactly.
 
 use corpuscle::subdomain::{GpuNewborn, GpuParticle, GpuStep};
 
@@ -33,15 +33,21 @@ fn reset_empties_every_list_and_nothing_else() {
     assert_eq!(counters[..LISTS], [0; LISTS]);
     // The check can fail: what is not a list keeps its noise.
     assert_eq!(counters[LISTS..], noise[LISTS..]);
+    rig.constant("LIST_PARTS", 16.0);
+    rig.run_groups("reset", [1, 1, 1]);
+    let counters: Vec<u32> = rig.get("counters", COUNTERS);
+    assert_eq!(counters[LISTS..CHOOSERS], noise[LISTS..CHOOSERS]);
+    assert_eq!(counters[CHOOSERS..HELD], [0; HELD - CHOOSERS], "the parts of those that choose");
+    assert_eq!(counters[HELD..], noise[HELD..]);
     let empty = [[0u32, 1, 1]; LISTS];
     assert_eq!(rig.get::<[u32; 3]>("dispatches", LISTS), empty);
     assert_eq!(rig.get::<[u32; 3]>("rechoose_dispatches", LISTS), empty);
     assert_eq!(rig.get::<[u32; 3]>("asked_dispatches", LISTS), empty);
 }
 
-/// `inject` appends the newborns of this step after the particles; those without room are counted.
+/// `bin`, and without collisions `advect`, puts the newborns of this step behind the particles; those without room are counted.
 #[test]
-fn inject_appends_newborns_and_counts_those_without_room() {
+fn newborns_come_behind_the_particles_and_those_without_room_are_counted() {
     let world = World::plain();
     let mut stream = Stream::new(2);
     let before = world.particles(&mut stream, 300, 400.0);
@@ -50,23 +56,42 @@ fn inject_appends_newborns_and_counts_those_without_room() {
         .into_iter()
         .map(|particle| GpuNewborn { particle, start: stream.uniform() as f32, pad: [0; 3] })
         .collect();
-    for room in [900usize, 412] {
+    for (kernel, room) in [("bin", 900usize), ("bin", 412), ("advect", 900), ("advect", 412)] {
         let mut rig = Rig::new(&world);
         let mut slots = before.clone();
         // (Behind them are the tails of neighbour lists.)
         slots.resize(room + 7, GpuParticle::default());
         rig.put("particles", &slots);
         rig.put("newborns", &born);
+        rig.put("sorted", &[GpuParticle::default(); 2]);
+        rig.put("bouncing", &[0u32; 900]);
+        rig.put("bins", &[[7u32; 2]; 900]);
+        rig.put("cell_start", &vec![0u32; world.grid.cell_count()]);
+        rig.constant("COLLISIONS", 0.0);
+        rig.constant("ROUNDS_OF_PAIRS", 0.0);
         let capacity = room as u32;
-        rig.step(GpuStep { count: 300, newborns: 200, newborn_offset: 77, capacity, ..GpuStep::default() });
-        rig.run("inject", 200);
+        // Nobody moves, so that it is where it was.
+        let newborn_first_id = u32::MAX / 2;
+        rig.step(GpuStep {
+            count: 300,
+            newborns: 200,
+            newborn_offset: 77,
+            newborn_first_id,
+            capacity,
+            ..GpuStep::default()
+        });
+        rig.run(kernel, 500);
         let found = 200.min(room - 300);
         for (slot, born) in slots[300..300 + found].iter_mut().zip(&born[77..]) {
             *slot = born.particle;
         }
-        assert!(rig.get::<GpuParticle>("particles", room + 7) == slots);
+        assert!(rig.get::<GpuParticle>("particles", room + 7) == slots, "{kernel}, {room}");
         // The check can fail: of the two rooms the smaller one does.
         assert_eq!(rig.counter(CAPACITY_FAILED), 200 - found as u32);
+        if kernel == "bin" {
+            let binned: Vec<[u32; 2]> = rig.get("bins", 500);
+            assert!(binned.iter().enumerate().all(|(k, bin)| (bin[0] == NOBODY) == (k >= 300 + found)));
+        }
     }
 }
 

@@ -81,7 +81,7 @@ impl Crowd {
         self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
         let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
         put_to_complete(&mut self.rig, COUNT, &near);
-        self.rig.put("rechoose", &vec![NOBODY; COUNT]);
+        self.rig.put("rechoose", &vec![NOBODY; COUNT + 16 * 64]);
         self.rig.run("neighbours", COUNT);
         complete_lists(&self.rig, LIST_INCOMPLETE);
         lists(&self.rig, COUNT, tails)
@@ -354,14 +354,64 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
     assert!(shorter > COUNT / 3 && near > 9 * total / 10, "{shorter} shorter, {near} of {total} near");
 }
 
+/// A crowd of these, with diameters that they can meet by.
+fn flying(mut particles: Vec<GpuParticle>, dt: f32) -> Crowd {
+    let world = World::plain();
+    let cells = world.cells();
+    let middle = |p: &GpuParticle| cells.middle(p.position, p.velocity, dt);
+    particles.sort_by_key(|p| cells.index(cells.cell(middle(p))));
+    let middles: Vec<[u32; 3]> = particles.iter().map(middle).collect();
+    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let packed = (128.0 * DIAMETER / world.grid.cell).powi(2).floor();
+    let mut crowd = crowd_at(world, middles, of);
+    crowd.rig.constant("DIAMETER", DIAMETER);
+    crowd.rig.constant("DIAMETER2_PACKED", packed);
+    crowd.rig.put("sorted", &particles);
+    put_flights(&mut crowd.rig, &free_flights(COUNT));
+    crowd.dt = dt;
+    crowd
+}
+
+/// In how many parts the list is of those that choose makes no difference to who they are and whom they choose; the dispatch covers
+/// all parts, and the room is that of all particles and less than a workgroup's worth for each part but one.
+#[test]
+fn those_that_choose_are_the_same_in_parts() {
+    let particles = World::plain().particles(&mut Stream::new(20), COUNT, 400.0);
+    let mut crowd = flying(particles, DT);
+    let mut of_one = (Vec::new(), Vec::new());
+    for parts in [1, 16] {
+        crowd.rig.constant("LIST_PARTS", parts as f64);
+        crowd.run();
+        let choosers = crowd.rig.choosers(0, parts);
+        assert!(choosers.len() > COUNT / 10 && choosers.len() < COUNT, "{}", choosers.len());
+        let [groups, y, _] = crowd.rig.get::<[u32; 3]>("dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
+        assert_eq!(y, 1);
+        assert!(64 * groups as usize <= COUNT + 64 * parts, "{groups}");
+        crowd.rig.run_groups("choose", [groups, 1, 1]);
+        let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
+        let chosen: Vec<[u32; 2]> = choosers.iter().map(|&s| choices[s as usize]).collect();
+        assert!(chosen.iter().filter(|choice| choice[0] != NOBODY).count() > 20);
+        if parts == 1 {
+            of_one = (choosers, chosen);
+            crowd.rig.put("dispatches", &[0u32; 3 * LISTS]);
+        } else {
+            assert!((choosers, chosen) == of_one, "{parts} parts");
+            let longest = (0..parts).map(|part| match part {
+                0 => crowd.rig.counter(LIST_RECHOOSE),
+                _ => crowd.rig.counter(CHOOSERS + (part - 1) * ROUND_WORDS),
+            });
+            let longest = longest.max().unwrap_or(0) as usize;
+            assert!(longest < of_one.0.len() / 8, "each has its part: {longest}");
+        }
+    }
+}
+
 /// The sieve before the choices keeps back nobody who has anybody to choose, of point particles and of rigid spheres, in steps
 /// from short to long, and most of those who have not.
 #[test]
 fn those_kept_from_choosing_have_nobody_to_choose() {
     let mut stream = Stream::new(19);
     let world = World::plain();
-    let cells = world.cells();
-    let edge = world.grid.cell;
     for (dt, rigid, wind) in [
         (1e-6, false, 0.0),
         (DT, false, 0.0),
@@ -375,19 +425,10 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
         particles.iter_mut().for_each(|p| p.velocity[0] += wind);
         // Two that fly together.
         particles[1] = GpuParticle { tag: particles[1].tag, ..particles[0] };
-        let middle = |p: &GpuParticle| cells.middle(p.position, p.velocity, dt);
-        particles.sort_by_key(|p| cells.index(cells.cell(middle(p))));
-        let middles: Vec<[u32; 3]> = particles.iter().map(middle).collect();
-        let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
-        let mut crowd = crowd_at(World::plain(), middles, of);
-        crowd.rig.constant("DIAMETER", DIAMETER);
-        crowd.rig.constant("DIAMETER2_PACKED", (128.0 * DIAMETER / edge).powi(2).floor());
+        let mut crowd = flying(particles, dt);
         crowd.rig.constant("RIGID", f64::from(u8::from(rigid)));
-        crowd.rig.put("sorted", &particles);
-        put_flights(&mut crowd.rig, &free_flights(COUNT));
-        crowd.dt = dt;
         crowd.run();
-        let choosers = crowd.rig.list("rechoose", LIST_RECHOOSE);
+        let choosers = crowd.rig.choosers(0, 1);
         assert!(crowd.rig.get::<[u32; 2]>("choices", COUNT).iter().all(|[partner, _]| *partner == NOBODY));
         // Now all.
         crowd.rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());

@@ -27,6 +27,8 @@ pub const LIST_OUTBOX: usize = 14;
 pub const LIST_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
 pub const LIST_ASKED: usize = 26;
+pub const LIST_BOUNCE_ODD: usize = 27;
+pub const COUNT_PRESENT: usize = 30;
 pub const COUNT_DROPPED: usize = 31;
 pub const LOST: usize = 34;
 pub const SAMPLED: usize = 35;
@@ -49,8 +51,10 @@ pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
 pub const CELL_COLLISIONS: usize = 53;
-pub const HELD: usize = 117;
-pub const HELD_PARTICLES: usize = 118;
+pub const CHOOSERS: usize = 117;
+pub const ROUND_WORDS: usize = 16;
+pub const HELD: usize = 357;
+pub const HELD_PARTICLES: usize = 358;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -250,6 +254,8 @@ impl Rig {
             ("QUANTA", 1.0 / grid.quantum()),
             ("TOLERANCE", world.walls.tolerance),
             ("CLEARANCE_UNIT", corpuscle::geometry::CLEARANCE_UNIT),
+            ("CHUNK", 64.0),
+            ("FEW_STRETCHES", 0.0),
             // Mirrors, unless a test gives the walls coats.
             ("COATS", 0.0),
             ("VENTS", 0.0),
@@ -287,7 +293,6 @@ impl Rig {
         rig.put("shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        rig.put("step_words", &[0u32; 8]);
         for buffer in ["cell_start", "stretch_sums", "cells", "middles", "neighbour_count"] {
             rig.put(buffer, &[0u32; 4]);
         }
@@ -359,8 +364,8 @@ impl Rig {
     /// Collisions in cells, whatever parts they are counted in.
     pub fn cell_collisions(&self) -> u32 {
         let words: Vec<u32> = self.get("counters", COUNTERS);
-        assert!(words[CELL_COLLISIONS + 1..HELD].iter().step_by(2).all(|&high| high == 0));
-        words[CELL_COLLISIONS..HELD].iter().step_by(2).sum()
+        assert!(words[CELL_COLLISIONS + 1..CHOOSERS].iter().step_by(2).all(|&high| high == 0));
+        words[CELL_COLLISIONS..CHOOSERS].iter().step_by(2).sum()
     }
 
     /// Runs a kernel over workgroups.
@@ -379,6 +384,22 @@ impl Rig {
 
     pub fn get<T: bytemuck::Pod>(&self, name: &str, items: usize) -> Vec<T> {
         device().read(&self.buffers[name], items).expect("the device's answer")
+    }
+
+    /// Those that choose in a round, in ascending order, of a list in so many parts (`LIST_PARTS`).
+    pub fn choosers(&self, round: usize, parts: usize) -> Vec<u32> {
+        let lengths: Vec<u32> = self.get("counters", COUNTERS);
+        let length = |part: usize| match part {
+            0 => lengths[LIST_RECHOOSE + round],
+            _ => lengths[CHOOSERS + (part - 1) * ROUND_WORDS + round],
+        } as usize;
+        let place = |part: usize, k: usize| (k / 64 * parts + part) * 64 + k % 64;
+        let most = (0..parts).map(|part| place(part, length(part)) + 1).max().unwrap_or(0);
+        let entries: Vec<u32> = self.get("rechoose", most);
+        let of_part = |part: usize| (0..length(part)).map(move |k| (part, k));
+        let mut listed: Vec<u32> = (0..parts).flat_map(of_part).map(|(part, k)| entries[place(part, k)]).collect();
+        listed.sort_unstable();
+        listed
     }
 
     /// The entries of a list, in ascending order: which thread appends first is not determined.

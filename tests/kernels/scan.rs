@@ -10,8 +10,6 @@ const STRETCH: usize = 64 * CHUNK;
 /// For so many bins.
 fn rig(cells: usize) -> Rig {
     let mut rig = Rig::new(&World::plain());
-    rig.constant("CHUNK", CHUNK as f64);
-    rig.constant("FEW_STRETCHES", 0.0);
     rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, ..Default::default() });
     rig
 }
@@ -67,6 +65,41 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
     }
 }
 
+/// On a device alone the lists of the step before are emptied, but for those that `bin` and `advect` have to do with; among others none is.
+#[test]
+fn scan_sums_empties_the_lists_of_the_step_before() {
+    let mut stream = Stream::new(3);
+    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
+    // Fewer chunks than there are lists, and more.
+    for (cells, parts, peers) in [(4, 1, 0), (90_001, 16, 0), (90_001, 16, 1)] {
+        let mut rig = rig(cells);
+        rig.constant("LIST_PARTS", parts as f64);
+        rig.put("cell_start", &with_end(&vec![0; cells]));
+        rig.put("chunk_sums", &vec![7u32; cells / CHUNK + 1]);
+        rig.put("stretch_sums", &vec![0u32; cells / STRETCH + 1]);
+        for buffer in ["counters", "dispatches", "rechoose_dispatches"] {
+            rig.put(buffer, &noise);
+        }
+        rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, peers, ..Default::default() });
+        rig.run("scan_sums", cells / CHUNK + 1);
+        let counters: Vec<u32> = rig.get("counters", COUNTERS);
+        for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
+            let emptied = match word {
+                0..LISTS => !kept.contains(&word),
+                _ => (CHOOSERS..CHOOSERS + ROUND_WORDS * (parts - 1)).contains(&word),
+            };
+            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{word}");
+        }
+        for buffer in ["dispatches", "rechoose_dispatches"] {
+            let sizes: Vec<[u32; 3]> = rig.get(buffer, LISTS);
+            for (list, (size, before)) in sizes.iter().zip(noise.as_chunks().0).enumerate() {
+                assert_eq!(size, if peers == 0 && !kept.contains(&list) { &[0, 1, 1] } else { before }, "{list}");
+            }
+        }
+    }
+}
+
 #[test]
 fn scan_stretches_is_an_exclusive_prefix_sum() {
     let mut stream = Stream::new(5);
@@ -102,6 +135,7 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
+        assert_eq!(rig.counter(COUNT_PRESENT), starts[cells]);
         // Few stretches are summed here.
         let stretches = cells / STRETCH + 1;
         rig.constant("FEW_STRETCHES", stretches as f64);
@@ -109,8 +143,10 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         of_stretches.resize(stretches.next_multiple_of(4), 7);
         rig.put("stretch_sums", &of_stretches);
         rig.put("cell_start", &all);
+        rig.set_counter(COUNT_PRESENT, 7);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
+        assert_eq!(rig.counter(COUNT_PRESENT), starts[cells]);
         assert_ne!(starts[cells], 0, "the check can fail: there were particles");
     }
 }

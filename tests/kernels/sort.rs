@@ -1,5 +1,4 @@
-//! `bin`, `scatter` and `order`: the canonical order by (cell, id), exactly; `arrange` and `arrange_crowded`: by cell, and by id where
-//! `collide` wants it.
+//! `bin` and `order`: the particles by cell, exactly; `arrange` and `arrange_crowded`: by cell, and by id where `collide` wants it.
 
 use corpuscle::subdomain::{
     CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES,
@@ -73,38 +72,10 @@ fn bin_counts_every_particle_in_the_cell_of_its_mid_step_point() {
     assert!(at_start.zip(&cell).filter(|(a, b)| a != *b).count() > COUNT / 20);
 }
 
-#[test]
-fn scatter_puts_each_particle_into_its_slot() {
-    let Sorted { world, particles, cell, start, .. } = sorted(8);
-    let mut stream = Stream::new(9);
-    // Slots as another order of threads would give them.
-    let mut arrival: Vec<usize> = (0..COUNT).collect();
-    stream.shuffle(&mut arrival);
-    let mut next = start.clone();
-    let mut bins = vec![[0u32; 2]; COUNT];
-    let mut expected = vec![0u32; COUNT];
-    for &k in &arrival {
-        let place = next[cell[k] as usize];
-        next[cell[k] as usize] += 1;
-        bins[k] = [cell[k], place - start[cell[k] as usize]];
-        expected[place as usize] = particles[k].id();
-    }
-    let mut rig = Rig::new(&world);
-    rig.put("particles", &particles);
-    rig.put("bins", &bins);
-    rig.put("cell_start", &start);
-    rig.put("slots", &vec![NOBODY; COUNT]);
-    rig.step(step());
-    rig.run("scatter", COUNT);
-    let found: Vec<u32> = rig.get("slots", COUNT);
-    assert_eq!(found, expected);
-    assert_ne!(found[0], particles[0].id(), "the check can fail: nothing was in order before");
-}
-
-/// `order` gives the particles by (cell, id) whatever the order within the slots was, and marks exactly those that may meet a wall;
+/// `order` puts the particles into the places of their cells, as their slots say, and marks exactly those that may meet a wall;
 /// `start_flights` gives them flights that start at a newborn's entry, and lists those.
 #[test]
-fn order_is_canonical() {
+fn order_is_by_cells() {
     let Sorted { world, cells, mut particles, cell, start } = sorted(10);
     let mut stream = Stream::new(11);
     // The last 100 were born in this step.
@@ -118,11 +89,6 @@ fn order_is_canonical() {
         Some(k) => entries[5 + k as usize].start,
         None => 0.0,
     };
-    let mut canonical: Vec<usize> = (0..COUNT).collect();
-    canonical.sort_by_key(|&k| (cell[k], particles[k].id()));
-    let expected: Vec<GpuParticle> = canonical.iter().map(|&k| particles[k]).collect();
-    let near_walls: Vec<u32> =
-        (0..COUNT as u32).filter(|&s| world.may_hit(&expected[s as usize], begin(&expected[s as usize]), DT)).collect();
     // Blocks of two cells a side, each with its own share of the cross-section.
     let blocks = world.grid.blocks(1);
     let shares: Vec<u32> = (0..blocks.iter().product()).map(|b: u32| 100 + b).collect();
@@ -132,16 +98,22 @@ fn order_is_canonical() {
         shares[((b[2] * blocks[1] + b[1]) * blocks[0] + b[0]) as usize]
     };
     for shuffle in 0..2 {
-        let mut slots: Vec<u32> = expected.iter().map(GpuParticle::id).collect();
-        for pair in start.windows(2) {
-            stream.shuffle(&mut slots[pair[0] as usize..pair[1] as usize]);
+        // Slots as another order of threads would give them.
+        let mut placed: Vec<usize> = (0..COUNT).collect();
+        stream.shuffle(&mut placed);
+        placed.sort_by_key(|&k| cell[k]);
+        let mut bins = vec![[0u32; 2]; COUNT];
+        for (place, &k) in placed.iter().enumerate() {
+            bins[k] = [cell[k], place as u32 - start[cell[k] as usize]];
         }
+        let expected: Vec<GpuParticle> = placed.iter().map(|&k| particles[k]).collect();
+        let meets = |s: &u32| world.may_hit(&expected[*s as usize], begin(&expected[*s as usize]), DT);
+        let near_walls: Vec<u32> = (0..COUNT as u32).filter(meets).collect();
         let mut rig = Rig::new(&world);
         rig.put("particles", &particles);
         rig.put("newborns", &entries);
-        rig.put("bins", &cell.iter().map(|&c| [c, 0u32]).collect::<Vec<_>>());
+        rig.put("bins", &bins);
         rig.put("cell_start", &start);
-        rig.put("slots", &slots);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
         for buffer in ["middles", "cells", "neighbour_count"] {
             rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
@@ -176,13 +148,13 @@ fn order_is_canonical() {
             partner: NOBODY,
             collisions: if capped { share_of(cell[k]) << 16 } else { 0 },
         };
-        assert_eq!(flights, expected.iter().zip(&canonical).map(new).collect::<Vec<_>>());
-        assert_eq!(rig.get::<u32>("cells", COUNT), canonical.iter().map(|&k| cell[k]).collect::<Vec<_>>());
+        assert_eq!(flights, expected.iter().zip(&placed).map(new).collect::<Vec<_>>());
+        assert_eq!(rig.get::<u32>("cells", COUNT), placed.iter().map(|&k| cell[k]).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("neighbour_count", COUNT + EMPTY), vec![0; COUNT + EMPTY]);
         let middles: Vec<u32> = rig.get("middles", COUNT);
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);
-            let flag = u32::from(world.near_triangle(cell[canonical[s]])) << 31;
+            let flag = u32::from(world.near_triangle(cell[placed[s]])) << 31;
             assert_eq!(middles[s], cells.packed(middle) | flag);
         }
         assert_eq!(to_complete_of(&rig, COUNT), near_walls);

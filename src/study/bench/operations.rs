@@ -6,7 +6,6 @@
 //!
 //! | loop | turns |
 //! |---|---|
-//! | slots of a cell, in the sort | one for each particle |
 //! | candidates of the search | four for each particle, or as many as were found where those are more |
 //! | pairs found | half of the entries of the lists |
 //! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
@@ -19,20 +18,17 @@
 
 use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
 use crate::scene::Method;
-use crate::subdomain::{CROWD, RESET_CELLS};
+use crate::subdomain::CROWD;
 
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count.
-const COUNTED: [&str; 22] = [
-    "reset",
-    "inject",
+const COUNTED: [&str; 19] = [
     "bin",
     "arrange",
     "scan_sums",
     "scan_stretches",
     "scan_cells",
-    "scatter",
     "order",
     "start_flights",
     "neighbours",
@@ -124,10 +120,6 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
     Some(match phase {
-        "inject" => {
-            counted.straight("inject")? * work.newborns
-                + counted.straight("reset")? * (work.emptied / RESET_CELLS as f64)
-        }
         "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
@@ -148,10 +140,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four++")? * (fours - filled).max(0.0)
         }
-        "sort" if rounds => {
-            let order = counted.away_from_walls("order")? + counted.turn("order", "for (var k = begin >> 2u")?;
-            (counted.straight("scatter")? + order + counted.straight("start_flights")?) * n
-        }
+        "sort" if rounds => (counted.away_from_walls("order")? + counted.straight("start_flights")?) * n,
         "sort" => counted.straight("arrange")? * n,
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
@@ -192,7 +181,11 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let last = turn.around("if (hit.triangle == NOBODY)")?[0];
             let hit =
                 counted.straight("bounce")? + turn.straight() + last + Counted::walls(counted.of("bounce")?)? * 2.0;
-            flight * n + hit * work.bounces
+            let flights = flight * n + hit * work.bounces;
+            if method == Method::None {
+                return Some(flights);
+            }
+            flights + counted.turn("advect", "for (var four = thread")? * (work.emptied / 4.0)
         }
         "tally" => {
             let particle = counted.of("tally")?.inner("for (var k = 0u; k < CHUNK_LOOPS")?;
@@ -227,21 +220,9 @@ mod tests {
 
     fn phases(method: Method) -> &'static [&'static str] {
         match method {
-            Method::None => &["inject", "advect", "tally", "blocks"],
-            Method::Cell => &["inject", "bin", "scan", "sort", "collide", "advect", "tally", "blocks"],
-            _ => &[
-                "inject",
-                "bin",
-                "scan",
-                "sort",
-                "neighbours",
-                "choose",
-                "settle",
-                "lost",
-                "advect",
-                "tally",
-                "blocks",
-            ],
+            Method::None => &["advect", "tally", "blocks"],
+            Method::Cell => &["bin", "scan", "sort", "collide", "advect", "tally", "blocks"],
+            _ => &["bin", "scan", "sort", "neighbours", "choose", "settle", "lost", "advect", "tally", "blocks"],
         }
     }
 
@@ -257,7 +238,6 @@ mod tests {
             candidates: 1.0,
             choosers: 1.0,
             lost_choosers: 1.0,
-            newborns: 1.0,
             tallies: 1.0,
             zones: 1.0,
             gas_pairs: 1.0,
@@ -278,7 +258,7 @@ mod tests {
     #[test]
     fn amounts_cost_where_they_are_dealt_with() {
         let work = Work { steps: 4.0, particle_steps: 400.0, cell_steps: 640.0, chunks: 2.0, ..Work::default() };
-        let more: [(&str, Work, &[&str]); 7] = [
+        let more: [(&str, Work, &[&str]); 8] = [
             ("choosers", Work { choosers: 9.0, ..work }, &["choose", "settle"]),
             ("lost", Work { lost_choosers: 9.0, ..work }, &["lost"]),
             ("pairs", Work { candidates: 90.0, ..work }, &["neighbours"]),
@@ -286,6 +266,7 @@ mod tests {
             ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
             ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
             ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),
+            ("cells", Work { emptied: 640.0, ..work }, &["advect"]),
         ];
         let method = Method::ClosestApproach;
         let counted = lean(method);

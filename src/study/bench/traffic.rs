@@ -27,16 +27,16 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let choice = (2.0 + entries) * WORD + PARTICLE + FLIGHT + 2.0 * WORD;
     // Its entry and its choice in.
     let matched = 3.0 * WORD;
+    let entered = work.newborns * NEWBORN;
     Some(match phase {
-        "inject" => work.newborns * (NEWBORN + PARTICLE) + work.emptied * WORD,
-        // State in; cell and place in the cell out; the cells' counters in and out.
-        "bin" => n * (PARTICLE + 2.0 * WORD) + filled * 2.0 * WORD,
+        // State in, of a newborn from where it waited, and out; cell and place in the cell out; the cells' counters in and out.
+        "bin" => n * (PARTICLE + 2.0 * WORD) + entered + filled * 2.0 * WORD,
         // Counters in, and the starts out in their place; sums of stretches of cells out.
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
         "sort" => {
-            // Slot, cell, layer and marks, flight, middle and length of the list.
-            let of_rounds = if rounds { FLIGHT + 5.0 * WORD } else { 0.0 };
+            // Cell, layer and marks, flight, middle and length of the list.
+            let of_rounds = if rounds { FLIGHT + 4.0 * WORD } else { 0.0 };
             n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
                 + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
         }
@@ -67,8 +67,11 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + work.crowded * 2.0 * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
-        // State in and out; flight where there is one.
-        "advect" => n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 }),
+        // State in and out; flight where there is one; the cells that it empties out. Without collisions newborns as in `bin`.
+        "advect" => {
+            n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 })
+                + if method == Method::None { entered } else { work.emptied * WORD }
+        }
         // The states, once for all zones.
         "tally" => present * PARTICLE * work.tallies,
         "blocks" => present * PARTICLE * work.intervals,
@@ -125,14 +128,17 @@ mod tests {
         let floor = |phase, method| bytes(phase, method, &work).unwrap();
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
         assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
-        assert_eq!([floor("sort", rounds), floor("sort", cell)], [108.0, 72.0]);
+        assert_eq!([floor("sort", rounds), floor("sort", cell)], [104.0, 72.0]);
         assert_eq!(floor("neighbours", rounds), 16.0);
         assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
         let emptied = Work { emptied: 64.0, ..Work::default() };
-        assert_eq!(bytes("inject", cell, &emptied), Some(64.0 * 4.0));
+        assert_eq!(bytes("advect", cell, &emptied), Some(64.0 * 4.0));
+        let entered = Work { newborns: 2.0, ..Work::default() };
+        let moved = [("bin", rounds), ("advect", cell), ("advect", Method::None)];
+        assert_eq!(moved.map(|(phase, method)| bytes(phase, method, &entered)), [96.0, 0.0, 96.0].map(Some));
         let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };
         assert_eq!(
             ["choose", "settle", "lost"].map(|phase| bytes(phase, rounds, &chosen)),
