@@ -1,9 +1,9 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl
-// Completes what `start_flights` and `neighbours` have left incomplete: the flights that may meet a wall, of which it finds when they do; the lists longer than DIRECT, which are
+// Completes what `order` and `neighbours` have left incomplete: the flights that may meet a wall, of which it finds when they do; the lists longer than DIRECT, which are
 // searched once more, with a tail; and those near walls, from which it takes who stands behind a wall where the flights start.
 //
 // Reads what the search does, `sorted` and the walls; reads and writes flights and lists in `neighbours`, `neighbour_count`, `layers`; writes `counters`. One thread per
-// entry of the list that these have left in the second words of `choices`, or per ghost that was asked and has its list yet to be completed.
+// entry of the list that these have left, or per ghost that was asked and has its list yet to be completed.
 //
 // Where a tail is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
 // has, and the room that was wanted is kept for the host. A device alone is held (counters.wgsl): it leaves `sorted` as it is, from which the
@@ -14,16 +14,16 @@
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(44) var<storage, read> firsts: array<Particle>;
+@group(0) @binding(64) var<storage, read> incomplete: array<u32>;
 
 // Gives a list a tail; false where there is no room for it.
 fn lengthen(s: u32) -> bool {
     let stride = arrayLength(&neighbour_count);
     let more = atomicLoad(&neighbour_count[s]) - (DIRECT - 1u);
     let begin = atomicAdd(&counters[LIST_TAILS], more);
-    if (begin + more > arrayLength(&neighbours) - RECORD * stride) {
+    if (begin + more > 4u * arrayLength(&neighbours) - RECORD * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
         if (step.depth == 0u) {
             atomicStore(&counters[HELD], step.slot + 1u);
@@ -34,7 +34,7 @@ fn lengthen(s: u32) -> bool {
     }
     let tail = RECORD * stride + begin - (DIRECT - 1u);
     _ = search(s, DIRECT - 1u, tail);
-    neighbours[direct_entry(s, DIRECT - 1u)] = tail;
+    put_word(direct_entry(s, DIRECT - 1u), tail);
     return true;
 }
 
@@ -44,7 +44,7 @@ fn first_place(s: u32) -> vec3<u32> {
         let particle = firsts[s];
         return shifted(particle.position, particle.velocity * birth_time(id_of(particle.tag)));
     }
-    return shifted(sorted[s].position, sorted[s].velocity * bitcast<f32>(neighbours[RECORD * s]));
+    return shifted(sorted[s].position, sorted[s].velocity * bitcast<f32>(neighbours[2u * s].x));
 }
 
 // Where an entry is of a list with so many and this tail.
@@ -55,14 +55,14 @@ fn entry_of(s: u32, k: u32, listed: u32, tail: u32) -> u32 {
 fn screen(s: u32) {
     let listed = atomicLoad(&neighbour_count[s]);
     let last = direct_entry(s, DIRECT - 1u);
-    let tail = neighbours[last];
+    let tail = word(last);
     let tag = sorted[s].tag;
     let place = first_place(s);
     let middle = middles[s];
     var kept = 0u;
     var k = 0u;
     for (; k < listed; k++) {
-        let j = neighbours[entry_of(s, k, listed, tail)];
+        let j = word(entry_of(s, k, listed, tail));
         var apart = false;
         if (((middle | middles[j]) & NEAR_WALL) != 0u) {
             let there = first_place(j);
@@ -70,14 +70,14 @@ fn screen(s: u32) {
             apart = blocked(select(there, place, first), select(place, there, first), 0.0);
         }
         if (!apart) {
-            neighbours[entry_of(s, kept, listed, tail)] = j;
+            put_word(entry_of(s, kept, listed, tail), j);
             kept++;
         }
     }
     through(k, listed);
     if (listed > DIRECT && kept == DIRECT) {
         // It has no tail any more.
-        neighbours[last] = neighbours[tail + DIRECT - 1u];
+        put_word(last, word(tail + DIRECT - 1u));
     }
     atomicStore(&neighbour_count[s], kept);
 }
@@ -89,7 +89,7 @@ fn complete_lists(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     if (step.ghosts == GHOSTS_ASKED) {
         s = asked_of(entry);
     } else if (entry < atomicLoad(&counters[LIST_INCOMPLETE])) {
-        s = choices[entry].y;
+        s = incomplete[entry];
     }
     if (s == NOBODY) {
         return;
@@ -97,9 +97,9 @@ fn complete_lists(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     // (Ghosts that are asked may have collided since; when they meet a wall they knew before.)
     if (step.ghosts != GHOSTS_ASKED && (layers[s] & NEAR) != 0u) {
         atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
-        let start = bitcast<f32>(neighbours[RECORD * s]);
+        let start = bitcast<f32>(neighbours[2u * s].x);
         let hit = first_hit(sorted[s].position, sorted[s].velocity, start, step.dt);
-        neighbours[RECORD * s + 1u] = bitcast<u32>(hit.time);
+        neighbours[2u * s].y = bitcast<u32>(hit.time);
     }
     // A pass over those that were asked later finds it done.
     let marks = layers[s];

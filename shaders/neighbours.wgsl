@@ -1,9 +1,10 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl
-// The neighbour lists, as far as they are short (search.wgsl).
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
+// The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
+// are short (search.wgsl).
 //
-// Reads what the search does and `sorted`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
+// Reads what the search does, `sorted` and `newborns`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
 // nobody has chosen; appends lists that are longer, or have neighbours that may be
-// behind a wall, to the second words of `choices`, which nobody needs yet, for `complete_lists`, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
+// behind a wall, to `incomplete`, for `complete_lists`, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
 // candidates, and of the tests of a search all around. The order of a list is that of the threads; what is in it is not.
 
@@ -14,8 +15,8 @@ const FEWEST_TURNS: u32 = 4;
 const KEPT: u32 = 4;
 
 @group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
-@group(0) @binding(15) var<storage, read_write> choices: array<u32>;
+@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
+@group(0) @binding(64) var<storage, read_write> incomplete: array<u32>;
 
 // Who has a list: of all its neighbours, or only of those who have it in theirs.
 struct Listed {
@@ -32,16 +33,16 @@ fn listed_of(s: u32) -> Listed {
     return Listed(all, all || notes_at(layer));
 }
 
-// Marks a list as incomplete. (Who may meet a wall is marked as such, and was appended when its flight started.)
+// Marks a list as incomplete. (Who may meet a wall is marked as such, and was appended with the mark.)
 fn to_complete(list: u32, mark: u32) {
     if ((atomicOr(&layers[list], mark) & (INCOMPLETE | NEAR)) == 0u) {
-        choices[2u * append(LIST_INCOMPLETE) + 1u] = list;
+        incomplete[append(LIST_INCOMPLETE)] = list;
     }
 }
 
 fn enter(list: u32, k: u32, entry: u32) {
     if (k < DIRECT) {
-        neighbours[direct_entry(list, k)] = entry;
+        put_word(direct_entry(list, k), entry);
     } else if (k == DIRECT) {
         to_complete(list, LONG);
     }
@@ -51,7 +52,7 @@ fn enter(list: u32, k: u32, entry: u32) {
 fn note(list: u32, entry: u32) {
     let k = atomicAdd(&neighbour_count[list], 1u);
     if (k < DIRECT) {
-        neighbours[direct_entry(list, k)] = entry;
+        put_word(direct_entry(list, k), entry);
     }
 }
 
@@ -62,7 +63,10 @@ fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    choices[2u * s] = NOBODY;
+    choices[s].x = NOBODY;
+    if (!CAPPED) {
+        neighbours[2u * s] = first_flight(s, 0u);
+    }
     let middle = middles[s];
     let reach = reach_of(s, middle);
     // What comes after it of its own row, and the four rows after that.

@@ -3,7 +3,7 @@
 //
 // Reads `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
 // `sorted`, `cells`, `middles` (packed mid-step position, with NEAR_WALL and ASTRAY), `layers`, where ghosts wait until they are asked also
-// `firsts`, marks those that may meet a wall, and clears what the search and the rounds use. One thread per particle as they lie in
+// `firsts`, marks those that may meet a wall and appends them to `incomplete`, for `complete_lists`, and clears what the search and the rounds use. One thread per particle as they lie in
 // `particles`. In which order the particles of a cell lie is a matter of the order of the threads; nothing that follows asks for it.
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -16,6 +16,7 @@
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
 @group(0) @binding(44) var<storage, read_write> firsts: array<Packed>;
+@group(0) @binding(64) var<storage, read_write> incomplete: array<u32>;
 
 // The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
 fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
@@ -73,6 +74,7 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     neighbour_count[place] = 0u;
     if (may_hit(particle.position, particle.velocity, birth_time(own_id), step.dt)) {
         mark |= NEAR;
+        incomplete[append(LIST_INCOMPLETE)] = place;
     }
     layers[place] = mark;
 }

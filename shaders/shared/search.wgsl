@@ -8,7 +8,8 @@
 
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(12) var<storage, read> middles: array<u32>;
-@group(0) @binding(13) var<storage, read_write> neighbours: array<u32>;
+// (By fours, for the sake of flights.)
+@group(0) @binding(13) var<storage, read_write> neighbours: array<vec4<u32>>;
 @group(0) @binding(14) var<storage, read_write> neighbour_count: array<atomic<u32>>;
 @group(0) @binding(27) var<storage, read> cells: array<u32>;
 
@@ -16,6 +17,14 @@ struct Found {
     count: u32,
     // NEAR_WALL of the particle and of all that were found.
     flags: u32,
+}
+
+fn word(place: u32) -> u32 {
+    return neighbours[place >> 2u][place & 3u];
+}
+
+fn put_word(place: u32, value: u32) {
+    neighbours[place >> 2u][place & 3u] = value;
 }
 
 // How far a point at `at` within its cell, in 1/128 of it, is at least from points in the cell before (-1), its own, or
@@ -26,7 +35,7 @@ fn gap(at: i32, side: i32) -> i32 {
 
 // What is left of the cross-section of a particle (cap.wgsl).
 fn share_at(s: u32) -> u32 {
-    return neighbours[RECORD * s + 3u] >> SHARE_AT;
+    return neighbours[2u * s].w >> SHARE_AT;
 }
 
 // How far a particle looks around itself.
@@ -117,7 +126,7 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
         if (j != s && may_meet(middle, other, j, n)) {
             flags |= other;
             if (found < direct || tail != NOBODY) {
-                neighbours[select(tail, list, found < direct) + found] = j;
+                put_word(select(tail, list, found < direct) + found, j);
             }
             found++;
         }

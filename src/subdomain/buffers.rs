@@ -283,7 +283,7 @@ pub struct ParticleBuffers {
     pub newborns: wgpu::Buffer,
     /// Of the sort `bins`; afterwards the `choices` of the rounds, or the `crowds` of the method `cell`.
     pub bins: wgpu::Buffer,
-    /// Of the exchange `border`, of the sort `slots`; afterwards the `pairs` of the rounds, half as many.
+    /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
     /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. Parts of
     /// `rechoose` leave less than a workgroup's worth of entries free each.
@@ -397,7 +397,7 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle" | "pack" | "start_flights" | "neighbours" | "receive", "dispatches")
+            ("settle" | "pack" | "order" | "neighbours" | "receive", "dispatches")
             | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
@@ -417,7 +417,7 @@ impl<'a> Buffers<'a> {
             (_, "particles" | "flights" | "neighbours") => &particle.particles,
             (_, "newborns") => &particle.newborns,
             (_, "bins" | "crowds" | "choices") => &particle.bins,
-            (_, "border" | "slots" | "pairs") => &particle.slots,
+            (_, "border" | "slots" | "incomplete" | "pairs") => &particle.slots,
             (_, "crowded" | "order_by_id" | "rechoose" | "bouncing") => &particle.rare,
             (_, "sorted") => &particle.sorted,
             (_, "middles") => &particle.middles,

@@ -298,7 +298,9 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             let pass = rec.phase("sort");
             kernels.order.dispatch(pass, offset, slots);
-            kernels.start_flights.dispatch(pass, offset, all(device, step));
+            if let Some(start_flights) = &kernels.start_flights {
+                start_flights.dispatch(pass, offset, all(device, step));
+            }
         }
         if let Some(kernels) = &self.kernels.cells {
             let pass = rec.phase("sort");

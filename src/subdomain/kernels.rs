@@ -29,7 +29,8 @@ pub struct SortKernels<K> {
 /// Collisions of neighbours, in rounds.
 pub struct CollisionKernels<K> {
     pub order: K,
-    pub start_flights: K,
+    /// Where the diameter is capped.
+    pub start_flights: Option<K>,
     pub neighbours: K,
     /// On a device among others.
     pub neighbours_asked: Option<K>,
@@ -99,7 +100,7 @@ impl<K> Kernels<K> {
         let collisions = if features.rounds {
             Some(CollisionKernels {
                 order: make("order")?,
-                start_flights: make("start_flights")?,
+                start_flights: if features.capped { Some(make("start_flights")?) } else { None },
                 neighbours: make("neighbours")?,
                 neighbours_asked: if features.halo { Some(make("neighbours_asked")?) } else { None },
                 complete_lists: make("complete_lists")?,

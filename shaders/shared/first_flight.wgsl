@@ -1,0 +1,12 @@
+//! uses: particle.wgsl newborn.wgsl cap.wgsl
+// The flight with which a particle starts the step, of which no wall is known yet.
+
+@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+
+fn first_flight(s: u32, share: u32) -> vec4<u32> {
+    var start = 0.0;
+    if (step.newborns > 0u) {
+        start = birth_time(id_of(sorted[s].place.w));
+    }
+    return packed_flight(Flight(start, NEVER, NOBODY, share << SHARE_AT));
+}
