@@ -397,8 +397,9 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle" | "pack" | "order" | "neighbours" | "receive", "dispatches")
-            | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
+            ("settle" | "pack" | "order" | "neighbours" | "receive", "dispatches") | (_, "rechoose_dispatches") => {
+                &fixed.rechoose_dispatches
+            }
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
             ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,

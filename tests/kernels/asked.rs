@@ -33,6 +33,7 @@ fn rig_of(cloud: &Cloud, layers: &[u32]) -> Rig {
     rig.put("layers", layers);
     rig.put("asked", &vec![NOBODY; COUNT]);
     rig.put("choices", &vec![[7u32, 7]; COUNT]);
+    rig.put("incomplete", &vec![NOBODY; COUNT]);
     rig
 }
 
@@ -132,7 +133,7 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
         let mut lists = lists(&rig, COUNT, TAILS);
         // Their order is of no matter.
         lists.iter_mut().for_each(|list| list.sort_unstable());
-        (lists, incomplete, to_complete_of(&rig, COUNT))
+        (lists, incomplete, to_complete_of(&rig))
     };
     let asked: Vec<u32> = (0..COUNT as u32).filter(|&s| layers[s as usize] & 0xff == 1 && s % 3 == 0).collect();
     let known = asked[0] as usize;

@@ -208,7 +208,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("bins", &(0..COUNT).map(|s| [bins[s], slot(s)]).collect::<Vec<_>>());
     rig.put("cell_start", &start);
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-    for buffer in ["middles", "cells", "neighbour_count"] {
+    for buffer in ["middles", "cells", "neighbour_count", "incomplete"] {
         rig.put(buffer, &vec![9u32; COUNT]);
     }
     let (low, high) = (crowd.near.low, crowd.near.high);

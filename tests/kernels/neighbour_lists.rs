@@ -72,19 +72,15 @@ pub fn complete_lists(rig: &Rig, list: usize) {
 }
 
 /// The particles whose flights or lists are to be completed, in ascending order.
-pub fn to_complete_of(rig: &Rig, count: usize) -> Vec<u32> {
-    let words: Vec<[u32; 2]> = rig.get("choices", count);
-    let mut listed: Vec<u32> =
-        words[..rig.counter(LIST_INCOMPLETE) as usize].iter().map(|[_, second]| *second).collect();
-    listed.sort_unstable();
-    listed
+pub fn to_complete_of(rig: &Rig) -> Vec<u32> {
+    rig.list("incomplete", LIST_INCOMPLETE)
 }
 
-/// These are to be completed, as their marks say.
+/// Makes these of so many the ones that are to be completed.
 pub fn put_to_complete(rig: &mut Rig, count: usize, these: &[u32]) {
-    let mut words = vec![[NOBODY; 2]; count];
-    words.iter_mut().zip(these).for_each(|(word, &list)| word[1] = list);
-    rig.put("choices", &words);
+    let mut list = these.to_vec();
+    list.resize(count, NOBODY);
+    rig.put("incomplete", &list);
     rig.set_counter(LIST_INCOMPLETE, these.len() as u32);
 }
 

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
+use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuNewborn, GpuParticle, GpuStep};
 
 use crate::choose::{DIAMETER, DT};
 use crate::neighbour_lists::{
-    DIRECT, TAILS, complete_lists, lists, put_flights, put_room, put_to_complete, tails_of, to_complete_of,
+    DIRECT, TAILS, complete_lists, flights, lists, put_flights, put_room, put_to_complete, tails_of, to_complete_of,
 };
 use crate::oracle::random::Stream;
 use crate::oracle::walls::parted;
@@ -62,6 +62,7 @@ fn crowd_at(world: World, middles: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
     rig.put("cells", &of);
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     rig.put("choices", &vec![[7u32; 2]; COUNT]);
+    rig.put("incomplete", &vec![NOBODY; COUNT]);
     put_flights(&mut rig, &free_flights(COUNT));
     Crowd { world, middles, rig, dt: 0.0, depth: 0 }
 }
@@ -77,7 +78,7 @@ impl Crowd {
         self.rig.step(GpuStep { count, near2, dt, depth, ..GpuStep::default() });
         put_room(&mut self.rig, COUNT, tails);
         self.rig.put("neighbour_count", &vec![0u32; COUNT]);
-        // As `start_flights` leaves it.
+        // As `order` leaves it.
         self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
         let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
         put_to_complete(&mut self.rig, COUNT, &near);
@@ -98,6 +99,49 @@ impl Crowd {
             i != j && cells.touching(p, q) && cells.packed_near(p, q, near2)
         };
         (0..COUNT).map(|i| (0..COUNT).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect()
+    }
+}
+
+/// The search begins the flights, those of newborns at their entry; where diameters are capped they have begun before.
+#[test]
+fn flights_begin_with_the_search() {
+    let mut crowd = crowd(18);
+    let mut stream = Stream::new(19);
+    let entries: Vec<GpuNewborn> =
+        (0..40).map(|_| GpuNewborn { start: 1e-6 * stream.uniform() as f32, ..GpuNewborn::default() }).collect();
+    // Every tenth has entered in this step.
+    let id = |s: usize| if s.is_multiple_of(10) { 5000 + s as u32 / 10 % 30 } else { s as u32 };
+    let tagged = |s| GpuParticle { tag: GpuParticle::tag(2, id(s)), ..GpuParticle::default() };
+    crowd.rig.put("sorted", &(0..COUNT).map(tagged).collect::<Vec<_>>());
+    crowd.rig.put("newborns", &entries);
+    let before = GpuFlight { start: 3.0, wall: 4.0, partner: 5, collisions: FULL_SHARE << 16 | 6 };
+    for capped in [false, true] {
+        put_flights(&mut crowd.rig, &[before; COUNT]);
+        crowd.rig.constant("CAPPED", f64::from(u8::from(capped)));
+        for name in ["neighbour_count", "layers"] {
+            crowd.rig.put(name, &vec![0u32; COUNT]);
+        }
+        put_room(&mut crowd.rig, COUNT, TAILS);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT]);
+        let count = COUNT as u32;
+        let (newborn_offset, newborn_first_id) = (7, 5000);
+        crowd.rig.step(GpuStep {
+            count,
+            total: count,
+            newborns: 30,
+            newborn_offset,
+            newborn_first_id,
+            ..GpuStep::default()
+        });
+        crowd.rig.run("neighbours", COUNT);
+        for (s, &flight) in flights(&crowd.rig, COUNT).iter().enumerate() {
+            let start = match id(s).checked_sub(5000) {
+                Some(k) => entries[7 + k as usize].start,
+                None => 0.0,
+            };
+            let begun = GpuFlight { start, wall: NEVER, partner: NOBODY, collisions: 0 };
+            assert_eq!(flight, if capped { before } else { begun }, "{s}");
+        }
     }
 }
 
@@ -145,7 +189,7 @@ fn all_are_found(among_others: bool) {
     let long = |s: &u32| expected[*s as usize].len() > DIRECT;
     let incomplete: Vec<u32> =
         (0..COUNT as u32).filter(|s| may_meet_a_wall(*s as usize) || to_screen(s) || long(s)).collect();
-    assert_eq!(to_complete_of(&crowd.rig, COUNT), incomplete);
+    assert_eq!(to_complete_of(&crowd.rig), incomplete);
     assert!(incomplete.len() < COUNT, "some are short and clear of walls");
     assert!(incomplete.iter().any(|s| !long(s)) && incomplete.iter().any(|s| !to_screen(s)));
     assert!(crowd.rig.get::<u32>("layers", COUNT).iter().all(|mark| mark & (UNSCREENED | LONG) == 0));

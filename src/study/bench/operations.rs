@@ -140,7 +140,10 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
                 + counted.turn("scan_cells", "for (var four = begin; four < end; four++")? * (fours - filled).max(0.0)
         }
-        "sort" if rounds => (counted.away_from_walls("order")? + counted.straight("start_flights")?) * n,
+        "sort" if rounds => {
+            let order = counted.away_from_walls("order")?;
+            (if work.capped { order + counted.straight("start_flights")? } else { order }) * n
+        }
         "sort" => counted.straight("arrange")? * n,
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);

@@ -35,17 +35,17 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
         "sort" => {
-            // Cell, layer and marks, flight, middle and length of the list.
-            let of_rounds = if rounds { FLIGHT + 4.0 * WORD } else { 0.0 };
+            // Cell, layer and marks, middle and length of the list.
+            let of_rounds = if rounds { 4.0 * WORD + if work.capped { FLIGHT } else { 0.0 } } else { 0.0 };
             n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
                 + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
         }
-        // Middle and cell in, where the cells start, that nobody has chosen out; of those with neighbours the state in and the length of
+        // Middle and cell in, where the cells start, that nobody has chosen and a flight (that sort leaves where diameters are capped, then in)
+        // out; of those with neighbours the state in and the length of
         // the list in and out; the lists out; of those that may collide their mark in and out, and their entry.
         "neighbours" => {
-            let share = if work.capped { FLIGHT } else { 0.0 };
             let of_listed = PARTICLE + 2.0 * WORD;
-            n * (4.0 * WORD + share)
+            n * (4.0 * WORD + FLIGHT)
                 + filled * WORD
                 + work.listed * of_listed
                 + candidates * WORD
@@ -128,8 +128,10 @@ mod tests {
         let floor = |phase, method| bytes(phase, method, &work).unwrap();
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
         assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
-        assert_eq!([floor("sort", rounds), floor("sort", cell)], [104.0, 72.0]);
-        assert_eq!(floor("neighbours", rounds), 16.0);
+        assert_eq!([floor("sort", rounds), floor("sort", cell)], [88.0, 72.0]);
+        assert_eq!(floor("neighbours", rounds), 32.0);
+        let capped = Work { capped: true, ..work };
+        assert_eq!(["sort", "neighbours"].map(|phase| bytes(phase, rounds, &capped)), [104.0, 32.0].map(Some));
         assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
