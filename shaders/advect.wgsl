@@ -2,7 +2,7 @@
 // Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
 // device alone, where cells are few, empties these for the next step.
 //
-// Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `cell_start`, `stretch_sums`, `particles` (in canonical order; dead slots in place of ghosts), and appends
+// Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `cell_start`, `stretch_sums`, `particles` (where they were in `sorted`; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot, and as many more as there are cells for.
 

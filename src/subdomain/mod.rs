@@ -1,6 +1,6 @@
 //! One device's gas: the particle buffers and the kernels of each phase of the step.
 //!
-//! Invariants: between steps `particles` holds every particle once, in canonical order (cell, id) where
+//! Invariants: between steps `particles` holds every particle once, in the order of their cells where
 //! there are collisions (of a device alone that is held, for want of room, `sorted` does until the host goes on); positions are fixed-point on the plan's grid; nothing is read back but the
 //! tallies of an interval, one interval late, and whole states on request.
 
