@@ -1,6 +1,6 @@
 //! uses: step.wgsl counters.wgsl
 // The lists of those that choose, in LIST_PARTS parts, so that few threads of a GPU count up the same word: workgroups' worths of particles
-// take turns, and so do those of the parts' entries in the list. A part may be shorter than another, and leaves entries free.
+// take turns, and so do those of the parts' entries in the list. A part that is shorter than another leaves entries free; none has more than its particles, so the list wants no more room.
 
 override LIST_PARTS: u32 = 1;
 

@@ -1,5 +1,5 @@
 // The cells that have bins on this device: a box of the one global grid, in the grid's order, so that the
-// order by (cell, id) is the same on every device.
+// order of the cells is the same on every device.
 
 // There are others. Only kernels may ask whose results are no matter of floating point: others would be other pipelines on one device than
 // on several, and a driver may round otherwise in each.

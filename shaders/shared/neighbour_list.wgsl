@@ -2,8 +2,8 @@
 // in the first four (particle.wgsl), the first DIRECT entries of the list behind it. Of a list that is longer the last of these holds its tail
 // instead: entry k from there on is at tail + k, behind the records of all. So room is needed for what lists hold, not for the longest of all.
 //
-// Kernels that write lists have all these words as `neighbours`, one by one, since several threads write to one list; the others have
-// them as `flights`, four by four (listed.wgsl).
+// Kernels that write lists have them as `neighbours` and write them word by word, since several threads write to one list (search.wgsl); the others have
+// them as `flights` (listed.wgsl).
 
 const RECORD: u32 = 8;
 const DIRECT: u32 = 4;

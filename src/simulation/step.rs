@@ -11,9 +11,8 @@ use super::exchange::Exchange;
 /// as well as with the pairs that are tried.)
 pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
 
-/// In the order of a step; `lost` and `blocks` are once an interval, as is `reset` on a device alone.
-const PHASES: [&str; 14] = [
-    "reset",
+/// In the order of a step; `lost` and `blocks` are once an interval.
+const PHASES: [&str; 13] = [
     "bin",
     "exchange",
     "scan",

@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuError};
 
 use super::cell_table::CellTable;
-use super::constants::{Features, WORKGROUP, chooser_parts};
+use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::layout::{
     GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate, GpuVent,
@@ -285,8 +285,7 @@ pub struct ParticleBuffers {
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. Parts of
-    /// `rechoose` leave less than a workgroup's worth of entries free each.
+    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub middles: wgpu::Buffer,
@@ -325,7 +324,7 @@ impl ParticleBuffers {
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
-            rare: device.storage::<u32>("rare", capacity + u64::from(WORKGROUP) * (chooser_parts(device) - 1))?,
+            rare: device.storage::<u32>("rare", capacity)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,

@@ -21,8 +21,8 @@ pub const MEMBERS: u32 = 12;
 pub const CROWD: u32 = 64;
 /// Parts of the lists of those that choose (`shaders/shared/choosers.wgsl`), which change no bit: a GPU does atomic operations on one word
 /// one after the other.
-pub fn chooser_parts(device: &Device) -> u64 {
-    if device.adapter().is_cpu() { 1 } else { counters::MOST_PARTS as u64 }
+pub fn list_parts(device: &Device) -> usize {
+    if device.adapter().is_cpu() { 1 } else { counters::MOST_PARTS }
 }
 
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
@@ -113,7 +113,7 @@ impl Features {
 }
 
 pub fn constants(
-    device: &Device,
+    list_parts: usize,
     plan: &Plan,
     features: Features,
     patches: Patches,
@@ -137,7 +137,7 @@ pub fn constants(
         ("CLEARANCE_UNIT", CLEARANCE_UNIT),
         ("CHUNK", CHUNK as f64),
         ("FEW_STRETCHES", FEW_STRETCHES as f64),
-        ("LIST_PARTS", chooser_parts(device) as f64),
+        ("LIST_PARTS", list_parts as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("CAPPED", flag(features.capped)),

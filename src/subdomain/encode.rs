@@ -126,6 +126,7 @@ impl Subdomain {
         self.sort(&mut rec, &slot);
         self.neighbours(&mut rec, &slot);
         rec.submit();
+        self.emptied = false;
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
         let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
         if let Kept::Held = before.kept {
@@ -260,7 +261,8 @@ impl Subdomain {
         }
         if !self.emptied {
             let groups = threads(rec.device(), cells.div_ceil(EMPTIED_CELLS));
-            self.kernels.reset.dispatch(rec.phase("reset"), 0, groups);
+            let phase = if self.kernels.sort.is_some() { "bin" } else { "advect" };
+            self.kernels.reset.dispatch(rec.phase(phase), 0, groups);
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! Messages are the bytes of [`GpuParticle`]s and [`GpuUpdate`]s, in no particular order; the device puts those to one
 //! peer together (`shaders/shared/sendings.wgsl`), and the host looks at none of them. The receiver sorts the
-//! former by (cell, id) with its own particles, and finds the ghosts of the latter by cell and id.
+//! former by cell with its own particles, and finds the ghosts of the latter by cell and id.
 
 use crate::gpu::{Device, Readback, Recording};
 

@@ -81,7 +81,8 @@ pub struct World<'a> {
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
         let device = device();
-        let setup = |ranks| Setup::new(model, &device, ranks, None).expect("a set-up");
+        // (What these are compared with has the lists as suit the device.)
+        let setup = |ranks| Setup::in_parts(model, &device, ranks).expect("a set-up");
         World { model, one: setup(1), several: setup(2), device }
     }
 

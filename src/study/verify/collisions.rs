@@ -147,7 +147,11 @@ pub fn watched(
     simulation.begin(&mut witness)?;
     while simulation.advance(&mut witness)? {
         simulation.settle(&mut witness)?;
-        watch(model, &simulation.particles()?, &simulation.flights()?);
+        // By id: within a cell the device has them in the order of its threads, and sums of floating point would go with it.
+        let (mut particles, mut flights) = (simulation.particles()?, simulation.flights()?);
+        particles.sort_unstable_by_key(GpuParticle::id);
+        flights.sort_unstable_by_key(|&(id, _)| id);
+        watch(model, &particles, &flights);
     }
     let outcome = simulation.finish(&mut witness)?;
     Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })
