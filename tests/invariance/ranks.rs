@@ -5,12 +5,13 @@ use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
 use corpuscle::simulation::BalanceMode::{self, Dynamic, Forced, Initial, Off};
 use corpuscle::simulation::{Ghosts, Model, Options};
+use corpuscle::subdomain::few_stretches;
 
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, switching, tank, tube, venting,
+    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, switching, tank, thin, tube, venting,
     venting_freely,
 };
 use crate::whole_run::{Run, run};
@@ -131,6 +132,15 @@ fn box_has_the_same_bits_on_any_number_of_ranks() {
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
     assert!(runs[1].outcome.traffic.messages > 1000 && runs[1].outcome.traffic.bytes > 100_000);
+}
+
+#[test]
+fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
+    let model = thin();
+    let cells = model.plan.grid.cell_count() as u64;
+    assert!(!few_stretches(cells) && few_stretches(cells / 2), "{cells}");
+    let runs = same(&model, &[Way::new(3, Off, 2), Way::new(4, Dynamic, 8)]);
+    assert!(runs[0].outcome.collisions > 0);
 }
 
 /// What walls have taken is one sum, and the next intervals follow it on every rank.

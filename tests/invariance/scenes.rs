@@ -101,6 +101,14 @@ pub fn gas_box() -> Model {
     published("box.toml", 2000, 4e-4)
 }
 
+/// Small particles far apart: so many cells that one device clears them, where three have each so few that they empty them otherwise.
+pub fn thin() -> Model {
+    let mut scene = published("box.toml", 2000, 1.2e-4).scene;
+    scene.model.occupancy = Some(2.2e-3);
+    scene.output.rows = 5;
+    Model::new(scene).expect("a model")
+}
+
 /// Gas flows in and leaves through a vent that opens on the way and through leaking walls.
 pub fn venting() -> Model {
     let mut scene = published("vent.toml", 1000, 0.004).scene;
