@@ -44,13 +44,17 @@ const GROUP_LIMIT: u32 = 65535;
 // (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs, `pack`, over
 // the border, and `order` and `neighbours`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
 //
-// The place of a new entry; makes sure that the list's dispatch covers it.
+// Makes sure that a list's dispatch has this workgroup.
+fn cover(list: u32, group: u32) {
+    atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
+    atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
+}
+
+// The place of a new entry, which the list's dispatch covers.
 fn append(list: u32) -> u32 {
     let k = atomicAdd(&counters[list], 1u);
     if (k % WORKGROUP == 0u) {
-        let group = k / WORKGROUP;
-        atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
-        atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
+        cover(list, k / WORKGROUP);
     }
     return k;
 }
@@ -58,7 +62,6 @@ fn append(list: u32) -> u32 {
 // The same for a list whose entries have a workgroup each.
 fn append_group(list: u32) -> u32 {
     let k = atomicAdd(&counters[list], 1u);
-    atomicMax(&dispatches[3u * list], min(k + 1u, GROUP_LIMIT));
-    atomicMax(&dispatches[3u * list + 1u], k / GROUP_LIMIT + 1u);
+    cover(list, k);
     return k;
 }

@@ -19,9 +19,7 @@ fn append_chooser(s: u32, round: u32) -> u32 {
     let k = atomicAdd(&counters[length_of_part(part, round)], 1u);
     let group = k / WORKGROUP * LIST_PARTS + part;
     if (k % WORKGROUP == 0u) {
-        let list = LIST_RECHOOSE + round;
-        atomicMax(&dispatches[3u * list], min(group + 1u, GROUP_LIMIT));
-        atomicMax(&dispatches[3u * list + 1u], group / GROUP_LIMIT + 1u);
+        cover(LIST_RECHOOSE + round, group);
     }
     return group * WORKGROUP + k % WORKGROUP;
 }
