@@ -14,11 +14,11 @@
 override PARTED_GAS: bool = true;
 
 // Whether other kernels work on a cell as well, which want its particles in order.
-fn parted_or_moved(cell: u32) -> bool {
-    if (moving_in(cell_of(cell))) {
+fn parted_or_moved(cell: vec3<u32>) -> bool {
+    if (moving_in(cell)) {
         return true;
     }
-    return PARTED_GAS && (cell_volume[index_of(cell)] & PARTED) != 0u;
+    return PARTED_GAS && (cell_volume[cell_index(cell)] & PARTED) != 0u;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -40,7 +40,7 @@ fn arrange(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     let begin = cell_start[bin.x];
     let place = begin + bin.y;
     let end = cell_start[bin.x + 1u];
-    let listed = !fits_a_thread(begin, end) || parted_or_moved(bin.x);
+    let listed = !fits_a_thread(begin, end) || parted_or_moved(nearest_cell(particles[i].place.xyz));
     if (listed || end - begin > MEMBERS) {
         slots[place] = id_of(particles[i].place.w);
     }

@@ -158,10 +158,11 @@ fn collide(
     let bin_end = cell_start[bin + 1u];
     var candidates = 0u;
     if (bin_end > begin + 1u) {
-        let cell = index_of(bin);
+        let here = nearest_cell(sorted[begin].place.xyz);
+        let cell = cell_index(here);
         let entry = cell_volume[cell];
         var count = bin_end - begin;
-        if (moving_in(cell_of(bin))) {
+        if (moving_in(here)) {
             moved[append_group(LIST_MOVED)] = bin;
         } else if ((entry & PARTED) != 0u) {
             parted[append(LIST_PARTED)] = bin;

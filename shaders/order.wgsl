@@ -52,8 +52,8 @@ fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let place = cell_start[cell] + bin.y;
     sorted[place] = whole;
     let particle = particle_of(whole);
-    let place_in_grid = cell_of(cell);
     let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
+    let place_in_grid = nearest_cell(middle);
     var mark = 0u;
     if (step.depth > 0u) {
         if (step.ghosts == GHOSTS_WAIT) {

@@ -16,5 +16,6 @@ fn start_flights(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    flights[2u * s] = first_flight(s, shares[block_of(cell_of(cells[s]))]);
+    let middle = shifted(sorted[s].place.xyz, sorted[s].motion.xyz * (0.5 * step.dt));
+    flights[2u * s] = first_flight(s, shares[block_of(nearest_cell(middle))]);
 }
