@@ -1,7 +1,8 @@
 //! Parses and validates every shader, so that a broken one is a build error, and generates the table of kernels.
 //!
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
-//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). The result is
+//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.subgroups.wgsl` takes the place of `a.wgsl` in
+//! a second source of each kernel that uses it, for devices whose kernels count their threads by subgroups. The result is
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
@@ -16,6 +17,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
+/// What their second sources may.
+const WITH_SUBGROUPS: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -26,6 +29,8 @@ const FNV_PRIME: u64 = 0x100_0000_01b3;
 pub struct Kernel {
     pub name: String,
     pub source: String,
+    /// Its second source, if that is another.
+    pub by_subgroups: Option<String>,
     pub entry_point: String,
     /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
     pub bindings: Vec<(u32, String, &'static str)>,
@@ -111,18 +116,18 @@ fn add_to(number: &mut u64, path: &Path) -> Result<(), String> {
 pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
     let mut kernels = Vec::new();
     let mut errors = Vec::new();
+    let mut used = Vec::new();
     for path in wgsl_files(folder)? {
-        match Kernel::assemble(folder, &path) {
+        match Kernel::with_both(folder, &path, &mut used) {
             Ok(kernel) => kernels.push(kernel),
             Err(error) => errors.push(error),
         }
     }
-    errors.extend(kernels.iter_mut().filter_map(|kernel: &mut Kernel| kernel.validate().err()));
     if !errors.is_empty() {
         return Err(errors.join("\n"));
     }
     let mut unused = wgsl_files(&folder.join("shared"))?;
-    unused.retain(|path| !kernels.iter().any(|kernel| kernel.parts.iter().any(|part| part.path == *path)));
+    unused.retain(|path| !used.contains(path));
     Ok((kernels, unused))
 }
 
@@ -130,37 +135,64 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
 pub fn table(kernels: &[Kernel]) -> String {
     let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
     for kernel in kernels {
-        let Kernel { name, source, entry_point, .. } = kernel;
+        let Kernel { name, source, by_subgroups, entry_point, .. } = kernel;
         rust += &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, bindings: &[");
         for (index, variable, access) in &kernel.bindings {
             rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
         }
-        rust += &format!("], overrides: &{:?}, source: {source:?} }},\n", kernel.overrides);
+        rust += &format!("], overrides: &{:?}, source: {source:?}, by_subgroups: {by_subgroups:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
 
 impl Kernel {
-    fn assemble(folder: &Path, path: &Path) -> Result<Kernel, String> {
+    /// A kernel with both of its sources, each of them valid. What files it uses is added to `used`.
+    fn with_both(folder: &Path, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
+        let mut kernel = Kernel::assemble(folder, path, false)?;
+        kernel.validate(CAPABILITIES)?;
+        let mut second = Kernel::assemble(folder, path, true)?;
+        used.extend(kernel.parts.iter().chain(&second.parts).map(|part| part.path.clone()));
+        if second.source != kernel.source {
+            second.validate(WITH_SUBGROUPS)?;
+            if (&second.bindings, &second.overrides) != (&kernel.bindings, &kernel.overrides) {
+                return Err(second.report("by subgroups it has other bindings or constants", Vec::new(), Vec::new()));
+            }
+            kernel.by_subgroups = Some(second.source);
+        }
+        Ok(kernel)
+    }
+
+    fn assemble(folder: &Path, path: &Path, by_subgroups: bool) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
+            by_subgroups: None,
             entry_point: String::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
             parts: Vec::new(),
         };
-        kernel.append(folder, path, &mut Vec::new())?;
+        kernel.append(folder, path, by_subgroups, &mut Vec::new())?;
         Ok(kernel)
     }
 
     /// Appends what `path` uses and is not there yet, then `path` itself. `visited` ends circles.
-    fn append(&mut self, folder: &Path, path: &Path, visited: &mut Vec<PathBuf>) -> Result<(), String> {
+    fn append(
+        &mut self,
+        folder: &Path,
+        path: &Path,
+        by_subgroups: bool,
+        visited: &mut Vec<PathBuf>,
+    ) -> Result<(), String> {
         visited.push(path.to_path_buf());
         let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         for (line, used) in uses(&text) {
-            let shared = folder.join("shared").join(used);
+            let mut shared = folder.join("shared").join(used);
+            let second = shared.with_extension("subgroups.wgsl");
+            if by_subgroups && second.is_file() {
+                shared = second;
+            }
             if visited.contains(&shared) {
                 continue;
             }
@@ -171,7 +203,7 @@ impl Kernel {
                     shared.display()
                 ));
             }
-            self.append(folder, &shared, visited)?;
+            self.append(folder, &shared, by_subgroups, visited)?;
         }
         self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
         self.source += &text;
@@ -181,7 +213,7 @@ impl Kernel {
         Ok(())
     }
 
-    fn validate(&mut self) -> Result<(), String> {
+    fn validate(&mut self, capabilities: Capabilities) -> Result<(), String> {
         let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
             let labels = error.labels().map(|(span, label)| (span, label.to_owned())).collect();
             let notes = error.notes().map(str::to_owned).collect();
@@ -190,7 +222,7 @@ impl Kernel {
         let [entry_point] = module.entry_points.as_slice() else {
             return Err(self.report("a kernel file needs one entry point", Vec::new(), Vec::new()));
         };
-        let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
+        let mut validator = Validator::new(ValidationFlags::all(), capabilities);
         let info = validator.validate(&module).map_err(|error| {
             let labels = error.spans().cloned().collect();
             let mut causes = Vec::new();

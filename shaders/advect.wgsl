@@ -38,14 +38,14 @@ fn empty_cells(thread: u32, threads: u32) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn advect(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
+fn advect(thread: Thread) {
+    let s = linear(thread);
     if (s == 0u) {
         empty_bounces();
         atomicStore(&counters[COUNT_DROPPED], 0u);
     }
     if (COLLISIONS && step.peers == 0u && few_stretches()) {
-        empty_cells(s, groups.x * groups.y * WORKGROUP);
+        empty_cells(s, threads_of(thread));
     }
     if (s >= step.total || (ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u)) {
         return;

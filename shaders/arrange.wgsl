@@ -22,8 +22,8 @@ fn parted_or_moved(cell: vec3<u32>) -> bool {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn arrange(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = linear(id, groups);
+fn arrange(thread: Thread) {
+    let i = linear(thread);
     if (step.peers > 0u) {
         // Places behind the last particle: particles have been dropped that are nowhere near this device.
         if (i >= cell_start[step.bins] && i < step.total) {

@@ -47,8 +47,8 @@ fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn arrange_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let place_in_list = linear(id, groups);
+fn arrange_crowded(thread: Thread) {
+    let place_in_list = linear(thread);
     if (place_in_list >= atomicLoad(&counters[LIST_CROWDED])) {
         return;
     }

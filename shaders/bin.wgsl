@@ -19,8 +19,8 @@ override ROUNDS_OF_PAIRS: bool = true;
 @group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn bin(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = step.first + linear(id, groups);
+fn bin(thread: Thread) {
+    let i = step.first + linear(thread);
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }

@@ -21,8 +21,8 @@ override BLOCK_ENERGY_SCALE: f32;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn blocks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = linear(id, groups);
+fn blocks(thread: Thread) {
+    let i = linear(thread);
     if (i >= step.total || atomicLoad(&counters[HELD]) > 0u) {
         return;
     }

@@ -109,8 +109,8 @@ fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool 
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn bounce(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = linear(id, groups);
+fn bounce(thread: Thread) {
+    let entry = linear(thread);
     if (entry >= atomicLoad(&counters[bounces_of(step.slot)])) {
         return;
     }

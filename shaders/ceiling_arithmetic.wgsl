@@ -8,8 +8,8 @@ override LOOPS: u32 = 256;
 @group(0) @binding(1) var<storage, read_write> copy_to: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn ceiling_arithmetic(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn ceiling_arithmetic(thread: Thread) {
+    let k = linear(thread);
     if (k >= arrayLength(&copy_to)) {
         return;
     }

@@ -7,8 +7,8 @@
 @group(0) @binding(1) var<storage, read_write> copy_to: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn ceiling_copy(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn ceiling_copy(thread: Thread) {
+    let k = linear(thread);
     if (k < arrayLength(&copy_to)) {
         copy_to[k] = copy_from[k];
     }

@@ -9,8 +9,8 @@ override QUANTA: f32 = 1048576.0;
 @group(0) @binding(1) var<storage, read_write> copy_to: array<Packed>;
 
 @compute @workgroup_size(WORKGROUP)
-fn ceiling_flights(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn ceiling_flights(thread: Thread) {
+    let k = linear(thread);
     if (k < arrayLength(&copy_to)) {
         let place = copy_to[k].place;
         let moved = vec3<i32>(round(copy_to[k].motion.xyz * QUANTA));

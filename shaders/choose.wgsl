@@ -21,8 +21,8 @@ override RIGID: bool = false;
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn choose(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = chooser(linear(id, groups));
+fn choose(thread: Thread) {
+    let s = chooser(linear(thread));
     if (s == NOBODY) {
         return;
     }

@@ -145,12 +145,9 @@ fn place_of(group: u32, groups: u32) -> u32 {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn collide(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) thread: u32,
-) {
-    let bin = place_of(group.x + group.y * groups.x, groups.x * groups.y) * WORKGROUP + thread;
+fn collide(thread: Thread) {
+    let groups = threads_of(thread) / WORKGROUP;
+    let bin = place_of(group_of(thread), groups) * WORKGROUP + lane_of(thread);
     if (bin >= step.bins) {
         return;
     }

@@ -158,8 +158,8 @@ fn put_in_order(begin: u32, end: u32) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn collide_crowded(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let place_in_list = linear(id, groups);
+fn collide_crowded(thread: Thread) {
+    let place_in_list = linear(thread);
     if (place_in_list >= atomicLoad(&counters[LIST_CROWDS])) {
         return;
     }

@@ -14,8 +14,8 @@ fn hidden(s: u32, t: u32) -> bool {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn collide_parted(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let place_in_list = linear(id, groups);
+fn collide_parted(thread: Thread) {
+    let place_in_list = linear(thread);
     if (place_in_list >= atomicLoad(&counters[LIST_PARTED])) {
         return;
     }

@@ -83,8 +83,8 @@ fn screen(s: u32) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn complete_lists(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = linear(id, groups);
+fn complete_lists(thread: Thread) {
+    let entry = linear(thread);
     var s = NOBODY;
     if (step.ghosts == GHOSTS_ASKED) {
         s = asked_of(entry);

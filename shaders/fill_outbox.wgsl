@@ -9,8 +9,8 @@
 @group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn fill_outbox(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn fill_outbox(thread: Thread) {
+    let k = linear(thread);
     if (k >= min(atomicLoad(&counters[LIST_OUTBOX]), arrayLength(&sendings))) {
         return;
     }

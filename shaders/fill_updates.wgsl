@@ -12,8 +12,8 @@
 @group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn fill_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn fill_updates(thread: Thread) {
+    let k = linear(thread);
     if (k >= min(atomicLoad(&counters[LIST_UPDATES]), arrayLength(&sendings))) {
         return;
     }

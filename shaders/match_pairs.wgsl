@@ -15,8 +15,8 @@ override ROUNDS: u32;
 @group(0) @binding(32) var<storage, read> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn match_pairs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = chooser(linear(id, groups));
+fn match_pairs(thread: Thread) {
+    let s = chooser(linear(thread));
     if (s == NOBODY || atomicLoad(&counters[HELD]) > 0u) {
         return;
     }

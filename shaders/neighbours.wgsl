@@ -57,8 +57,8 @@ fn note(list: u32, entry: u32) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn neighbours_of(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
+fn neighbours_of(thread: Thread) {
+    let s = linear(thread);
     // The slots behind the last cell's hold no particle.
     if (s >= min(step.total, cell_start[step.bins])) {
         return;

@@ -8,8 +8,8 @@
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn neighbours_asked(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = asked_of(linear(id, groups));
+fn neighbours_asked(thread: Thread) {
+    let s = asked_of(linear(thread));
     if (s == NOBODY || (layers[s] & SEARCHED) != 0u) {
         return;
     }

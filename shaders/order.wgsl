@@ -31,8 +31,8 @@ fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn order(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = linear(id, groups);
+fn order(thread: Thread) {
+    let i = linear(thread);
     // Places behind the last particle: on a device alone, whose host learns late how many have left through vents, and where
     // particles have been dropped that are nowhere near this device.
     if (i >= cell_start[step.bins] && i < step.total) {

@@ -15,8 +15,8 @@
 @group(0) @binding(56) var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn pack_updates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = linear(id, groups);
+fn pack_updates(thread: Thread) {
+    let entry = linear(thread);
     if (entry >= atomicLoad(&counters[LIST_CHANGED])) {
         return;
     }

@@ -9,8 +9,8 @@
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 
 @compute @workgroup_size(WORKGROUP)
-fn recall(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn recall(thread: Thread) {
+    let k = linear(thread);
     if (k >= step.total) {
         return;
     }

@@ -36,9 +36,9 @@ fn touch_around(s: u32, cell: vec3<u32>) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn receive(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn receive(thread: Thread) {
     // The first entry says how many follow.
-    let entry = linear(id, groups) + 1u;
+    let entry = linear(thread) + 1u;
     if (entry > updates_in[0].cell) {
         return;
     }

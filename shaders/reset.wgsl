@@ -13,28 +13,25 @@ const FOURS: u32 = 4;
 @group(0) @binding(43) var<storage, read_write> asked_dispatches: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn reset(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-    @builtin(num_workgroups) groups: vec3<u32>,
-) {
-    let thread = linear(id, groups);
-    if (thread < LISTS) {
-        empty_list(thread);
-        empty_parts(thread);
-        atomicStore(&asked_dispatches[3u * thread], 0u);
-        atomicStore(&asked_dispatches[3u * thread + 1u], 1u);
-        atomicStore(&asked_dispatches[3u * thread + 2u], 1u);
+fn reset(thread: Thread) {
+    let k = linear(thread);
+    let lane = lane_of(thread);
+    if (k < LISTS) {
+        empty_list(k);
+        empty_parts(k);
+        atomicStore(&asked_dispatches[3u * k], 0u);
+        atomicStore(&asked_dispatches[3u * k + 1u], 1u);
+        atomicStore(&asked_dispatches[3u * k + 2u], 1u);
     }
     // Threads that run together write to fours that lie together.
-    var four = FOURS * (thread - lane) + lane;
-    for (var k = 0u; k < FOURS; k++) {
+    var four = FOURS * (k - lane) + lane;
+    for (var turn = 0u; turn < FOURS; turn++) {
         if (four < arrayLength(&cell_start)) {
             cell_start[four] = vec4<u32>(0u);
         }
         four += WORKGROUP;
     }
-    if (thread < arrayLength(&stretch_sums)) {
-        stretch_sums[thread] = 0u;
+    if (k < arrayLength(&stretch_sums)) {
+        stretch_sums[k] = 0u;
     }
 }

@@ -25,8 +25,8 @@ fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_cells(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let chunk = linear(id, groups);
+fn scan_cells(thread: Thread) {
+    let chunk = linear(thread);
     if (chunk > step.bins / CHUNK) {
         return;
     }

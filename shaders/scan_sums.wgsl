@@ -10,8 +10,8 @@
 @group(0) @binding(29) var<storage, read_write> stretch_sums: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn scan_sums(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let chunk = linear(id, groups);
+fn scan_sums(thread: Thread) {
+    let chunk = linear(thread);
     if (step.peers == 0u && chunk < LISTS) {
         if (chunk != LIST_BOUNCE && chunk != LIST_BOUNCE_ODD && chunk != COUNT_DROPPED) {
             empty_list(chunk);

@@ -74,8 +74,8 @@ fn is_own(s: u32) -> bool {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn settle(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let k = linear(id, groups);
+fn settle(thread: Thread) {
+    let k = linear(thread);
     let count = atomicLoad(&counters[PAIRS + step.round]);
     if (k >= count) {
         return;

@@ -11,8 +11,8 @@
 @group(0) @binding(53) var<storage, read> shares: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
-fn start_flights(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
+fn start_flights(thread: Thread) {
+    let s = linear(thread);
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }

@@ -29,8 +29,8 @@ const OPEN: u32 = 3;
 @group(0) @binding(41) var<storage, read> cuts: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
-fn weigh(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let s = linear(id, groups);
+fn weigh(thread: Thread) {
+    let s = linear(thread);
     if (s >= step.total) {
         return;
     }

@@ -1,4 +1,5 @@
-// The parameters of one step, and the index of a thread.
+//! uses: thread.wgsl
+// The parameters of one step.
 
 struct Step {
     // Slots of `particles` in use before this step's newborns. On a device among others some of them are
@@ -59,10 +60,3 @@ struct Step {
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ASKED: u32 = 2;
-
-override WORKGROUP: u32 = 64;
-
-// Dispatches larger than the limit per dimension are folded into two.
-fn linear(id: vec3<u32>, groups: vec3<u32>) -> u32 {
-    return id.x + id.y * groups.x * WORKGROUP;
-}

@@ -11,6 +11,9 @@ use super::GpuError;
 const PATIENCE: Duration = Duration::from_secs(120);
 const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
+/// Threads of the kernels' workgroups, or a divisor.
+const SMALLEST_WORKGROUP: u32 = 64;
+
 /// What `corpuscle adapters` lists, and what a run records.
 #[derive(Debug, Clone)]
 pub struct AdapterDescription {
@@ -23,6 +26,13 @@ pub struct AdapterDescription {
 impl AdapterDescription {
     pub fn is_cpu(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// A software device whose subgroups all have one size, of which each workgroup has a whole number.
+    fn has_full_subgroups(&self) -> bool {
+        let size = self.info.subgroup_max_size;
+        let fit = size > 0 && SMALLEST_WORKGROUP.is_multiple_of(size) && self.info.subgroup_min_size == size;
+        self.is_cpu() && self.features.contains(wgpu::Features::SUBGROUP) && fit
     }
 }
 
@@ -64,6 +74,7 @@ pub struct Device {
     queue: wgpu::Queue,
     adapter: AdapterDescription,
     timestamps: bool,
+    by_subgroups: bool,
     trouble: Arc<Mutex<Option<String>>>,
 }
 
@@ -73,6 +84,18 @@ impl Device {
     /// # Errors
     /// If there is no such adapter, or it refuses the device.
     pub fn open(selector: Option<&str>) -> Result<Device, GpuError> {
+        Device::opened(selector, true)
+    }
+
+    /// The same, but its kernels count their threads as those of a GPU do, which is no matter of results.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_as_gpu(selector: Option<&str>) -> Result<Device, GpuError> {
+        Device::opened(selector, false)
+    }
+
+    fn opened(selector: Option<&str>, subgroups: bool) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
         let known: Vec<String> =
             adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
@@ -88,7 +111,9 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        let features = adapter.features & wgpu::Features::TIMESTAMP_QUERY;
+        let by_subgroups = subgroups && adapter.has_full_subgroups();
+        let wanted = if by_subgroups { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
+        let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
             required_features: features,
@@ -107,7 +132,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, trouble })
+        Ok(Device { device, queue, adapter, timestamps, by_subgroups, trouble })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -121,6 +146,11 @@ impl Device {
     /// Whether phases can be timed on the device.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps
+    }
+
+    /// Whether kernels count their threads by subgroups, which on a software device is less work.
+    pub fn counts_by_subgroups(&self) -> bool {
+        self.by_subgroups
     }
 
     /// Nanoseconds per timestamp unit.

@@ -29,6 +29,14 @@ pub struct KernelSource {
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
     pub source: &'static str,
+    /// The same for a device whose kernels count their threads by subgroups (`shaders/shared/lane.subgroups.wgsl`), where that is another.
+    pub by_subgroups: Option<&'static str>,
+}
+
+impl KernelSource {
+    fn of(&self, device: &Device) -> &'static str {
+        self.by_subgroups.filter(|_| device.counts_by_subgroups()).unwrap_or(self.source)
+    }
 }
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
@@ -89,7 +97,7 @@ impl Kernel {
         });
         let module = device.raw().create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source.source.into()),
+            source: wgpu::ShaderSource::Wgsl(source.of(device).into()),
         });
         let pipeline_layout = device.raw().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(name),
