@@ -1,8 +1,8 @@
 //! Parses and validates every shader, so that a broken one is a build error, and generates the table of kernels.
 //!
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
-//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.subgroups.wgsl` takes the place of `a.wgsl` in
-//! a second source of each kernel that uses it, for devices whose kernels count their threads by subgroups. The result is
+//! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.software.wgsl` takes the place of `a.wgsl` in
+//! a second source of each kernel that uses it, for software devices. The result is
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
@@ -17,8 +17,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
-/// What their second sources may.
-const WITH_SUBGROUPS: Capabilities = Capabilities::SUBGROUP;
+/// What their sources for software devices may.
+const OF_SOFTWARE: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -29,8 +29,8 @@ const FNV_PRIME: u64 = 0x100_0000_01b3;
 pub struct Kernel {
     pub name: String,
     pub source: String,
-    /// Its second source, if that is another.
-    pub by_subgroups: Option<String>,
+    /// That for software devices, if it is another.
+    pub for_software: Option<String>,
     pub entry_point: String,
     /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
     pub bindings: Vec<(u32, String, &'static str)>,
@@ -135,12 +135,12 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
 pub fn table(kernels: &[Kernel]) -> String {
     let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
     for kernel in kernels {
-        let Kernel { name, source, by_subgroups, entry_point, .. } = kernel;
+        let Kernel { name, source, for_software, entry_point, .. } = kernel;
         rust += &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, bindings: &[");
         for (index, variable, access) in &kernel.bindings {
             rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
         }
-        rust += &format!("], overrides: &{:?}, source: {source:?}, by_subgroups: {by_subgroups:?} }},\n", kernel.overrides);
+        rust += &format!("], overrides: &{:?}, source: {source:?}, for_software: {for_software:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
@@ -153,27 +153,27 @@ impl Kernel {
         let mut second = Kernel::assemble(folder, path, true)?;
         used.extend(kernel.parts.iter().chain(&second.parts).map(|part| part.path.clone()));
         if second.source != kernel.source {
-            second.validate(WITH_SUBGROUPS)?;
+            second.validate(OF_SOFTWARE)?;
             if (&second.bindings, &second.overrides) != (&kernel.bindings, &kernel.overrides) {
-                return Err(second.report("by subgroups it has other bindings or constants", Vec::new(), Vec::new()));
+                return Err(second.report("for software devices it has other bindings or constants", Vec::new(), Vec::new()));
             }
-            kernel.by_subgroups = Some(second.source);
+            kernel.for_software = Some(second.source);
         }
         Ok(kernel)
     }
 
-    fn assemble(folder: &Path, path: &Path, by_subgroups: bool) -> Result<Kernel, String> {
+    fn assemble(folder: &Path, path: &Path, for_software: bool) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
-            by_subgroups: None,
+            for_software: None,
             entry_point: String::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
             parts: Vec::new(),
         };
-        kernel.append(folder, path, by_subgroups, &mut Vec::new())?;
+        kernel.append(folder, path, for_software, &mut Vec::new())?;
         Ok(kernel)
     }
 
@@ -182,15 +182,15 @@ impl Kernel {
         &mut self,
         folder: &Path,
         path: &Path,
-        by_subgroups: bool,
+        for_software: bool,
         visited: &mut Vec<PathBuf>,
     ) -> Result<(), String> {
         visited.push(path.to_path_buf());
         let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         for (line, used) in uses(&text) {
             let mut shared = folder.join("shared").join(used);
-            let second = shared.with_extension("subgroups.wgsl");
-            if by_subgroups && second.is_file() {
+            let second = shared.with_extension("software.wgsl");
+            if for_software && second.is_file() {
                 shared = second;
             }
             if visited.contains(&shared) {
@@ -203,7 +203,7 @@ impl Kernel {
                     shared.display()
                 ));
             }
-            self.append(folder, &shared, by_subgroups, visited)?;
+            self.append(folder, &shared, for_software, visited)?;
         }
         self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
         self.source += &text;

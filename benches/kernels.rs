@@ -336,7 +336,7 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
-        by_subgroups: None,
+        for_software: None,
     }))
 }
 

@@ -190,13 +190,13 @@ fn tally(
             atomicAdd(&counters[TALLY_OVERFLOW], 1u);
             continue;
         }
-        let whole = vec3<i32>(round(velocity));
-        let kinetic_units = u32(round(kinetic));
-        let spin_units = u32(round(spin));
+        let units = whole(velocity);
+        let kinetic_units = whole_size(kinetic);
+        let spin_units = whole_size(spin);
         if (GASES == 1u || gas == 0u) {
-            sums_of_first = added(sums_of_first, whole, kinetic_units, spin_units);
+            sums_of_first = added(sums_of_first, units, kinetic_units, spin_units);
         } else {
-            sums_of_second = added(sums_of_second, whole, kinetic_units, spin_units);
+            sums_of_second = added(sums_of_second, units, kinetic_units, spin_units);
         }
     }
     share(0u, sums_of_first);

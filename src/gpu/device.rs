@@ -74,7 +74,7 @@ pub struct Device {
     queue: wgpu::Queue,
     adapter: AdapterDescription,
     timestamps: bool,
-    by_subgroups: bool,
+    software_sources: bool,
     trouble: Arc<Mutex<Option<String>>>,
 }
 
@@ -87,7 +87,7 @@ impl Device {
         Device::opened(selector, true)
     }
 
-    /// The same, but its kernels count their threads as those of a GPU do, which is no matter of results.
+    /// The same, but with the kernels that a GPU has, which is no matter of results.
     ///
     /// # Errors
     /// As [`Device::open`].
@@ -95,7 +95,7 @@ impl Device {
         Device::opened(selector, false)
     }
 
-    fn opened(selector: Option<&str>, subgroups: bool) -> Result<Device, GpuError> {
+    fn opened(selector: Option<&str>, software_sources: bool) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
         let known: Vec<String> =
             adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
@@ -111,8 +111,8 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        let by_subgroups = subgroups && adapter.has_full_subgroups();
-        let wanted = if by_subgroups { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
+        let software_sources = software_sources && adapter.has_full_subgroups();
+        let wanted = if software_sources { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
         let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
@@ -132,7 +132,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, by_subgroups, trouble })
+        Ok(Device { device, queue, adapter, timestamps, software_sources, trouble })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -148,9 +148,9 @@ impl Device {
         self.timestamps
     }
 
-    /// Whether kernels count their threads by subgroups, which on a software device is less work.
-    pub fn counts_by_subgroups(&self) -> bool {
-        self.by_subgroups
+    /// Whether its kernels are those for software devices.
+    pub fn takes_software_sources(&self) -> bool {
+        self.software_sources
     }
 
     /// Nanoseconds per timestamp unit.

@@ -29,13 +29,13 @@ pub struct KernelSource {
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
     pub source: &'static str,
-    /// The same for a device whose kernels count their threads by subgroups (`shaders/shared/lane.subgroups.wgsl`), where that is another.
-    pub by_subgroups: Option<&'static str>,
+    /// The same for a software device (`shaders/shared/*.software.wgsl`), where that is another.
+    pub for_software: Option<&'static str>,
 }
 
 impl KernelSource {
     fn of(&self, device: &Device) -> &'static str {
-        self.by_subgroups.filter(|_| device.counts_by_subgroups()).unwrap_or(self.source)
+        self.for_software.filter(|_| device.takes_software_sources()).unwrap_or(self.source)
     }
 }
 

@@ -31,7 +31,7 @@ fn source() -> &'static KernelSource {
         ],
         overrides: &[("SEED_LOW", true), ("SEED_HIGH", true)],
         source: TEXT.get_or_init(|| include_str!("../../shaders/shared/philox.wgsl").to_owned() + PROBE),
-        by_subgroups: None,
+        for_software: None,
     })
 }
 

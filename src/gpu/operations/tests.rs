@@ -2,7 +2,7 @@ use super::*;
 use crate::gpu::KERNELS;
 
 const fn kernel(source: &'static str) -> KernelSource {
-    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, by_subgroups: None }
+    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, for_software: None }
 }
 
 const PROBE: KernelSource = kernel(

@@ -1,4 +1,4 @@
-// The same on a software device (src/gpu/device.rs): Mesa's from 23 or so on divides, for each of eight threads, to know which it is in its
+// The same on a software device: Mesa's from 23 or so on divides, for each of eight threads, to know which it is in its
 // workgroup, but knows what it runs together.
 
 struct Thread {
