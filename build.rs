@@ -140,7 +140,8 @@ pub fn table(kernels: &[Kernel]) -> String {
         for (index, variable, access) in &kernel.bindings {
             rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
         }
-        rust += &format!("], overrides: &{:?}, source: {source:?}, for_software: {for_software:?} }},\n", kernel.overrides);
+        rust +=
+            &format!("], overrides: &{:?}, source: {source:?}, for_software: {for_software:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
@@ -155,7 +156,11 @@ impl Kernel {
         if second.source != kernel.source {
             second.validate(OF_SOFTWARE)?;
             if (&second.bindings, &second.overrides) != (&kernel.bindings, &kernel.overrides) {
-                return Err(second.report("for software devices it has other bindings or constants", Vec::new(), Vec::new()));
+                return Err(second.report(
+                    "for software devices it has other bindings or constants",
+                    Vec::new(),
+                    Vec::new(),
+                ));
             }
             kernel.for_software = Some(second.source);
         }

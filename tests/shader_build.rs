@@ -119,6 +119,35 @@ fn files_that_use_each_other_end() {
     assert_eq!(build::kernels(dir.path()).unwrap().0.len(), 1);
 }
 
+/// Another form of a shared file makes a second source of the kernels that use it, as valid as the first.
+#[test]
+fn a_form_for_software_devices_makes_a_second_source() {
+    let twice = DOUBLE.replace("TWO * x", "x + x");
+    let second = |text: &str| {
+        folder(&[
+            ("advect.wgsl", KERNEL),
+            ("bin.wgsl", &KERNEL.replace("double.wgsl", "two.wgsl").replace("double", "TWO * ")),
+            ("shared/double.wgsl", DOUBLE),
+            ("shared/double.software.wgsl", text),
+            ("shared/two.wgsl", TWO),
+        ])
+    };
+    let dir = second(&twice);
+    let (kernels, unused) = build::kernels(dir.path()).unwrap();
+    assert!(unused.is_empty(), "{unused:?}");
+    assert!(kernels[0].source.contains("TWO * x") && !kernels[0].source.contains("x + x"));
+    let for_software = kernels[0].for_software.as_ref().expect("a second source");
+    assert!(for_software.contains("x + x") && !for_software.contains("TWO * x"), "{for_software}");
+    assert_eq!(kernels[1].for_software, None, "it uses no file of which there are two forms");
+
+    let broken = |text: &str| build::kernels(second(text).path()).err().expect("an error");
+    let named = broken(&twice.replace("x + x", "x + y"));
+    assert!(named.contains("double.software.wgsl:4:"), "{named}");
+    let bound = "@group(0) @binding(1) var<storage, read_write> more: array<u32>;\n".to_owned();
+    let other = broken(&(bound + &twice.replace("x + x", "x + more[0]")));
+    assert!(other.contains("other bindings or constants"), "{other}");
+}
+
 /// The kernels that only a bench compiles are as valid as the step's.
 #[test]
 fn the_kernels_of_the_benches_are_valid() {

@@ -10,7 +10,7 @@ use corpuscle::simulation::{
     SimulationError, Stock, initial_particles,
 };
 
-use crate::whole_run::{Run, Witness, device};
+use crate::whole_run::{Run, Witness};
 
 /// What must not matter.
 #[derive(Clone, Copy)]
@@ -80,8 +80,8 @@ pub struct World<'a> {
 
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
-        let device = device();
-        // (What these are compared with has the lists as suit the device.)
+        // (What these are compared with has lists and kernels as suit the device.)
+        let device = Device::open_as_gpu(None).expect("an adapter");
         let setup = |ranks| Setup::in_parts(model, &device, ranks).expect("a set-up");
         World { model, one: setup(1), several: setup(2), device }
     }

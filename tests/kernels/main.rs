@@ -15,6 +15,7 @@ mod coats;
 mod collide;
 mod exchange;
 mod fly;
+mod forms;
 mod halo;
 mod held;
 mod lists;

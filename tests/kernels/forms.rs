@@ -1,0 +1,96 @@
+//! What a software device has forms of its own for is the same in either, to the last bit.
+
+use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, Recording};
+
+use crate::oracle::random::Stream;
+use crate::rig::device;
+
+const WHOLE: [&str; 2] =
+    [include_str!("../../shaders/shared/whole.wgsl"), include_str!("../../shaders/shared/whole.software.wgsl")];
+const OF_WHOLE: &str = "
+@group(0) @binding(0) var<storage, read> inputs: array<f32>;
+@group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = inputs[id.x];
+    let signed = bitcast<vec3<u32>>(whole(vec3<f32>(x, -x, 0.5 * x)));
+    outputs[id.x] = vec4<u32>(signed, whole_size(abs(x)));
+}
+";
+
+const LANES: [&str; 2] =
+    [include_str!("../../shaders/shared/lane.wgsl"), include_str!("../../shaders/shared/lane.software.wgsl")];
+const OF_LANES: &str = "
+@group(0) @binding(0) var<storage, read> inputs: array<f32>;
+@group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(WORKGROUP)
+fn probe(thread: Thread) {
+    let k = linear(thread);
+    outputs[k] += vec4<u32>(group_of(thread), lane_of(thread), threads_of(thread), 1u);
+}
+";
+
+/// What a probe makes of one input for each of the threads of so many workgroups.
+fn probed(text: String, inputs: &[f32], groups: [u32; 3]) -> Vec<[u32; 4]> {
+    // A table of kernels is static; this one is as long as the program.
+    let source = Box::leak(Box::new(KernelSource {
+        name: "probe",
+        entry_point: "probe",
+        bindings: &[
+            Binding { index: 0, name: "inputs", access: Access::Read },
+            Binding { index: 1, name: "outputs", access: Access::ReadWrite },
+        ],
+        overrides: &[],
+        source: String::leak(text),
+        for_software: None,
+    }));
+    let buffers = [
+        device().storage_of("inputs", inputs).expect("memory"),
+        device().storage::<[u32; 4]>("outputs", inputs.len() as u64).expect("memory"),
+    ];
+    let kernel = Kernel::of(device(), source, &[]).expect("a kernel");
+    let find = |name: &str| buffers.get(usize::from(name == "outputs"));
+    let bound = kernel.bind(device(), find).expect("its buffers");
+    let mut recording = Recording::new(device());
+    bound.dispatch(recording.phase("probe"), 0, groups);
+    recording.submit();
+    device().read(&buffers[1], inputs.len()).expect("the device's answer")
+}
+
+#[test]
+fn whole_numbers_are_the_nearest_in_either_form() {
+    let mut stream = Stream::new(41);
+    // Halves and their neighbours, the ends of the integers and what lies beyond, nothing, and numbers of any size.
+    let mut inputs = vec![0.0, -0.0, 1e-40, 0.25, 2_147_483_520.0, -2_147_483_648.0, 4_294_967_040.0, 1e10, -3e38];
+    for half in (0..40).map(|k| k as f32 + 0.5).chain((1..31).map(|bits| (1u32 << bits) as f32)) {
+        inputs.extend([half, half.next_up(), half.next_down(), -half]);
+    }
+    while inputs.len() < 64 * 256 {
+        let exponent = 90 + stream.word() % 78;
+        inputs.push(f32::from_bits((stream.word() & 0x807f_ffff) | (exponent << 23)));
+    }
+    let outputs = WHOLE.map(|form| probed(form.to_owned() + OF_WHOLE, &inputs, [256, 1, 1]));
+    for (k, &x) in inputs.iter().enumerate() {
+        // Beyond the integers it is the last of them that 32 bits of floating point hold.
+        let nearest = |x: f32| x.round_ties_even().clamp(-2_147_483_648.0, 2_147_483_520.0) as i32 as u32;
+        let size = x.abs().round_ties_even().min(4_294_967_040.0) as u32;
+        for output in &outputs {
+            assert_eq!(output[k], [nearest(x), nearest(-x), nearest(0.5 * x), size], "{x:e}");
+        }
+    }
+}
+
+#[test]
+fn every_thread_has_a_number_of_its_own_in_either_form() {
+    let groups = [5, 3, 1];
+    let inputs = [0.0; 64 * 15];
+    let form = usize::from(device().takes_software_sources());
+    for lane in &LANES[..=form] {
+        let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
+        for (k, output) in (0..).zip(probed(text, &inputs, groups)) {
+            assert_eq!(output, [k / 64, k % 64, 64 * 15, 1]);
+        }
+    }
+}
