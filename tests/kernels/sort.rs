@@ -177,7 +177,7 @@ fn order_is_by_cells() {
 #[test]
 fn particles_of_cells_are_arranged() {
     const PARTED: u32 = 1 << 31;
-    let Sorted { world, particles, mut cell, .. } = sorted(12);
+    let Sorted { world, mut particles, mut cell, .. } = sorted(12);
     let cells = world.cells();
     let mut stream = Stream::new(13);
     // One cell has just as many as are few, another one more, others many more: all in the middle of the grid.
@@ -194,13 +194,18 @@ fn particles_of_cells_are_arranged() {
         cell[next..next + count as usize].fill(there);
         next += count as usize;
     }
+    let [nx, ny, _] = world.grid.cells;
+    let place_of = |of: u32| [of % nx, of / nx % ny, of / (nx * ny)];
+    // They lie in these cells.
+    for (particle, &of) in particles.iter_mut().zip(&cell) {
+        particle.position = place_of(of).map(|at| (2 * at + 1) << (cells.bits - 1));
+    }
     // In the box around a wall that moves, but not where it is.
     let parted = cells.index([5, 2, 2]);
     // A wall that is drawn in the first of these cells has moved by one and a half along x; its box is larger.
     let (low, high) = ([5, 2, 2], [6, 3, 2]);
     let moved = |of: u32| {
-        let [nx, ny, _] = world.grid.cells;
-        let at = [of % nx, of / nx % ny, of / (nx * ny)];
+        let at = place_of(of);
         at[0] == 6 && (0..3).all(|k| (low[k]..=high[k]).contains(&at[k]))
     };
     let mut list = world.walls.list.clone();
