@@ -1,5 +1,5 @@
-// The same on a software device: Mesa's from 23 or so on divides, for each of eight threads, to know which it is in its
-// workgroup, but knows what it runs together.
+// The same on a software device: Mesa's (25.0, not 22.3) divides, for each of eight threads, to know which it is in its workgroup, but knows which
+// of those that it runs together.
 
 struct Thread {
     @builtin(workgroup_id) group: vec3<u32>,

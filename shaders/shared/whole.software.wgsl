@@ -1,4 +1,4 @@
-// The same by the bits of a whole number, digits and how far they are to be shifted: Mesa's software device converts each of eight by itself.
+// The same by the bits of a whole number, digits and how far they are to be shifted: Mesa's software device (25.0, not 22.3) converts each of eight by itself.
 
 // The exponent of a number whose last digit is that of ones.
 const ONES: u32 = 150;

@@ -28,11 +28,17 @@ impl AdapterDescription {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// A software device whose subgroups all have one size, of which each workgroup has a whole number.
-    fn has_full_subgroups(&self) -> bool {
+    /// Whether it can run both forms of kernels: a software device whose subgroups all have one size, of which each workgroup has a whole number.
+    fn has_both_forms(&self) -> bool {
         let size = self.info.subgroup_max_size;
         let fit = size > 0 && SMALLEST_WORKGROUP.is_multiple_of(size) && self.info.subgroup_min_size == size;
         self.is_cpu() && self.features.contains(wgpu::Features::SUBGROUP) && fit
+    }
+
+    /// Mesa's of before 23, by its version, which has nothing of what the form for software devices goes around.
+    fn is_old_mesa(&self) -> bool {
+        let version = self.info.driver_info.strip_prefix("Mesa ").and_then(|text| text.split('.').next());
+        version.and_then(|major| major.parse::<u32>().ok()).is_some_and(|major| major < 23)
     }
 }
 
@@ -84,18 +90,18 @@ impl Device {
     /// # Errors
     /// If there is no such adapter, or it refuses the device.
     pub fn open(selector: Option<&str>) -> Result<Device, GpuError> {
-        Device::opened(selector, true)
-    }
-
-    /// The same, but with the kernels that a GPU has, which is no matter of results.
-    ///
-    /// # Errors
-    /// As [`Device::open`].
-    pub fn open_as_gpu(selector: Option<&str>) -> Result<Device, GpuError> {
         Device::opened(selector, false)
     }
 
-    fn opened(selector: Option<&str>, software_sources: bool) -> Result<Device, GpuError> {
+    /// The same with the form of kernels that it would not take, if it can run both, which is no matter of results.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_in_other_form(selector: Option<&str>) -> Result<Device, GpuError> {
+        Device::opened(selector, true)
+    }
+
+    fn opened(selector: Option<&str>, in_other_form: bool) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
         let known: Vec<String> =
             adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
@@ -111,8 +117,9 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        let software_sources = software_sources && adapter.has_full_subgroups();
-        let wanted = if software_sources { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
+        let both = adapter.has_both_forms();
+        let software_sources = both && adapter.is_old_mesa() == in_other_form;
+        let wanted = if both { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
         let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
@@ -146,6 +153,11 @@ impl Device {
     /// Whether phases can be timed on the device.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps
+    }
+
+    /// Whether it can run both forms of kernels, that for GPUs and that for software devices.
+    pub fn has_both_forms(&self) -> bool {
+        self.adapter.has_both_forms()
     }
 
     /// Whether its kernels are those for software devices.

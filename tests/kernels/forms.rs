@@ -86,7 +86,7 @@ fn whole_numbers_are_the_nearest_in_either_form() {
 fn every_thread_has_a_number_of_its_own_in_either_form() {
     let groups = [5, 3, 1];
     let inputs = [0.0; 64 * 15];
-    let form = usize::from(device().takes_software_sources());
+    let form = usize::from(device().has_both_forms());
     for lane in &LANES[..=form] {
         let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
         for (k, output) in (0..).zip(probed(text, &inputs, groups)) {
