@@ -3,7 +3,7 @@
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
 //! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.software.wgsl` takes the place of `a.wgsl` in
 //! a second source of each kernel that uses it, for software devices. The result is
-//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: source,
+//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: both sources,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
 //! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the commit of
@@ -18,7 +18,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
 /// What their sources for software devices may.
-const OF_SOFTWARE: Capabilities = Capabilities::SUBGROUP;
+const SOFTWARE_CAPABILITIES: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -118,6 +118,10 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
     let mut errors = Vec::new();
     let mut used = Vec::new();
     for path in wgsl_files(folder)? {
+        if path.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some()) {
+            errors.push(format!("{}: error: only files of shared/ have forms", path.display()));
+            continue;
+        }
         match Kernel::with_both(folder, &path, &mut used) {
             Ok(kernel) => kernels.push(kernel),
             Err(error) => errors.push(error),
@@ -154,8 +158,13 @@ impl Kernel {
         let mut second = Kernel::assemble(folder, path, true)?;
         used.extend(kernel.parts.iter().chain(&second.parts).map(|part| part.path.clone()));
         if second.source != kernel.source {
-            second.validate(OF_SOFTWARE)?;
-            if (&second.bindings, &second.overrides) != (&kernel.bindings, &kernel.overrides) {
+            second.validate(SOFTWARE_CAPABILITIES)?;
+            let sorted = |mut overrides: Vec<(String, bool)>| {
+                overrides.sort();
+                overrides
+            };
+            let overrides = [&second, &kernel].map(|kernel| sorted(kernel.overrides.clone()));
+            if second.bindings != kernel.bindings || overrides[0] != overrides[1] {
                 return Err(second.report(
                     "for software devices it has other bindings or constants",
                     Vec::new(),

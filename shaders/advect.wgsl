@@ -45,7 +45,7 @@ fn advect(thread: Thread) {
         atomicStore(&counters[COUNT_DROPPED], 0u);
     }
     if (COLLISIONS && step.peers == 0u && few_stretches()) {
-        empty_cells(s, threads_of(thread));
+        empty_cells(s, groups_of(thread) * WORKGROUP);
     }
     if (s >= step.total || (ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u)) {
         return;

@@ -1,6 +1,6 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl drawn.wgsl cell_gas.wgsl members.wgsl lay.wgsl
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
-// order by itself; those of other cells are listed.
+// order by itself; those of other cells are listed. A particle lies in the cell of its bin, so its place tells which that is.
 //
 // Reads `bins`, `cell_start`, `particles`, `cell_volume`, `motions` and `wall_list`; writes `sorted` (lay.wgsl), of cells of more than MEMBERS and of
 // the listed `slots`, and appends to `crowded`. One thread per particle as they lie in `particles`.

@@ -39,7 +39,7 @@ fn blocks(thread: Thread) {
         return;
     }
     add64(slot, 1u, 0u);
-    add64(slot + 2u, whole_size(energy), 0u);
+    add64(slot + 2u, rounded_unsigned(energy), 0u);
     // Too fast at level l if |v| TIME_STEP / 2^l is more than a cell.
     var reach = sqrt(speed2) * TIME_STEP * QUANTA / f32(1u << CELL_BITS);
     var level = 0u;

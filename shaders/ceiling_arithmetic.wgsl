@@ -1,4 +1,4 @@
-//! uses: step.wgsl
+//! uses: thread.wgsl
 // What the device's arithmetic gives: multiplications and additions in registers, for `corpuscle bench`.
 //
 // Writes `copy_to`. One thread per four words; LOOPS times 4 x 4 fused multiply-adds each.

@@ -1,4 +1,4 @@
-//! uses: step.wgsl
+//! uses: thread.wgsl
 // What the device's memory gives: a copy, for `corpuscle bench`.
 //
 // Reads `copy_from`, writes `copy_to`. One thread per four words.

@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl whole.wgsl
+//! uses: thread.wgsl particle.wgsl rounded.wgsl
 // The least that a step does with a particle, for `corpuscle bench`: reads it, moves it, writes where it is.
 //
 // Reads and writes `copy_to`. One thread per particle.
@@ -13,7 +13,7 @@ fn ceiling_flights(thread: Thread) {
     let k = linear(thread);
     if (k < arrayLength(&copy_to)) {
         let place = copy_to[k].place;
-        let moved = whole(copy_to[k].motion.xyz * QUANTA);
+        let moved = rounded(copy_to[k].motion.xyz * QUANTA);
         copy_to[k].place = vec4<u32>(place.xyz + bitcast<vec3<u32>>(moved), place.w);
     }
 }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl
+//! uses: thread.wgsl
 // How many reads of single words the device makes that its caches have, for `corpuscle bench`: what a kernel that gathers can
 // do at most.
 //

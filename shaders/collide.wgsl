@@ -1,6 +1,8 @@
 //! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl drawn.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 // The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //
+// The particles of a bin lie in its cell, so the first one's place tells which it is.
+//
 // Reads `cell_start`, `cell_volume`, `motions`, `wall_list`; reads and writes `sorted`, appends the cells that walls part
 // to `parted`, those that moving walls may touch to `moved`, others of more particles to `crowds`, and among other devices leaves the
 // number of a cell's candidates with its first particle, in `neighbour_count`, for the balance. One thread per cell; each works on its
@@ -146,8 +148,7 @@ fn place_of(group: u32, groups: u32) -> u32 {
 
 @compute @workgroup_size(WORKGROUP)
 fn collide(thread: Thread) {
-    let groups = threads_of(thread) / WORKGROUP;
-    let bin = place_of(group_of(thread), groups) * WORKGROUP + lane_of(thread);
+    let bin = place_of(group_of(thread), groups_of(thread)) * WORKGROUP + lane_of(thread);
     if (bin >= step.bins) {
         return;
     }

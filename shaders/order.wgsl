@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
+//! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
 // Sort: the particles to the places of their cells, in the order in which `bin` has counted them.
 //
 // Reads `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
@@ -52,7 +52,8 @@ fn order(thread: Thread) {
     let place = cell_start[cell] + bin.y;
     sorted[place] = whole;
     let particle = particle_of(whole);
-    let middle = shifted(particle.position, particle.velocity * (0.5 * step.dt));
+    let middle = middle_of(particle.position, particle.velocity);
+    // That of its bin, but where a driver rounds otherwise here than in `bin`.
     let place_in_grid = nearest_cell(middle);
     var mark = 0u;
     if (step.depth > 0u) {
@@ -69,7 +70,7 @@ fn order(thread: Thread) {
     }
     cells[place] = cell;
     var flags = select(0u, NEAR_WALL, may_part(place_in_grid));
-    flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)));
+    flags |= select(0u, ASTRAY, any(signed_cell(middle) != vec3<i32>(place_in_grid)) || local_index(place_in_grid) != cell);
     middles[place] = packed(middle) | flags;
     neighbour_count[place] = 0u;
     if (may_hit(particle.position, particle.velocity, birth_time(own_id), step.dt)) {

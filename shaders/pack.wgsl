@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
 // Exchange, part 1: which particles go to which devices: to every one that owns their cell or needs them as ghosts.
 //
 // Reads `border`, `particles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
@@ -20,7 +20,7 @@ fn pack(thread: Thread) {
     let place = vec3<i32>(cell);
     let index = border[entry].x;
     let particle = particles[index];
-    let middle = packed(shifted(particle.position, particle.velocity * (0.5 * step.dt)));
+    let middle = packed(middle_of(particle.position, particle.velocity));
     var reach = 0;
     if (step.depth > 0u) {
         // With room to spare: whoever is brought up to date later has been sent here.

@@ -1,13 +1,12 @@
-//! uses: step.wgsl grid.wgsl local.wgsl coarse.wgsl first_flight.wgsl
+//! uses: step.wgsl grid.wgsl middle.wgsl coarse.wgsl first_flight.wgsl
 // The flights with which the particles start the step, where their diameters are capped, which the search asks them for; else the search starts them.
 //
-// Reads `sorted`, `cells`, `newborns`, `shares`, the number of particles behind `cell_start`; writes `flights`. One thread per particle, which writes
+// Reads `sorted`, `newborns`, `shares`, the number of particles behind `cell_start`; writes `flights`. One thread per particle, which writes
 // its own flight. Flights are where the particles were from which they have been sorted, so `order` cannot write them.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(8) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
 @group(0) @binding(53) var<storage, read> shares: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -16,6 +15,6 @@ fn start_flights(thread: Thread) {
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    let middle = shifted(sorted[s].place.xyz, sorted[s].motion.xyz * (0.5 * step.dt));
+    let middle = middle_of(sorted[s].place.xyz, sorted[s].motion.xyz);
     flights[2u * s] = first_flight(s, shares[block_of(nearest_cell(middle))]);
 }

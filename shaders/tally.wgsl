@@ -190,9 +190,9 @@ fn tally(
             atomicAdd(&counters[TALLY_OVERFLOW], 1u);
             continue;
         }
-        let units = whole(velocity);
-        let kinetic_units = whole_size(kinetic);
-        let spin_units = whole_size(spin);
+        let units = rounded(velocity);
+        let kinetic_units = rounded_unsigned(kinetic);
+        let spin_units = rounded_unsigned(spin);
         if (GASES == 1u || gas == 0u) {
             sums_of_first = added(sums_of_first, units, kinetic_units, spin_units);
         } else {

@@ -140,6 +140,8 @@ fn a_form_for_software_devices_makes_a_second_source() {
     assert!(for_software.contains("x + x") && !for_software.contains("TWO * x"), "{for_software}");
     assert_eq!(kernels[1].for_software, None, "it uses no file of which there are two forms");
 
+    let kernel = error(&[("advect.software.wgsl", "fn main() {}\n")]);
+    assert!(kernel.contains("shaders/advect.software.wgsl: error: only files of shared/ have forms"), "{kernel}");
     let broken = |text: &str| build::kernels(second(text).path()).err().expect("an error");
     let named = broken(&twice.replace("x + x", "x + y"));
     assert!(named.contains("double.software.wgsl:4:"), "{named}");

@@ -1,4 +1,4 @@
-//! uses: whole.wgsl
+//! uses: rounded.wgsl
 // The one global cell grid and its fixed-point positions (src/geometry/grid.rs).
 
 override CELLS_X: u32;
@@ -25,7 +25,7 @@ fn in_grid(c: vec3<u32>) -> bool {
 // A position moved by d metres, rounded to the nearest quantum. Below the origin it wraps to a huge
 // number, which no cell of the grid has.
 fn shifted(p: vec3<u32>, d: vec3<f32>) -> vec3<u32> {
-    return p + bitcast<vec3<u32>>(whole(d * QUANTA));
+    return p + bitcast<vec3<u32>>(rounded(d * QUANTA));
 }
 
 // b - a in metres; the difference of integers is exact.

@@ -11,7 +11,7 @@ fn linear(thread: Thread) -> u32 {
     return group_of(thread) * WORKGROUP + lane_of(thread);
 }
 
-// Threads of the dispatch.
-fn threads_of(thread: Thread) -> u32 {
-    return thread.groups.x * thread.groups.y * WORKGROUP;
+// Workgroups of the dispatch.
+fn groups_of(thread: Thread) -> u32 {
+    return thread.groups.x * thread.groups.y;
 }

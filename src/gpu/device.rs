@@ -11,8 +11,8 @@ use super::GpuError;
 const PATIENCE: Duration = Duration::from_secs(120);
 const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
-/// Threads of the kernels' workgroups, or a divisor.
-const SMALLEST_WORKGROUP: u32 = 64;
+/// A divisor of the threads of any workgroup of kernels with two forms.
+pub const OF_WORKGROUPS: u32 = 64;
 
 /// What `corpuscle adapters` lists, and what a run records.
 #[derive(Debug, Clone)]
@@ -31,15 +31,16 @@ impl AdapterDescription {
     /// Whether it can run both forms of kernels: a software device whose subgroups all have one size, of which each workgroup has a whole number.
     fn has_both_forms(&self) -> bool {
         let size = self.info.subgroup_max_size;
-        let fit = size > 0 && SMALLEST_WORKGROUP.is_multiple_of(size) && self.info.subgroup_min_size == size;
+        let fit = size > 0 && OF_WORKGROUPS.is_multiple_of(size) && self.info.subgroup_min_size == size;
         self.is_cpu() && self.features.contains(wgpu::Features::SUBGROUP) && fit
     }
+}
 
-    /// Mesa's of before 23, by its version, which has nothing of what the form for software devices goes around.
-    fn is_old_mesa(&self) -> bool {
-        let version = self.info.driver_info.strip_prefix("Mesa ").and_then(|text| text.split('.').next());
-        version.and_then(|major| major.parse::<u32>().ok()).is_some_and(|major| major < 23)
-    }
+/// Mesa's of before 23, by what it says of its version: 22.3 has nothing of what the form for software devices goes around, 25.0 has. Those between
+/// are not measured.
+fn is_old_mesa(driver_info: &str) -> bool {
+    let version = driver_info.strip_prefix("Mesa ").and_then(|text| text.split('.').next());
+    version.and_then(|major| major.parse::<u32>().ok()).is_some_and(|major| major < 23)
 }
 
 fn instance() -> wgpu::Instance {
@@ -118,7 +119,7 @@ impl Device {
             });
         };
         let both = adapter.has_both_forms();
-        let software_sources = both && adapter.is_old_mesa() == in_other_form;
+        let software_sources = both && is_old_mesa(&adapter.info.driver_info) == in_other_form;
         let wanted = if both { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
         let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
         let descriptor = wgpu::DeviceDescriptor {
@@ -217,5 +218,18 @@ impl Device {
 fn note(trouble: &Mutex<Option<String>>, text: String) {
     if let Ok(mut slot) = trouble.lock() {
         slot.get_or_insert(text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_old_mesa;
+
+    #[test]
+    fn mesa_tells_its_version() {
+        assert!(is_old_mesa("Mesa 22.3.6 (LLVM 15.0.6)"));
+        for other in ["Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)", "Mesa 23.1.0-devel", "Mesa", "22.3.6", "580.159.04", ""] {
+            assert!(!is_old_mesa(other), "{other}");
+        }
     }
 }

@@ -80,7 +80,7 @@ pub struct World<'a> {
 
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
-        // (What these are compared with has lists and kernels as suit the device.)
+        // (What these are compared with has lists and kernels as suit the device; these have the other form of kernels, if it can run both.)
         let device = Device::open_in_other_form(None).expect("an adapter");
         let setup = |ranks| Setup::in_parts(model, &device, ranks).expect("a set-up");
         World { model, one: setup(1), several: setup(2), device }

@@ -1,21 +1,21 @@
 //! What a software device has forms of its own for is the same in either, to the last bit.
 
-use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, Recording};
+use corpuscle::gpu::{Access, Binding, Device, Kernel, KernelSource, Recording};
 
 use crate::oracle::random::Stream;
 use crate::rig::device;
 
-const WHOLE: [&str; 2] =
-    [include_str!("../../shaders/shared/whole.wgsl"), include_str!("../../shaders/shared/whole.software.wgsl")];
-const OF_WHOLE: &str = "
+const ROUNDED: [&str; 2] =
+    [include_str!("../../shaders/shared/rounded.wgsl"), include_str!("../../shaders/shared/rounded.software.wgsl")];
+const OF_ROUNDED: &str = "
 @group(0) @binding(0) var<storage, read> inputs: array<f32>;
 @group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = inputs[id.x];
-    let signed = bitcast<vec3<u32>>(whole(vec3<f32>(x, -x, 0.5 * x)));
-    outputs[id.x] = vec4<u32>(signed, whole_size(abs(x)));
+    let signed = bitcast<vec3<u32>>(rounded(vec3<f32>(x, -x, 0.5 * x)));
+    outputs[id.x] = vec4<u32>(signed, rounded_unsigned(abs(x)));
 }
 ";
 
@@ -28,12 +28,22 @@ const OF_LANES: &str = "
 @compute @workgroup_size(WORKGROUP)
 fn probe(thread: Thread) {
     let k = linear(thread);
-    outputs[k] += vec4<u32>(group_of(thread), lane_of(thread), threads_of(thread), 1u);
+    outputs[k] += vec4<u32>(group_of(thread), lane_of(thread), groups_of(thread), 1u);
 }
 ";
 
 /// What a probe makes of one input for each of the threads of so many workgroups.
 fn probed(text: String, inputs: &[f32], groups: [u32; 3]) -> Vec<[u32; 4]> {
+    probed_on(device(), text, None, inputs, groups)
+}
+
+fn probed_on(
+    device: &Device,
+    text: String,
+    for_software: Option<&'static str>,
+    inputs: &[f32],
+    groups: [u32; 3],
+) -> Vec<[u32; 4]> {
     // A table of kernels is static; this one is as long as the program.
     let source = Box::leak(Box::new(KernelSource {
         name: "probe",
@@ -44,19 +54,19 @@ fn probed(text: String, inputs: &[f32], groups: [u32; 3]) -> Vec<[u32; 4]> {
         ],
         overrides: &[],
         source: String::leak(text),
-        for_software: None,
+        for_software,
     }));
     let buffers = [
-        device().storage_of("inputs", inputs).expect("memory"),
-        device().storage::<[u32; 4]>("outputs", inputs.len() as u64).expect("memory"),
+        device.storage_of("inputs", inputs).expect("memory"),
+        device.storage::<[u32; 4]>("outputs", inputs.len() as u64).expect("memory"),
     ];
-    let kernel = Kernel::of(device(), source, &[]).expect("a kernel");
+    let kernel = Kernel::of(device, source, &[]).expect("a kernel");
     let find = |name: &str| buffers.get(usize::from(name == "outputs"));
-    let bound = kernel.bind(device(), find).expect("its buffers");
-    let mut recording = Recording::new(device());
+    let bound = kernel.bind(device, find).expect("its buffers");
+    let mut recording = Recording::new(device);
     bound.dispatch(recording.phase("probe"), 0, groups);
     recording.submit();
-    device().read(&buffers[1], inputs.len()).expect("the device's answer")
+    device.read(&buffers[1], inputs.len()).expect("the device's answer")
 }
 
 #[test]
@@ -71,7 +81,7 @@ fn whole_numbers_are_the_nearest_in_either_form() {
         let exponent = 90 + stream.word() % 78;
         inputs.push(f32::from_bits((stream.word() & 0x807f_ffff) | (exponent << 23)));
     }
-    let outputs = WHOLE.map(|form| probed(form.to_owned() + OF_WHOLE, &inputs, [256, 1, 1]));
+    let outputs = ROUNDED.map(|form| probed(form.to_owned() + OF_ROUNDED, &inputs, [256, 1, 1]));
     for (k, &x) in inputs.iter().enumerate() {
         // Beyond the integers it is the last of them that 32 bits of floating point hold.
         let nearest = |x: f32| x.round_ties_even().clamp(-2_147_483_648.0, 2_147_483_520.0) as i32 as u32;
@@ -80,6 +90,8 @@ fn whole_numbers_are_the_nearest_in_either_form() {
             assert_eq!(output[k], [nearest(x), nearest(-x), nearest(0.5 * x), size], "{x:e}");
         }
     }
+    // The check can fail: with numbers rounded away from zero, or toward it.
+    assert!(inputs.iter().any(|x| x.round_ties_even() != x.round() && x.trunc() != x.round()));
 }
 
 #[test]
@@ -90,7 +102,28 @@ fn every_thread_has_a_number_of_its_own_in_either_form() {
     for lane in &LANES[..=form] {
         let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
         for (k, output) in (0..).zip(probed(text, &inputs, groups)) {
-            assert_eq!(output, [k / 64, k % 64, 64 * 15, 1]);
+            assert_eq!(output, [k / 64, k % 64, 15, 1]);
         }
     }
+}
+
+/// A device takes the form that it says, and can be had with the other.
+#[test]
+fn a_device_takes_its_form_of_a_kernel() {
+    let text = |form: u32| {
+        format!(
+            "@group(0) @binding(0) var<storage, read> inputs: array<f32>;
+            @group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+            @compute @workgroup_size(1)
+            fn probe() {{ outputs[0] = vec4<u32>({form}u, bitcast<u32>(inputs[0]), 0u, 0u); }}"
+        )
+    };
+    let form = |device: &Device| probed_on(device, text(1), Some(String::leak(text(2))), &[0.0], [1, 1, 1])[0][0];
+    let other = Device::open_in_other_form(None).expect("a device");
+    for device in [device(), &other] {
+        assert_eq!(form(device), 1 + u32::from(device.takes_software_sources()));
+    }
+    assert_eq!(device().takes_software_sources() != other.takes_software_sources(), device().has_both_forms());
+    // Lavapipe can run both: else other tests would compare a form with itself.
+    assert!(device().has_both_forms() || !device().adapter().info.name.contains("llvmpipe"));
 }

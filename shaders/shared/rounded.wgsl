@@ -1,10 +1,10 @@
 // The nearest whole numbers, of two as near the even one.
 
-fn whole(x: vec3<f32>) -> vec3<i32> {
+fn rounded(x: vec3<f32>) -> vec3<i32> {
     return vec3<i32>(round(x));
 }
 
 // Of one that is not negative.
-fn whole_size(x: f32) -> u32 {
+fn rounded_unsigned(x: f32) -> u32 {
     return u32(round(x));
 }

@@ -12,13 +12,13 @@ fn digits_of(bits: vec3<u32>) -> vec3<u32> {
     return (digits << up) >> down;
 }
 
-fn whole(x: vec3<f32>) -> vec3<i32> {
+fn rounded(x: vec3<f32>) -> vec3<i32> {
     // As far as integers go, as a conversion does.
     let bits = bitcast<vec3<i32>>(clamp(round(x), vec3<f32>(-2147483648.0), vec3<f32>(2147483520.0)));
     let sign = bits >> vec3<u32>(31u);
     return (bitcast<vec3<i32>>(digits_of(bitcast<vec3<u32>>(bits))) ^ sign) - sign;
 }
 
-fn whole_size(x: f32) -> u32 {
+fn rounded_unsigned(x: f32) -> u32 {
     return digits_of(vec3<u32>(bitcast<u32>(clamp(round(x), 0.0, 4294967040.0)))).x;
 }
