@@ -215,5 +215,5 @@ fn kernels_put_as_many_in_order_as_the_host_has_it() {
 /// In their form for software devices kernels count on it.
 #[test]
 fn workgroups_have_whole_subgroups() {
-    assert!(corpuscle::subdomain::WORKGROUP.is_multiple_of(corpuscle::gpu::OF_WORKGROUPS));
+    assert!(corpuscle::subdomain::WORKGROUP.is_multiple_of(corpuscle::gpu::WORKGROUP_DIVISOR));
 }

@@ -29,6 +29,13 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
         1e-9 * ceilings.loads,
         1e-6 * ceilings.flights
     ))?;
+    let adapter = device.adapter();
+    if adapter.is_cpu() && adapter.has_old_mesa() {
+        let driver = &adapter.info.driver_info;
+        say(&format!(
+            "driver: {driver}; one from 25 on is up to twice as fast (docs/performance.md, \"Which Mesa\")\n"
+        ))?;
+    }
     let (mut all, mut failed) = (Vec::new(), Vec::new());
     for scene in scenes {
         for &method in &methods {

@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
 /// A divisor of the threads of any workgroup of kernels with two forms.
-pub const OF_WORKGROUPS: u32 = 64;
+pub const WORKGROUP_DIVISOR: u32 = 64;
 
 /// What `corpuscle adapters` lists, and what a run records.
 #[derive(Debug, Clone)]
@@ -28,10 +28,15 @@ impl AdapterDescription {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
+    /// Whether its driver is Mesa of before 23, whose lavapipe is slower than those since.
+    pub fn has_old_mesa(&self) -> bool {
+        is_old_mesa(&self.info.driver_info)
+    }
+
     /// Whether it can run both forms of kernels: a software device whose subgroups all have one size, of which each workgroup has a whole number.
     fn has_both_forms(&self) -> bool {
         let size = self.info.subgroup_max_size;
-        let fit = size > 0 && OF_WORKGROUPS.is_multiple_of(size) && self.info.subgroup_min_size == size;
+        let fit = size > 0 && WORKGROUP_DIVISOR.is_multiple_of(size) && self.info.subgroup_min_size == size;
         self.is_cpu() && self.features.contains(wgpu::Features::SUBGROUP) && fit
     }
 }
@@ -119,7 +124,7 @@ impl Device {
             });
         };
         let both = adapter.has_both_forms();
-        let software_sources = both && is_old_mesa(&adapter.info.driver_info) == in_other_form;
+        let software_sources = both && adapter.has_old_mesa() == in_other_form;
         let wanted = if both { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
         let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
         let descriptor = wgpu::DeviceDescriptor {

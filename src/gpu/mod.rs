@@ -7,7 +7,7 @@ mod operations;
 mod timer;
 
 pub use buffer::Readback;
-pub use device::{AdapterDescription, Device, OF_WORKGROUPS, adapters};
+pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
 pub use kernel::{Access, Binding, BoundKernel, Constants, KERNELS, Kernel, KernelSource, STEP_BYTES, fold};
 pub use operations::{Operations, Stretch};
 pub use timer::{PhaseTimer, Recording};
