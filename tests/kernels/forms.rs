@@ -1,8 +1,9 @@
 //! What a software device has forms of its own for is the same in either, to the last bit.
 
-use corpuscle::gpu::{Access, Binding, Device, Kernel, KernelSource, Recording};
+use corpuscle::gpu::Device;
 
 use crate::oracle::random::Stream;
+use crate::probe::Probe;
 use crate::rig::device;
 
 const ROUNDED: [&str; 2] =
@@ -32,43 +33,6 @@ fn probe(thread: Thread) {
 }
 ";
 
-/// What a probe makes of one input for each of the threads of so many workgroups.
-fn probed(text: String, inputs: &[f32], groups: [u32; 3]) -> Vec<[u32; 4]> {
-    probed_on(device(), text, None, inputs, groups)
-}
-
-fn probed_on(
-    device: &Device,
-    text: String,
-    for_software: Option<&'static str>,
-    inputs: &[f32],
-    groups: [u32; 3],
-) -> Vec<[u32; 4]> {
-    // A table of kernels is static; this one is as long as the program.
-    let source = Box::leak(Box::new(KernelSource {
-        name: "probe",
-        entry_point: "probe",
-        bindings: &[
-            Binding { index: 0, name: "inputs", access: Access::Read },
-            Binding { index: 1, name: "outputs", access: Access::ReadWrite },
-        ],
-        overrides: &[],
-        source: String::leak(text),
-        for_software,
-    }));
-    let buffers = [
-        device.storage_of("inputs", inputs).expect("memory"),
-        device.storage::<[u32; 4]>("outputs", inputs.len() as u64).expect("memory"),
-    ];
-    let kernel = Kernel::of(device, source, &[]).expect("a kernel");
-    let find = |name: &str| buffers.get(usize::from(name == "outputs"));
-    let bound = kernel.bind(device, find).expect("its buffers");
-    let mut recording = Recording::new(device);
-    bound.dispatch(recording.phase("probe"), 0, groups);
-    recording.submit();
-    device.read(&buffers[1], inputs.len()).expect("the device's answer")
-}
-
 #[test]
 fn whole_numbers_are_the_nearest_in_either_form() {
     let mut stream = Stream::new(41);
@@ -81,7 +45,8 @@ fn whole_numbers_are_the_nearest_in_either_form() {
         let exponent = 90 + stream.word() % 78;
         inputs.push(f32::from_bits((stream.word() & 0x807f_ffff) | (exponent << 23)));
     }
-    let outputs = ROUNDED.map(|form| probed(form.to_owned() + OF_ROUNDED, &inputs, [256, 1, 1]));
+    let outputs = ROUNDED
+        .map(|form| Probe::new(form.to_owned() + OF_ROUNDED, &[]).run(device(), &inputs, inputs.len(), [256, 1, 1]));
     for (k, &x) in inputs.iter().enumerate() {
         // Beyond the integers it is the last of them that 32 bits of floating point hold.
         let nearest = |x: f32| x.round_ties_even().clamp(-2_147_483_648.0, 2_147_483_520.0) as i32 as u32;
@@ -97,11 +62,10 @@ fn whole_numbers_are_the_nearest_in_either_form() {
 #[test]
 fn every_thread_has_a_number_of_its_own_in_either_form() {
     let groups = [5, 3, 1];
-    let inputs = [0.0; 64 * 15];
     let form = usize::from(device().has_both_forms());
     for lane in &LANES[..=form] {
         let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
-        for (k, output) in (0..).zip(probed(text, &inputs, groups)) {
+        for (k, output) in (0..).zip(Probe::new(text, &[]).run(device(), &[0.0f32], 64 * 15, groups)) {
             assert_eq!(output, [k / 64, k % 64, 15, 1]);
         }
     }
@@ -118,7 +82,7 @@ fn a_device_takes_its_form_of_a_kernel() {
             fn probe() {{ outputs[0] = vec4<u32>({form}u, bitcast<u32>(inputs[0]), 0u, 0u); }}"
         )
     };
-    let form = |device: &Device| probed_on(device, text(1), Some(String::leak(text(2))), &[0.0], [1, 1, 1])[0][0];
+    let form = |device: &Device| Probe::new(text(1), &[]).or(text(2)).run(device, &[0.0f32], 1, [1, 1, 1])[0][0];
     let other = Device::open_in_other_form(None).expect("a device");
     for device in [device(), &other] {
         assert_eq!(form(device), 1 + u32::from(device.takes_software_sources()));

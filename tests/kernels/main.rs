@@ -25,6 +25,7 @@ mod moved;
 mod neighbour_lists;
 mod neighbours;
 mod philox;
+mod probe;
 mod rig;
 mod scan;
 mod screen;

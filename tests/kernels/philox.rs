@@ -1,10 +1,7 @@
 //! The device's Philox, alone in a probe, is the published function.
 
-use std::sync::OnceLock;
-
-use corpuscle::gpu::{Access, Binding, Kernel, KernelSource, Recording};
-
 use crate::oracle::random::{Stream, philox};
+use crate::probe::Probe;
 use crate::rig::device;
 
 const PROBE: &str = "
@@ -19,22 +16,6 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
-fn source() -> &'static KernelSource {
-    static TEXT: OnceLock<String> = OnceLock::new();
-    static SOURCE: OnceLock<KernelSource> = OnceLock::new();
-    SOURCE.get_or_init(|| KernelSource {
-        name: "probe",
-        entry_point: "probe",
-        bindings: &[
-            Binding { index: 0, name: "inputs", access: Access::Read },
-            Binding { index: 1, name: "outputs", access: Access::ReadWrite },
-        ],
-        overrides: &[("SEED_LOW", true), ("SEED_HIGH", true)],
-        source: TEXT.get_or_init(|| include_str!("../../shaders/shared/philox.wgsl").to_owned() + PROBE),
-        for_software: None,
-    })
-}
-
 #[test]
 fn the_device_draws_the_published_philox() {
     let count = 64 * 64;
@@ -44,17 +25,9 @@ fn the_device_draws_the_published_philox() {
     inputs[..6].fill(0);
     inputs[6..12].fill(u32::MAX);
     inputs[12..18].copy_from_slice(&[0xffff, 0xffff_0000, 0x1_0000, 0x8000_8000, 1, u32::MAX]);
-    let buffers = [
-        device().storage_of("inputs", &inputs).expect("memory"),
-        device().storage::<[u32; 4]>("outputs", count as u64).expect("memory"),
-    ];
-    let kernel = Kernel::of(device(), source(), &[("SEED_LOW", 0.0), ("SEED_HIGH", 0.0)]).expect("a kernel");
-    let find = |name: &str| buffers.get(usize::from(name == "outputs"));
-    let bound = kernel.bind(device(), find).expect("its buffers");
-    let mut recording = Recording::new(device());
-    bound.dispatch(recording.phase("probe"), 0, [64, 1, 1]);
-    recording.submit();
-    let outputs: Vec<[u32; 4]> = device().read(&buffers[1], count).expect("the device's answer");
+    let text = include_str!("../../shaders/shared/philox.wgsl").to_owned() + PROBE;
+    let probe = Probe::new(text, &[("SEED_LOW", 0.0), ("SEED_HIGH", 0.0)]);
+    let outputs = probe.run(device(), &inputs, count, [64, 1, 1]);
     for (input, output) in inputs.chunks_exact(6).zip(outputs) {
         let (counter, key) = ([input[0], input[1], input[2], input[3]], [input[4], input[5]]);
         assert_eq!(output, philox(counter, key), "{counter:?} {key:?}");
