@@ -2,8 +2,8 @@
 //!
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
 //! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.software.wgsl` takes the place of `a.wgsl` in
-//! a second source of each kernel that uses it, for software devices. The result is
-//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: both sources,
+//! another source of each kernel that uses it, for software devices, and `a.gpu.wgsl` in one for GPUs. The result is
+//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: all sources,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
 //! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the commit of
@@ -17,8 +17,9 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
-/// What their sources for software devices may.
-const SOFTWARE_CAPABILITIES: Capabilities = Capabilities::SUBGROUP;
+/// The forms that a shared file may have beside its own, in the order of `Form` (src/gpu/kernel.rs), and what the sources made of them may ask.
+pub const FORMS: [&str; 2] = ["software", "gpu"];
+const CAPABILITIES_OF_FORMS: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -29,8 +30,8 @@ const FNV_PRIME: u64 = 0x100_0000_01b3;
 pub struct Kernel {
     pub name: String,
     pub source: String,
-    /// That for software devices, if it is another.
-    pub for_software: Option<String>,
+    /// Those of the other forms, where they are others.
+    pub forms: [Option<String>; FORMS.len()],
     pub entry_point: String,
     /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
     pub bindings: Vec<(u32, String, &'static str)>,
@@ -122,7 +123,7 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
             errors.push(format!("{}: error: only files of shared/ have forms", path.display()));
             continue;
         }
-        match Kernel::with_both(folder, &path, &mut used) {
+        match Kernel::with_forms(folder, &path, &mut used) {
             Ok(kernel) => kernels.push(kernel),
             Err(error) => errors.push(error),
         }
@@ -139,55 +140,55 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
 pub fn table(kernels: &[Kernel]) -> String {
     let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
     for kernel in kernels {
-        let Kernel { name, source, for_software, entry_point, .. } = kernel;
+        let Kernel { name, source, forms, entry_point, .. } = kernel;
         rust += &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, bindings: &[");
         for (index, variable, access) in &kernel.bindings {
             rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
         }
-        rust +=
-            &format!("], overrides: &{:?}, source: {source:?}, for_software: {for_software:?} }},\n", kernel.overrides);
+        rust += &format!("], overrides: &{:?}, source: {source:?}, forms: {forms:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
 
 impl Kernel {
-    /// A kernel with both of its sources, each of them valid. What files it uses is added to `used`.
-    fn with_both(folder: &Path, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
-        let mut kernel = Kernel::assemble(folder, path, false)?;
+    /// A kernel with all of its sources, each of them valid. What files it uses is added to `used`.
+    fn with_forms(folder: &Path, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
+        let mut kernel = Kernel::assemble(folder, path, None)?;
         kernel.validate(CAPABILITIES)?;
-        let mut second = Kernel::assemble(folder, path, true)?;
-        used.extend(kernel.parts.iter().chain(&second.parts).map(|part| part.path.clone()));
-        if second.source != kernel.source {
-            second.validate(SOFTWARE_CAPABILITIES)?;
+        used.extend(kernel.parts.iter().map(|part| part.path.clone()));
+        for (at, form) in FORMS.into_iter().enumerate() {
+            let mut other = Kernel::assemble(folder, path, Some(form))?;
+            used.extend(other.parts.iter().map(|part| part.path.clone()));
+            if other.source == kernel.source {
+                continue;
+            }
+            other.validate(CAPABILITIES_OF_FORMS)?;
             let sorted = |mut overrides: Vec<(String, bool)>| {
                 overrides.sort();
                 overrides
             };
-            let overrides = [&second, &kernel].map(|kernel| sorted(kernel.overrides.clone()));
-            if second.bindings != kernel.bindings || overrides[0] != overrides[1] {
-                return Err(second.report(
-                    "for software devices it has other bindings or constants",
-                    Vec::new(),
-                    Vec::new(),
-                ));
+            let overrides = [&other, &kernel].map(|kernel| sorted(kernel.overrides.clone()));
+            if other.bindings != kernel.bindings || overrides[0] != overrides[1] {
+                let message = format!("in its form {form} it has other bindings or constants");
+                return Err(other.report(&message, Vec::new(), Vec::new()));
             }
-            kernel.for_software = Some(second.source);
+            kernel.forms[at] = Some(other.source);
         }
         Ok(kernel)
     }
 
-    fn assemble(folder: &Path, path: &Path, for_software: bool) -> Result<Kernel, String> {
+    fn assemble(folder: &Path, path: &Path, form: Option<&str>) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
-            for_software: None,
+            forms: Default::default(),
             entry_point: String::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
             parts: Vec::new(),
         };
-        kernel.append(folder, path, for_software, &mut Vec::new())?;
+        kernel.append(folder, path, form, &mut Vec::new())?;
         Ok(kernel)
     }
 
@@ -196,16 +197,16 @@ impl Kernel {
         &mut self,
         folder: &Path,
         path: &Path,
-        for_software: bool,
+        form: Option<&str>,
         visited: &mut Vec<PathBuf>,
     ) -> Result<(), String> {
         visited.push(path.to_path_buf());
         let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         for (line, used) in uses(&text) {
             let mut shared = folder.join("shared").join(used);
-            let second = shared.with_extension("software.wgsl");
-            if for_software && second.is_file() {
-                shared = second;
+            let other = form.map(|form| shared.with_extension(format!("{form}.wgsl")));
+            if let Some(other) = other.filter(|other| other.is_file()) {
+                shared = other;
             }
             if visited.contains(&shared) {
                 continue;
@@ -217,7 +218,7 @@ impl Kernel {
                     shared.display()
                 ));
             }
-            self.append(folder, &shared, for_software, visited)?;
+            self.append(folder, &shared, form, visited)?;
         }
         self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
         self.source += &text;

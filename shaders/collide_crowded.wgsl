@@ -21,6 +21,9 @@ struct Row {
 }
 
 fn member(begin: u32, k: u32, part: u32) -> u32 {
+    if (!NETWORKS) {
+        return begin + k;
+    }
     return order_by_id[begin + k];
 }
 
@@ -169,7 +172,7 @@ fn collide_crowded(thread: Thread) {
     let end = cell_start[bin + 1u];
     if (fits_a_thread(begin, end)) {
         put_in_order(begin, end);
-    } else {
+    } else if (NETWORKS) {
         var s = begin;
         for (; s < end; s++) {
             order_by_id[s] = s;

@@ -56,6 +56,15 @@ fn note(list: u32, entry: u32) {
     }
 }
 
+// Enters a particle, and of four those that have a bit, in the list of those that choose.
+fn list_choosers(s: u32, own: u32, four: vec4<u32>, bits: u32) {
+    let first = choosers_from(0u, own + countOneBits(bits));
+    if (own > 0u) {
+        rechoose[first] = s;
+    }
+    enter_four(first + own, four, (vec4<u32>(bits) >> vec4<u32>(0u, 1u, 2u, 3u)) & vec4<u32>(1u));
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(thread: Thread) {
     let s = linear(thread);
@@ -87,6 +96,10 @@ fn neighbours_of(thread: Thread) {
     let e4 = e3 + r4.y;
     let turns = max(e4, FEWEST_TURNS);
     let own = listed_of(s);
+    // Of those that were found last who is to be entered in the list of those that choose, a bit for each; and whether it may itself.
+    var last = vec4<u32>(0u);
+    var fresh = 0u;
+    var chooses = false;
     var k = 0u;
     while (k < turns) {
         var found = 0u;
@@ -117,6 +130,11 @@ fn neighbours_of(thread: Thread) {
         if (own.all) {
             own_place = atomicAdd(&neighbour_count[s], found);
         }
+        if (fresh != 0u) {
+            list_choosers(s, 0u, last, fresh);
+        }
+        last = partners;
+        fresh = 0u;
         var p = 0u;
         for (; p < found; p++) {
             let j = partners.x;
@@ -131,9 +149,7 @@ fn neighbours_of(thread: Thread) {
                 if (near_wall) {
                     to_complete(s, UNSCREENED);
                 }
-                if (collide) {
-                    to_choose(s, 0u);
-                }
+                chooses = chooses || collide;
             } else if (own.some && theirs.all) {
                 note(s, j);
             }
@@ -143,7 +159,7 @@ fn neighbours_of(thread: Thread) {
                     to_complete(j, UNSCREENED);
                 }
                 if (collide) {
-                    to_choose(j, 0u);
+                    fresh |= marked(j, 0u) << p;
                 }
             } else if (theirs.some && own.all) {
                 note(j, s);
@@ -152,5 +168,11 @@ fn neighbours_of(thread: Thread) {
         through(p, found);
     }
     through(k, turns);
+    // (Threads that run together are together again here, and so count up the list's length together.)
+    var own_fresh = 0u;
+    if (chooses) {
+        own_fresh = marked(s, 0u);
+    }
+    list_choosers(s, own_fresh, last, fresh);
     tell_cut_short();
 }

@@ -59,7 +59,7 @@ fn receive(thread: Thread) {
     touch(s);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
-        touch_neighbours(s);
+        touch_neighbours(s, s, false);
     } else {
         touch_around(s, cell);
     }

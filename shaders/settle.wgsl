@@ -111,8 +111,7 @@ fn settle(thread: Thread) {
     }
     // All whose choice this can change must choose again, whether they collided or not: the choices are a function of the
     // state alone, whoever else is asked to choose. (The two are in each other's lists.)
-    touch_neighbours(pair.x);
-    touch_neighbours(pair.y);
+    touch_neighbours(pair.x, pair.y, true);
     if (apart) {
         flights[2u * pair.x].z = j.tag;
         flights[2u * pair.y].z = i.tag;

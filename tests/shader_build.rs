@@ -119,9 +119,9 @@ fn files_that_use_each_other_end() {
     assert_eq!(build::kernels(dir.path()).unwrap().0.len(), 1);
 }
 
-/// Another form of a shared file makes a second source of the kernels that use it, as valid as the first.
+/// Another form of a shared file makes another source of the kernels that use it, as valid as the first.
 #[test]
-fn a_form_for_software_devices_makes_a_second_source() {
+fn a_form_of_a_shared_file_makes_another_source() {
     let twice = DOUBLE.replace("TWO * x", "x + x");
     let second = |text: &str| {
         folder(&[
@@ -136,9 +136,11 @@ fn a_form_for_software_devices_makes_a_second_source() {
     let (kernels, unused) = build::kernels(dir.path()).unwrap();
     assert!(unused.is_empty(), "{unused:?}");
     assert!(kernels[0].source.contains("TWO * x") && !kernels[0].source.contains("x + x"));
-    let for_software = kernels[0].for_software.as_ref().expect("a second source");
+    let [for_software, for_gpus] = &kernels[0].forms;
+    let for_software = for_software.as_ref().expect("another source");
     assert!(for_software.contains("x + x") && !for_software.contains("TWO * x"), "{for_software}");
-    assert_eq!(kernels[1].for_software, None, "it uses no file of which there are two forms");
+    assert_eq!(for_gpus, &None, "there is no such form");
+    assert_eq!(kernels[1].forms, [None, None], "it uses no file of which there are other forms");
 
     let kernel = error(&[("advect.software.wgsl", "fn main() {}\n")]);
     assert!(kernel.contains("shaders/advect.software.wgsl: error: only files of shared/ have forms"), "{kernel}");

@@ -1,4 +1,3 @@
-//! uses: choosers.wgsl
 // Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
 // those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
@@ -9,8 +8,7 @@ fn chooser(thread: u32) -> u32 {
     if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
     }
-    let place_in_part = thread / (WORKGROUP * LIST_PARTS) * WORKGROUP + thread % WORKGROUP;
-    if (place_in_part >= atomicLoad(&counters[length_of_part(part_of_list(thread), step.round)])) {
+    if (thread >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
         return NOBODY;
     }
     return rechoose[thread];

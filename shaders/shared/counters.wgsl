@@ -25,10 +25,7 @@ const CUT_SHORT: u32 = 52;           // threads whose loops the device ended too
 // Collisions in cells since the last read, in COLLISION_COUNTS parts of two words, so that few threads count up the same word.
 const CELL_COLLISIONS: u32 = 53;
 const COLLISION_COUNTS: u32 = 32;
-// The lengths of up to 15 parts, without the first, of the lists of those that choose, of ROUND_WORDS rounds each (choosers.wgsl).
-const CHOOSERS: u32 = 117;
-const ROUND_WORDS: u32 = 16;
 // On a device alone, whose lists had too little room: one more than the place of the step in its interval, after whose search nothing
 // changes until the host has made room; and how many particles are in `sorted` then. The host alone clears them.
-const HELD: u32 = 357;
-const HELD_PARTICLES: u32 = 358;
+const HELD: u32 = 117;
+const HELD_PARTICLES: u32 = 118;

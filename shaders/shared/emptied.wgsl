@@ -1,4 +1,3 @@
-//! uses: choosers.wgsl
 // Lists as they are before the first entry, for those who empty them.
 
 @group(0) @binding(30) var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
@@ -11,11 +10,4 @@ fn empty_list(list: u32) {
     atomicStore(&rechoose_dispatches[3u * list], 0u);
     atomicStore(&rechoose_dispatches[3u * list + 1u], 1u);
     atomicStore(&rechoose_dispatches[3u * list + 2u], 1u);
-}
-
-// And the other parts of those that choose: the share of a thread of LISTS.
-fn empty_parts(thread: u32) {
-    for (var word = thread; word < (LIST_PARTS - 1u) * ROUND_WORDS; word += LISTS) {
-        atomicStore(&counters[CHOOSERS + word], 0u);
-    }
 }

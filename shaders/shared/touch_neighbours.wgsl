@@ -3,18 +3,48 @@
 
 @group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
 
-fn touch_neighbours(s: u32) {
-    let listed = neighbour_count[s];
-    var direct = direct_of(s);
-    let tail = direct.w;
-    var k = 0u;
-    for (; k < listed; k++) {
-        var j = direct.x;
-        direct = direct.yzww;
-        if (listed > DIRECT && k >= DIRECT - 1u) {
-            j = word_at(tail + k);
-        }
-        touch(j);
+// How many entries of a list a turn reads: in the first those that are not in the tail, then four of it at a time.
+fn read_of(listed: u32, turn: u32) -> u32 {
+    if (turn == 0u) {
+        return select(listed, DIRECT - 1u, listed > DIRECT);
     }
-    through(k, listed);
+    return select(0u, min(listed - min(4u * turn - 1u, listed), 4u), listed > DIRECT);
+}
+
+// And which, `count` at least 1 behind the first turn.
+fn four_of(direct: vec4<u32>, count: u32, turn: u32) -> vec4<u32> {
+    if (turn == 0u || count == 0u) {
+        return direct;
+    }
+    let at = direct.w + 4u * turn - 1u;
+    let last = at + count - 1u;
+    return vec4<u32>(word_at(at), word_at(min(at + 1u, last)), word_at(min(at + 2u, last)), word_at(min(at + 3u, last)));
+}
+
+fn ones(four: vec4<u32>) -> u32 {
+    return four.x + four.y + four.z + four.w;
+}
+
+// Those in the lists of two, of the second if `both`.
+fn touch_neighbours(s: u32, t: u32, both: bool) {
+    let round = step.round + 1u;
+    let listed_s = neighbour_count[s];
+    let listed_t = select(0u, neighbour_count[t], both);
+    let direct_s = direct_of(s);
+    let direct_t = direct_of(t);
+    let most = max(listed_s, listed_t);
+    let turns = select(1u, 1u + most / 4u, most > DIRECT);
+    var turn = 0u;
+    for (; turn < turns; turn++) {
+        let read_s = read_of(listed_s, turn);
+        let read_t = read_of(listed_t, turn);
+        let four_s = four_of(direct_s, read_s, turn);
+        let four_t = four_of(direct_t, read_t, turn);
+        let fresh_s = four_marked(four_s, read_s, round);
+        let fresh_t = four_marked(four_t, read_t, round);
+        let first = choosers_from(round, ones(fresh_s) + ones(fresh_t));
+        enter_four(first, four_s, fresh_s);
+        enter_four(first + ones(fresh_s), four_t, fresh_t);
+    }
+    through(turn, turns);
 }

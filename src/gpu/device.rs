@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::GpuError;
+use super::{Form, GpuError};
 
 /// How long a submission may take before a GPU counts as hung, and before a CPU adapter does, which is slow
 /// but does not hang.
@@ -33,11 +33,19 @@ impl AdapterDescription {
         is_old_mesa(&self.info.driver_info)
     }
 
-    /// Whether it can run both forms of kernels: a software device whose subgroups all have one size, of which each workgroup has a whole number.
-    fn has_both_forms(&self) -> bool {
+    /// The forms of kernels that it can run, that which it takes first.
+    pub fn forms(&self) -> Vec<Form> {
+        let subgroups = self.features.contains(wgpu::Features::SUBGROUP);
+        // All of one size, of which each workgroup has a whole number.
         let size = self.info.subgroup_max_size;
-        let fit = size > 0 && WORKGROUP_DIVISOR.is_multiple_of(size) && self.info.subgroup_min_size == size;
-        self.is_cpu() && self.features.contains(wgpu::Features::SUBGROUP) && fit
+        let full = size > 0 && WORKGROUP_DIVISOR.is_multiple_of(size) && self.info.subgroup_min_size == size;
+        match (subgroups, self.is_cpu(), full) {
+            (false, ..) => vec![Form::Plain],
+            (true, false, _) => vec![Form::Gpu, Form::Plain],
+            (true, true, false) => vec![Form::Plain, Form::Gpu],
+            (true, true, true) if self.has_old_mesa() => vec![Form::Plain, Form::Software, Form::Gpu],
+            (true, true, true) => vec![Form::Software, Form::Plain, Form::Gpu],
+        }
     }
 }
 
@@ -86,7 +94,7 @@ pub struct Device {
     queue: wgpu::Queue,
     adapter: AdapterDescription,
     timestamps: bool,
-    software_sources: bool,
+    form: Form,
     trouble: Arc<Mutex<Option<String>>>,
 }
 
@@ -96,18 +104,18 @@ impl Device {
     /// # Errors
     /// If there is no such adapter, or it refuses the device.
     pub fn open(selector: Option<&str>) -> Result<Device, GpuError> {
-        Device::opened(selector, false)
+        Device::opened(selector, None)
     }
 
-    /// The same with the form of kernels that it would not take, if it can run both, which is no matter of results.
+    /// The same with another of the forms of kernels that it can run, which is no matter of results.
     ///
     /// # Errors
-    /// As [`Device::open`].
-    pub fn open_in_other_form(selector: Option<&str>) -> Result<Device, GpuError> {
-        Device::opened(selector, true)
+    /// As [`Device::open`], and if it cannot run that form.
+    pub fn open_in(selector: Option<&str>, form: Form) -> Result<Device, GpuError> {
+        Device::opened(selector, Some(form))
     }
 
-    fn opened(selector: Option<&str>, in_other_form: bool) -> Result<Device, GpuError> {
+    fn opened(selector: Option<&str>, form: Option<Form>) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
         let known: Vec<String> =
             adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
@@ -123,10 +131,13 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        let both = adapter.has_both_forms();
-        let software_sources = both && adapter.has_old_mesa() == in_other_form;
-        let wanted = if both { wgpu::Features::SUBGROUP } else { wgpu::Features::empty() };
-        let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wanted);
+        let forms = adapter.forms();
+        let form = form.unwrap_or(forms[0]);
+        if !forms.contains(&form) {
+            let reason = format!("it cannot run kernels in the form {}", form.name());
+            return Err(GpuError::Open { adapter: adapter.info.name, reason });
+        }
+        let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
             required_features: features,
@@ -145,7 +156,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, software_sources, trouble })
+        Ok(Device { device, queue, adapter, timestamps, form, trouble })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -161,14 +172,9 @@ impl Device {
         self.timestamps
     }
 
-    /// Whether it can run both forms of kernels, that for GPUs and that for software devices.
-    pub fn has_both_forms(&self) -> bool {
-        self.adapter.has_both_forms()
-    }
-
-    /// Whether its kernels are those for software devices.
-    pub fn takes_software_sources(&self) -> bool {
-        self.software_sources
+    /// The form of its kernels.
+    pub fn form(&self) -> Form {
+        self.form
     }
 
     /// Nanoseconds per timestamp unit.

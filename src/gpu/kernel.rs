@@ -29,13 +29,40 @@ pub struct KernelSource {
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
     pub source: &'static str,
-    /// The same for a software device (`shaders/shared/*.software.wgsl`), where that is another.
-    pub for_software: Option<&'static str>,
+    /// The same in the forms behind [`Form::Plain`], where they are others.
+    pub forms: [Option<&'static str>; 2],
 }
 
 impl KernelSource {
-    fn of(&self, device: &Device) -> &'static str {
-        self.for_software.filter(|_| device.takes_software_sources()).unwrap_or(self.source)
+    fn of(&self, form: Form) -> &'static str {
+        let other = match form {
+            Form::Plain => None,
+            Form::Software => self.forms[0],
+            Form::Gpu => self.forms[1],
+        };
+        other.unwrap_or(self.source)
+    }
+}
+
+/// The forms of kernels, which all give the same to the last bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// For any device.
+    Plain,
+    /// For a software device whose subgroups are full (`shaders/shared/*.software.wgsl`).
+    Software,
+    /// For a GPU with subgroups (`shaders/shared/*.gpu.wgsl`).
+    Gpu,
+}
+
+impl Form {
+    /// What a bench calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Plain => "plain",
+            Form::Software => "software",
+            Form::Gpu => "gpu",
+        }
     }
 }
 
@@ -78,6 +105,19 @@ impl Kernel {
     /// # Errors
     /// As [`Kernel::new`], but for the name.
     pub fn of(device: &Device, source: &'static KernelSource, constants: &Constants) -> Result<Kernel, GpuError> {
+        Kernel::in_form(device, device.form(), source, constants)
+    }
+
+    /// The same in a form that the device need not take, but must be able to run.
+    ///
+    /// # Errors
+    /// As [`Kernel::of`].
+    pub fn in_form(
+        device: &Device,
+        form: Form,
+        source: &'static KernelSource,
+        constants: &Constants,
+    ) -> Result<Kernel, GpuError> {
         let name = source.name;
         let mut taken = Vec::new();
         for (constant, needed) in source.overrides {
@@ -97,7 +137,7 @@ impl Kernel {
         });
         let module = device.raw().create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source.of(device).into()),
+            source: wgpu::ShaderSource::Wgsl(source.of(form).into()),
         });
         let pipeline_layout = device.raw().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(name),

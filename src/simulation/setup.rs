@@ -6,7 +6,7 @@ use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, still_point
 use crate::gpu::Device;
 use crate::output::Checkpoint;
 use crate::scene::{Face, Method};
-use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, MOST_PARTS, Patches, Walls, zone_of};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
@@ -29,13 +29,6 @@ pub struct Setup {
 /// The order in which the initial particles are handed to the device; results must not depend on it.
 pub type Shuffle = dyn Fn(&mut [GpuParticle]) + Sync;
 
-/// What the kernels are made for beside the scene and the device.
-#[derive(Default)]
-struct Made {
-    whole: bool,
-    list_parts: Option<usize>,
-}
-
 impl Setup {
     /// `ranks`: how many the particles will be shared among.
     ///
@@ -48,7 +41,7 @@ impl Setup {
         shuffle: Option<&Shuffle>,
     ) -> Result<Setup, SimulationError> {
         let Some(shuffle) = shuffle else {
-            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), Made::default());
+            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), false);
         };
         let mut particles = initial_particles(model)?;
         shuffle(&mut particles);
@@ -60,16 +53,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), Made { whole: true, ..Made::default() })
-    }
-
-    /// With the lists of those that choose in as many parts as on a GPU, whatever the device: to see that it changes no bit.
-    ///
-    /// # Errors
-    /// As [`Setup::new`].
-    pub fn in_parts(model: &Model, device: &Device, ranks: usize) -> Result<Setup, SimulationError> {
-        let made = Made { list_parts: Some(MOST_PARTS), ..Made::default() };
-        Setup::build(model, device, ranks, Stock::Initial(Initial::default()), made)
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), true)
     }
 
     /// For a run that goes on: all particles of that moment instead of the initial ones.
@@ -82,7 +66,7 @@ impl Setup {
         ranks: usize,
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), Made::default())
+        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), false)
     }
 
     /// For a run that goes on from a checkpoint.
@@ -95,7 +79,7 @@ impl Setup {
         ranks: usize,
         checkpoint: Checkpoint,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), Made::default())
+        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), false)
     }
 
     fn build(
@@ -103,7 +87,7 @@ impl Setup {
         device: &Device,
         ranks: usize,
         particles: Stock,
-        made: Made,
+        whole: bool,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
         if plan.method == Method::ControlVolume {
@@ -140,8 +124,7 @@ impl Setup {
             patches: tallied,
             vent_entries: model.coats.vent_entries(),
             among_others: ranks > 1,
-            whole: made.whole,
-            list_parts: made.list_parts,
+            whole,
         };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),

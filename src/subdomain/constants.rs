@@ -2,12 +2,10 @@
 //! once, here, from the plan.
 
 use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
-use crate::gpu::Device;
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
 use super::buffers::{CHUNK, COAT_WORDS, FEW_STRETCHES, SURFACE_COPIES, SURFACE_WORDS, VENT_WORDS};
-use super::counters;
 use super::nearness;
 use super::scales::Scales;
 use super::walls::Walls;
@@ -19,11 +17,6 @@ pub const WORKGROUP: u32 = 64;
 pub const MEMBERS: u32 = 12;
 /// And of more, slots that one thread puts in order.
 pub const CROWD: u32 = 64;
-/// Parts of the lists of those that choose (`shaders/shared/choosers.wgsl`), which change no bit: a GPU does atomic operations on one word
-/// one after the other.
-pub fn list_parts(device: &Device) -> usize {
-    if device.adapter().is_cpu() { 1 } else { counters::MOST_PARTS }
-}
 
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
@@ -113,7 +106,6 @@ impl Features {
 }
 
 pub fn constants(
-    list_parts: usize,
     plan: &Plan,
     features: Features,
     patches: Patches,
@@ -137,7 +129,6 @@ pub fn constants(
         ("CLEARANCE_UNIT", CLEARANCE_UNIT),
         ("CHUNK", CHUNK as f64),
         ("FEW_STRETCHES", FEW_STRETCHES as f64),
-        ("LIST_PARTS", list_parts as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),
         ("CAPPED", flag(features.capped)),

@@ -1,14 +1,10 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words that are read.
-pub const WORDS: usize = CHOOSERS + ROUND_WORDS * (MOST_PARTS - 1);
+pub const WORDS: usize = CELL_COLLISIONS + 2 * COLLISION_COUNTS;
 /// Collisions in cells, in so many parts of two words.
 const CELL_COLLISIONS: usize = 53;
 const COLLISION_COUNTS: usize = 32;
-/// The lengths of the parts but the first of the lists of those that choose, of so many rounds each (`shaders/shared/choosers.wgsl`).
-const CHOOSERS: usize = CELL_COLLISIONS + 2 * COLLISION_COUNTS;
-const ROUND_WORDS: usize = 16;
-pub const MOST_PARTS: usize = 16;
 /// Words of the buffer: the last, `HELD` and `HELD_PARTICLES`, are read only of a device that is held.
 pub const ALL_WORDS: usize = WORDS + 2;
 pub const HELD: usize = WORDS;
@@ -16,7 +12,7 @@ pub const HELD_PARTICLES: usize = WORDS + 1;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
-/// The first parts of the lists of those that choose, by round.
+/// The lists of those that choose, by round.
 const RECHOOSE: usize = 16;
 pub const MOST_ROUNDS: usize = 10;
 pub const BORDER: usize = 12;
@@ -70,8 +66,7 @@ pub struct Counters {
 impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
         let two_words = |words: &[u32]| u64::from(words[0]) | (u64::from(words[1]) << 32);
-        let parts = || words[CHOOSERS..].chunks_exact(ROUND_WORDS);
-        let in_cells: u64 = words[CELL_COLLISIONS..CHOOSERS].chunks_exact(2).map(two_words).sum();
+        let in_cells: u64 = words[CELL_COLLISIONS..].chunks_exact(2).map(two_words).sum();
         Counters {
             // Less those that another device counts.
             collisions: two_words(&words[32..34]) + in_cells - u64::from(words[44]),
@@ -94,9 +89,7 @@ impl Counters {
             ghost_candidates: words[50],
             ghost_walls: words[51],
             cut_short: words[52],
-            choosers: std::array::from_fn(|round| {
-                words[RECHOOSE + round] + parts().map(|part| part[round]).sum::<u32>()
-            }),
+            choosers: std::array::from_fn(|round| words[RECHOOSE + round]),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, list_parts};
+use super::constants::{Features, Patches, block_counts, constants};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
@@ -27,8 +27,6 @@ pub struct DomainInput<'a> {
     pub among_others: bool,
     /// Kernels are compiled for what the scene lacks too.
     pub whole: bool,
-    /// Parts of the lists of those that choose; `None`: as suits the device.
-    pub list_parts: Option<usize>,
 }
 
 pub struct Domain {
@@ -63,8 +61,7 @@ impl Domain {
             surfaces: SURFACE_COPIES * input.patches.copy_words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
-        let list_parts = input.list_parts.unwrap_or_else(|| list_parts(device));
-        let constants = constants(list_parts, plan, features, input.patches, input.walls, &Scales::new(plan));
+        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan));
         Ok(Domain {
             plan: plan.clone(),
             features,

@@ -33,7 +33,7 @@ pub use buffers::{
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
-pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_PARTS, MOST_ROUNDS};
+pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
 pub use domain::{Domain, DomainInput};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{

@@ -73,17 +73,19 @@ pub type Wrap = dyn for<'a> Fn(&'a dyn Communicator) -> Box<dyn Communicator + '
 /// A scene on a device, for any number of ranks.
 pub struct World<'a> {
     model: &'a Model,
-    device: Device,
-    one: Setup,
-    several: Setup,
+    one: (Setup, Device),
+    several: (Setup, Device),
 }
 
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
-        // (What these are compared with has lists and kernels as suit the device; these have the other form of kernels, if it can run both.)
-        let device = Device::open_in_other_form(None).expect("an adapter");
-        let setup = |ranks| Setup::in_parts(model, &device, ranks).expect("a set-up");
-        World { model, one: setup(1), several: setup(2), device }
+        // (What these are compared with has kernels in the form that the device takes; these have the others, if it can run them.)
+        let forms = Device::open(None).expect("an adapter").adapter().forms();
+        let made = |ranks, form| {
+            let device = Device::open_in(None, form).expect("an adapter");
+            (Setup::new(model, &device, ranks, None).expect("a set-up"), device)
+        };
+        World { model, one: made(1, forms[forms.len() / 2]), several: made(2, forms[forms.len() - 1]) }
     }
 
     /// What rank 0 sees; all ranks must see the same rows and counts.
@@ -93,7 +95,8 @@ impl<'a> World<'a> {
     }
 
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
-        let mut setup = if way.ranks == 1 { self.one.clone() } else { self.several.clone() };
+        let (setup, device) = if way.ranks == 1 { &self.one } else { &self.several };
+        let mut setup = setup.clone();
         if let Some(order) = way.order {
             let mut particles = initial_particles(self.model).expect("the gas of the start");
             order(&mut particles);
@@ -103,7 +106,7 @@ impl<'a> World<'a> {
             let wrapped = wrap.map(|wrap| wrap(comm));
             let comm = wrapped.as_deref().unwrap_or(comm);
             let mut witness = Witness::default();
-            let run = Simulation::among(self.model, &self.device, &setup, comm, way.options())
+            let run = Simulation::among(self.model, device, &setup, comm, way.options())
                 .and_then(|simulation| simulation.run(&mut witness));
             if let Err(error) = &run {
                 comm.fail(&error.to_string(), 1);

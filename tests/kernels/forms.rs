@@ -1,6 +1,6 @@
-//! What a software device has forms of its own for is the same in either, to the last bit.
+//! What kernels have several forms of is the same in each, to the last bit.
 
-use corpuscle::gpu::Device;
+use corpuscle::gpu::{Device, Form};
 
 use crate::oracle::random::Stream;
 use crate::probe::Probe;
@@ -62,8 +62,8 @@ fn whole_numbers_are_the_nearest_in_either_form() {
 #[test]
 fn every_thread_has_a_number_of_its_own_in_either_form() {
     let groups = [5, 3, 1];
-    let form = usize::from(device().has_both_forms());
-    for lane in &LANES[..=form] {
+    let forms = 1 + usize::from(device().adapter().forms().contains(&Form::Software));
+    for lane in &LANES[..forms] {
         let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
         for (k, output) in (0..).zip(Probe::new(text, &[]).run(device(), &[0.0f32], 64 * 15, groups)) {
             assert_eq!(output, [k / 64, k % 64, 15, 1]);
@@ -71,7 +71,7 @@ fn every_thread_has_a_number_of_its_own_in_either_form() {
     }
 }
 
-/// A device takes the form that it says, and can be had with the other.
+/// A device takes the form that it says, and can be had with any that it can run.
 #[test]
 fn a_device_takes_its_form_of_a_kernel() {
     let text = |form: u32| {
@@ -82,12 +82,65 @@ fn a_device_takes_its_form_of_a_kernel() {
             fn probe() {{ outputs[0] = vec4<u32>({form}u, bitcast<u32>(inputs[0]), 0u, 0u); }}"
         )
     };
-    let form = |device: &Device| Probe::new(text(1), &[]).or(text(2)).run(device, &[0.0f32], 1, [1, 1, 1])[0][0];
-    let other = Device::open_in_other_form(None).expect("a device");
-    for device in [device(), &other] {
-        assert_eq!(form(device), 1 + u32::from(device.takes_software_sources()));
+    let form = |device: &Device| {
+        let probe = Probe::new(text(1), &[]).or([text(2), text(3)]);
+        probe.run(device, &[0.0f32], 1, [1, 1, 1])[0][0]
+    };
+    let number = |form| match form {
+        Form::Plain => 1,
+        Form::Software => 2,
+        Form::Gpu => 3,
+    };
+    let forms = device().adapter().forms();
+    assert_eq!(device().form(), forms[0]);
+    for of in [Form::Plain, Form::Software, Form::Gpu] {
+        match Device::open_in(None, of) {
+            Ok(device) => assert_eq!((form(&device), device.form()), (number(of), of)),
+            Err(error) => assert!(!forms.contains(&of), "{error}"),
+        }
     }
-    assert_eq!(device().takes_software_sources() != other.takes_software_sources(), device().has_both_forms());
-    // Lavapipe can run both: else other tests would compare a form with itself.
-    assert!(device().has_both_forms() || !device().adapter().info.name.contains("llvmpipe"));
+    // Lavapipe can run all: else other tests would compare a form with itself.
+    assert!(forms.len() == 3 || !device().adapter().info.name.contains("llvmpipe"));
+}
+
+const TOGETHER: [&str; 2] =
+    [include_str!("../../shaders/shared/together.wgsl"), include_str!("../../shaders/shared/together.gpu.wgsl")];
+const OF_TOGETHER: &str = "
+@group(0) @binding(0) var<storage, read> inputs: array<u32>;
+@group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+    let count = inputs[id.x];
+    if (count % 5u != 4u) {
+        outputs[id.x] = vec4<u32>(counted_up(1u, count), count, 0u, 1u);
+    }
+}
+";
+
+/// Threads that count up one word together have each their own part of what they count, and leave nothing out.
+#[test]
+fn what_threads_count_together_is_what_each_counts() {
+    let forms = 1 + usize::from(device().adapter().forms().contains(&Form::Gpu));
+    let mut stream = Stream::new(43);
+    let inputs: Vec<u32> = (0..64 * 40).map(|_| stream.word() % 9).collect();
+    let counting: u32 = inputs.iter().filter(|&count| count % 5 != 4).sum();
+    for form in &TOGETHER[..forms] {
+        // The word is one behind the threads' own.
+        let word = "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n";
+        let text = word.to_owned() + form + OF_TOGETHER;
+        let outputs = Probe::new(text, &[]).run(device(), &inputs, inputs.len(), [40, 1, 1]);
+        let mut parts: Vec<[u32; 2]> = outputs
+            .iter()
+            .filter(|[.., done]| *done == 1)
+            .filter(|[_, count, ..]| *count > 0)
+            .map(|&[first, count, ..]| [first, count])
+            .collect();
+        parts.sort_unstable();
+        let end = parts.iter().fold(0, |end, &[first, count]| {
+            assert_eq!(first, end, "one behind the other");
+            first + count
+        });
+        assert_eq!(end, counting);
+    }
 }

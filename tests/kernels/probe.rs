@@ -3,10 +3,10 @@
 use bytemuck::Pod;
 use corpuscle::gpu::{Access, Binding, Constants, Device, Kernel, KernelSource, Recording};
 
-/// A kernel `probe` that reads `inputs` and writes four words for each thread to `outputs`.
+/// A kernel `probe` that reads `inputs` and writes four words for each thread to `outputs`; `counters`, zero before, are there too.
 pub struct Probe {
     text: String,
-    for_software: Option<String>,
+    forms: [Option<String>; 2],
     overrides: Vec<(&'static str, bool)>,
     constants: Vec<(&'static str, f64)>,
 }
@@ -14,12 +14,12 @@ pub struct Probe {
 impl Probe {
     pub fn new(text: String, constants: &Constants) -> Probe {
         let overrides = constants.iter().map(|&(name, _)| (name, true)).collect();
-        Probe { text, for_software: None, overrides, constants: constants.to_vec() }
+        Probe { text, forms: [None, None], overrides, constants: constants.to_vec() }
     }
 
-    /// With another source for software devices.
-    pub fn or(self, for_software: String) -> Probe {
-        Probe { for_software: Some(for_software), ..self }
+    /// With sources in the other forms.
+    pub fn or(self, forms: [String; 2]) -> Probe {
+        Probe { forms: forms.map(Some), ..self }
     }
 
     /// What it writes for so many threads in these workgroups.
@@ -31,20 +31,25 @@ impl Probe {
             bindings: &[
                 Binding { index: 0, name: "inputs", access: Access::Read },
                 Binding { index: 1, name: "outputs", access: Access::ReadWrite },
+                Binding { index: 2, name: "counters", access: Access::ReadWrite },
             ],
             overrides: Vec::leak(self.overrides),
             source: String::leak(self.text),
-            for_software: self.for_software.map(|text| &*String::leak(text)),
+            forms: self.forms.map(|form| form.map(|text| &*String::leak(text))),
         }));
-        let buffers = [
-            device.storage_of("inputs", inputs).expect("memory"),
-            device.storage::<[u32; 4]>("outputs", threads as u64).expect("memory"),
-        ];
+        let inputs = device.storage_of("inputs", inputs).expect("memory");
+        let outputs = device.storage::<[u32; 4]>("outputs", threads as u64).expect("memory");
+        let counters = device.storage::<u32>("counters", 4).expect("memory");
+        let buffers = |name: &str| match name {
+            "inputs" => Some(&inputs),
+            "outputs" => Some(&outputs),
+            _ => Some(&counters),
+        };
         let kernel = Kernel::of(device, source, &self.constants).expect("a kernel");
-        let bound = kernel.bind(device, |name| buffers.get(usize::from(name == "outputs"))).expect("its buffers");
+        let bound = kernel.bind(device, buffers).expect("its buffers");
         let mut recording = Recording::new(device);
         bound.dispatch(recording.phase("probe"), 0, groups);
         recording.submit();
-        device.read(&buffers[1], threads).expect("the device's answer")
+        device.read(&outputs, threads).expect("the device's answer")
     }
 }

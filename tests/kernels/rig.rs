@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
-use corpuscle::gpu::{Device, Kernel, Recording};
+use corpuscle::gpu::{Device, Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
 
@@ -51,10 +51,8 @@ pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
 pub const CELL_COLLISIONS: usize = 53;
-pub const CHOOSERS: usize = 117;
-pub const ROUND_WORDS: usize = 16;
-pub const HELD: usize = 357;
-pub const HELD_PARTICLES: usize = 358;
+pub const HELD: usize = 117;
+pub const HELD_PARTICLES: usize = 118;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -240,6 +238,8 @@ pub struct Rig {
     records: Vec<[u32; RECORD]>,
     tails: Vec<u32>,
     constants: Vec<(&'static str, f64)>,
+    /// Of its kernels.
+    pub form: Form,
 }
 
 impl Rig {
@@ -270,7 +270,14 @@ impl Rig {
             ("SEED_HIGH", 4.0),
             ("WALL_SEED_HIGH", 7.0),
         ];
-        let mut rig = Rig { grid: grid.cells, buffers: BTreeMap::new(), records: vec![], tails: vec![], constants };
+        let mut rig = Rig {
+            grid: grid.cells,
+            buffers: BTreeMap::new(),
+            records: vec![],
+            tails: vec![],
+            constants,
+            form: device().form(),
+        };
         rig.put("wall_start", &world.walls.start);
         rig.put("wall_list", &world.walls.list);
         rig.put("triangles", &world.walls.triangles);
@@ -364,13 +371,14 @@ impl Rig {
     /// Collisions in cells, whatever parts they are counted in.
     pub fn cell_collisions(&self) -> u32 {
         let words: Vec<u32> = self.get("counters", COUNTERS);
-        assert!(words[CELL_COLLISIONS + 1..CHOOSERS].iter().step_by(2).all(|&high| high == 0));
-        words[CELL_COLLISIONS..CHOOSERS].iter().step_by(2).sum()
+        assert!(words[CELL_COLLISIONS + 1..HELD].iter().step_by(2).all(|&high| high == 0));
+        words[CELL_COLLISIONS..HELD].iter().step_by(2).sum()
     }
 
     /// Runs a kernel over workgroups.
     pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
-        let compiled = Kernel::new(device(), kernel, &self.constants).expect("a kernel");
+        let source = KERNELS.iter().find(|source| source.name == kernel).expect("a shader of this name");
+        let compiled = Kernel::in_form(device(), self.form, source, &self.constants).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
         let mut recording = Recording::new(device());
         bound.dispatch(recording.phase("test"), 0, groups);
@@ -386,20 +394,9 @@ impl Rig {
         device().read(&self.buffers[name], items).expect("the device's answer")
     }
 
-    /// Those that choose in a round, in ascending order, of a list in so many parts (`LIST_PARTS`).
-    pub fn choosers(&self, round: usize, parts: usize) -> Vec<u32> {
-        let lengths: Vec<u32> = self.get("counters", COUNTERS);
-        let length = |part: usize| match part {
-            0 => lengths[LIST_RECHOOSE + round],
-            _ => lengths[CHOOSERS + (part - 1) * ROUND_WORDS + round],
-        } as usize;
-        let place = |part: usize, k: usize| (k / 64 * parts + part) * 64 + k % 64;
-        let most = (0..parts).map(|part| place(part, length(part)) + 1).max().unwrap_or(0);
-        let entries: Vec<u32> = self.get("rechoose", most);
-        let of_part = |part: usize| (0..length(part)).map(move |k| (part, k));
-        let mut listed: Vec<u32> = (0..parts).flat_map(of_part).map(|(part, k)| entries[place(part, k)]).collect();
-        listed.sort_unstable();
-        listed
+    /// Those that choose in a round, in ascending order.
+    pub fn choosers(&self, round: usize) -> Vec<u32> {
+        self.list("rechoose", LIST_RECHOOSE + round)
     }
 
     /// The entries of a list, in ascending order: which thread appends first is not determined.

@@ -2,7 +2,7 @@ use super::*;
 use crate::gpu::KERNELS;
 
 const fn kernel(source: &'static str) -> KernelSource {
-    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, for_software: None }
+    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, forms: [None; 2] }
 }
 
 const PROBE: KernelSource = kernel(

@@ -172,7 +172,7 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
     let own = json!({
         "adapter": info.name,
         "driver": format!("{} {}", info.driver, info.driver_info).trim(),
-        "software_sources": device.takes_software_sources(),
+        "form": device.form().name(),
         "software_threads": if device.adapter().is_cpu() { Some(host::threads()) } else { None },
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,
