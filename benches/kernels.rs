@@ -336,7 +336,7 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
-        for_software: None,
+        forms: [None; 2],
     }))
 }
 

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl held.wgsl
 // Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
 // device alone, where cells are few, empties these for the next step.
 //
@@ -11,6 +11,7 @@ override ROUNDS_OF_PAIRS: bool = true;
 override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
@@ -47,14 +48,14 @@ fn advect(thread: Thread) {
     if (COLLISIONS && step.peers == 0u && few_stretches()) {
         empty_cells(s, groups_of(thread) * WORKGROUP);
     }
-    if (s >= step.total || (ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u)) {
+    if (s >= step.total || (ROUNDS_OF_PAIRS && held[HELD] > 0u)) {
         return;
     }
     var place: vec4<u32>;
     var motion: vec4<f32>;
     if (COLLISIONS) {
         // A slot behind the last particle, or a ghost.
-        var nobody = s >= atomicLoad(&counters[COUNT_PRESENT]);
+        var nobody = s >= held[PRESENT];
         if (step.peers > 0u) {
             nobody = (layers[s] & LAYER) != 0u;
         }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl held.wgsl
 // Puts the newborns behind the particles, counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
 // are then), and finds those that other devices need.
 //
@@ -13,6 +13,7 @@ override FLOWN: f32 = 0.5;
 override ROUNDS_OF_PAIRS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<atomic<u32>>;
@@ -24,7 +25,7 @@ fn bin(thread: Thread) {
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
-    if ((ROUNDS_OF_PAIRS && atomicLoad(&counters[HELD]) > 0u) || !enter(i)) {
+    if ((ROUNDS_OF_PAIRS && held[HELD] > 0u) || !enter(i)) {
         bins[i] = vec2<u32>(NOBODY, 0u);
         return;
     }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl coarse.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl coarse.wgsl held.wgsl
 // The local state that sets the step size: number and kinetic energy in coarse blocks of cells, and how
 // many particles would cross more than a cell at each step of the ladder.
 //
@@ -15,6 +15,7 @@ override LEVELS: u32;
 override BLOCK_ENERGY_SCALE: f32;
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
@@ -23,7 +24,7 @@ override BLOCK_ENERGY_SCALE: f32;
 @compute @workgroup_size(WORKGROUP)
 fn blocks(thread: Thread) {
     let i = linear(thread);
-    if (i >= step.total || atomicLoad(&counters[HELD]) > 0u) {
+    if (i >= step.total || held[HELD] > 0u) {
         return;
     }
     let particle = particles[i];

@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl held.wgsl
 // Completes what `order` and `neighbours` have left incomplete: the flights that may meet a wall, of which it finds when they do; the lists longer than DIRECT, which are
 // searched once more, with a tail; and those near walls, from which it takes who stands behind a wall where the flights start.
 //
@@ -17,6 +17,7 @@
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(44) var<storage, read> firsts: array<Particle>;
 @group(0) @binding(64) var<storage, read> incomplete: array<u32>;
+@group(0) @binding(65) var<storage, read_write> held: array<atomic<u32>>;
 
 // Gives a list a tail; false where there is no room for it.
 fn lengthen(s: u32) -> bool {
@@ -26,8 +27,8 @@ fn lengthen(s: u32) -> bool {
     if (begin + more > 4u * arrayLength(&neighbours) - RECORD * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
         if (step.depth == 0u) {
-            atomicStore(&counters[HELD], step.slot + 1u);
-            atomicStore(&counters[HELD_PARTICLES], cell_start[step.bins]);
+            atomicStore(&held[HELD], step.slot + 1u);
+            atomicStore(&held[HELD_PARTICLES], cell_start[step.bins]);
         }
         atomicStore(&neighbour_count[s], DIRECT);
         return false;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl chooser.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl chooser.wgsl held.wgsl
 // Settle, part 1: the pairs whose choices are mutual.
 //
 // Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.
@@ -9,6 +9,7 @@
 override ROUNDS: u32;
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
 @group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
@@ -17,7 +18,7 @@ override ROUNDS: u32;
 @compute @workgroup_size(WORKGROUP)
 fn match_pairs(thread: Thread) {
     let s = chooser(linear(thread));
-    if (s == NOBODY || atomicLoad(&counters[HELD]) > 0u) {
+    if (s == NOBODY || held[HELD] > 0u) {
         return;
     }
     let other = choices[s].x;

@@ -58,11 +58,11 @@ fn note(list: u32, entry: u32) {
 
 // Enters a particle, and of four those that have a bit, in the list of those that choose.
 fn list_choosers(s: u32, own: u32, four: vec4<u32>, bits: u32) {
-    let first = choosers_from(0u, own + countOneBits(bits));
+    let first = choosers_from(0u, own + countOneBits(bits), s);
     if (own > 0u) {
-        rechoose[first] = s;
+        rechoose[chooser_place(first, 0u, s)] = s;
     }
-    enter_four(first + own, four, (vec4<u32>(bits) >> vec4<u32>(0u, 1u, 2u, 3u)) & vec4<u32>(1u));
+    enter_four(0u, first + own, four, (vec4<u32>(bits) >> vec4<u32>(0u, 1u, 2u, 3u)) & vec4<u32>(1u), s);
 }
 
 @compute @workgroup_size(WORKGROUP)

@@ -14,7 +14,7 @@
 @group(0) @binding(39) var<storage, read> updates_in: array<Update>;
 
 // Those who choose and may have a particle in their lists that has none itself, or not all of it.
-fn touch_around(s: u32, cell: vec3<u32>) {
+fn touch_around(s: u32, cell: vec3<u32>, thread: u32) {
     let middle = middles[s];
     let near = near2(FULL_SHARE);
     // In layers of cells farther out nobody chooses.
@@ -28,7 +28,7 @@ fn touch_around(s: u32, cell: vec3<u32>) {
             for (var j = cell_start[row]; j < last; j++) {
                 let away = packed_between(middle, middles[j]);
                 if (dot(away, away) < near && (atomicLoad(&layers[j]) & LAYER) < step.depth) {
-                    touch(j);
+                    touch(j, thread);
                 }
             }
         }
@@ -56,12 +56,12 @@ fn receive(thread: Thread) {
     }
     sorted[s] = after;
     flights[2u * s] = packed_flight(updates_in[entry].flight);
-    touch(s);
+    touch(s, entry);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
-        touch_neighbours(s, s, false);
+        touch_neighbours(s, s, false, entry);
     } else {
-        touch_around(s, cell);
+        touch_around(s, cell, entry);
     }
     tell_cut_short();
 }

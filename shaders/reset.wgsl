@@ -18,6 +18,7 @@ fn reset(thread: Thread) {
     let lane = lane_of(thread);
     if (k < LISTS) {
         empty_list(k);
+        empty_parts(k);
         atomicStore(&asked_dispatches[3u * k], 0u);
         atomicStore(&asked_dispatches[3u * k + 1u], 1u);
         atomicStore(&asked_dispatches[3u * k + 2u], 1u);

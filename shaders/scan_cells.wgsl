@@ -1,11 +1,12 @@
-//! uses: step.wgsl counters.wgsl lists.wgsl stretches.wgsl
+//! uses: step.wgsl held.wgsl stretches.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`, of few stretches the sums themselves, of more what `scan_stretches` made of them; reads counts and writes
-// starts in `cell_start`, by fours, up to a whole chunk; writes COUNT_PRESENT. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
+// starts in `cell_start`, by fours, up to a whole chunk; writes PRESENT. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
 // count is read.
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read_write> held: array<u32>;
 @group(0) @binding(7) var<storage, read> chunk_sums: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(29) var<storage, read> stretch_sums: array<vec4<u32>>;
@@ -55,7 +56,7 @@ fn scan_cells(thread: Thread) {
     before += sum.x + sum.y + sum.z + sum.w;
     let own = among[chunk % 4u];
     if (chunk == step.bins / CHUNK) {
-        atomicStore(&counters[COUNT_PRESENT], before + own);
+        held[PRESENT] = before + own;
     }
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;

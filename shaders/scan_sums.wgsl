@@ -16,6 +16,7 @@ fn scan_sums(thread: Thread) {
         if (chunk != LIST_BOUNCE && chunk != LIST_BOUNCE_ODD && chunk != COUNT_DROPPED) {
             empty_list(chunk);
         }
+        empty_parts(chunk);
     }
     if (chunk > step.bins / CHUNK) {
         return;

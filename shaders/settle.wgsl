@@ -106,12 +106,12 @@ fn settle(thread: Thread) {
     tell(pair.y);
     if (apart) {
         // Whom either met before may meet it again.
-        touch(pair.x);
-        touch(pair.y);
+        touch(pair.x, k);
+        touch(pair.y, k);
     }
     // All whose choice this can change must choose again, whether they collided or not: the choices are a function of the
     // state alone, whoever else is asked to choose. (The two are in each other's lists.)
-    touch_neighbours(pair.x, pair.y, true);
+    touch_neighbours(pair.x, pair.y, true, k);
     if (apart) {
         flights[2u * pair.x].z = j.tag;
         flights[2u * pair.y].z = i.tag;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl motions.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl motions.wgsl held.wgsl
 // Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
 // probes).
 //
@@ -43,6 +43,7 @@ const WORDS: u32 = 12;
 const ENERGY_RANGE: f32 = 4.29e9;
 
 @group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(2) var<storage, read> particles: array<Packed>;
 @group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
@@ -161,7 +162,7 @@ fn tally(
     let first_gas = 2u * group.z;
     // Once, not for each particle.
     let here = zones[zone];
-    let count = select(step.total, 0u, atomicLoad(&counters[HELD]) > 0u);
+    let count = select(step.total, 0u, held[HELD] > 0u);
     var sums_of_first = Sums();
     var sums_of_second = Sums();
     for (var k = 0u; k < CHUNK_LOOPS; k++) {

@@ -1,3 +1,4 @@
+//! uses: choosers.wgsl
 // Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
 // those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
@@ -8,7 +9,7 @@ fn chooser(thread: u32) -> u32 {
     if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
     }
-    if (thread >= atomicLoad(&counters[LIST_RECHOOSE + step.round])) {
+    if (!has_entry(thread, step.round)) {
         return NOBODY;
     }
     return rechoose[thread];

@@ -78,33 +78,21 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
     let first = philox(vec4<u32>(step.index, cell, 0u, part), key);
     var candidates = at_most(pairs * (CROSS_SECTION * bound * step.dt / volume) + unit_interval(first.x));
     var done = Collided(0u, 0u);
-    // Threads that run together look each for the next that collides before they go on: most candidates do not.
-    loop {
-        var draw = vec4<u32>(0u);
-        var s = 0u;
-        var t = 0u;
-        var motion_i = vec4<f32>(0.0);
-        var motion_j = vec4<f32>(0.0);
-        var g = vec3<f32>(0.0);
-        var speed = 0.0;
-        var found = false;
-        while (!found && done.candidates < candidates) {
-            done.candidates++;
-            draw = philox(vec4<u32>(step.index, cell, 4u * done.candidates, part), key);
-            let one = multiply_high(draw.x, count);
-            var other = multiply_high(draw.y, count - 1u);
-            other += select(0u, 1u, other >= one);
-            // By id, as the members are.
-            s = member(begin, min(one, other), part);
-            t = member(begin, max(one, other), part);
-            motion_i = sorted[s].motion;
-            motion_j = sorted[t].motion;
-            g = motion_j.xyz - motion_i.xyz;
-            speed = length(g);
-            found = !(unit_interval(draw.z) * bound >= speed);
-        }
-        if (!found) {
-            break;
+    while (done.candidates < candidates) {
+        done.candidates++;
+        let draw = philox(vec4<u32>(step.index, cell, 4u * done.candidates, part), key);
+        let one = multiply_high(draw.x, count);
+        var other = multiply_high(draw.y, count - 1u);
+        other += select(0u, 1u, other >= one);
+        // By id, as the members are.
+        let s = member(begin, min(one, other), part);
+        let t = member(begin, max(one, other), part);
+        let motion_i = sorted[s].motion;
+        let motion_j = sorted[t].motion;
+        let g = motion_j.xyz - motion_i.xyz;
+        let speed = length(g);
+        if (unit_interval(draw.z) * bound >= speed) {
+            continue;
         }
         done.collisions++;
         if (hidden(s, t)) {

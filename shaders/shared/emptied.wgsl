@@ -1,3 +1,4 @@
+//! uses: list_parts.wgsl
 // Lists as they are before the first entry, for those who empty them.
 
 @group(0) @binding(30) var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;

@@ -7,8 +7,7 @@
 // LIST_RECHOOSE + r are the particles that choose in round r. LIST_BORDER are the particles
 // that other devices may need, LIST_CHANGED those of them that a round has changed, LIST_ASKED the ghosts that
 // were asked for their choice; LIST_OUTBOX and
-// LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo,
-// COUNT_PRESENT the particles that are in cells.
+// LIST_UPDATES are the sendings of particles and of updates, COUNT_DROPPED counts the slots that hold no particle of this device or its halo.
 const LIST_PARTED: u32 = 0;
 const LIST_MOVED: u32 = 1;
 const LIST_CROWDED: u32 = 2;
@@ -26,7 +25,6 @@ const LIST_RECHOOSE: u32 = 16;
 const LIST_ASKED: u32 = 26;
 // The entries of the tails of neighbour lists.
 const LIST_TAILS: u32 = 29;
-const COUNT_PRESENT: u32 = 30;
 const COUNT_DROPPED: u32 = 31;
 const LISTS: u32 = 32;
 

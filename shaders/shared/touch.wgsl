@@ -1,4 +1,4 @@
-//! uses: step.wgsl counters.wgsl together.wgsl
+//! uses: choosers.wgsl
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
@@ -10,17 +10,6 @@ fn marked(s: u32, round: u32) -> u32 {
     let chooses = CHOOSES << round;
     let mark = atomicOr(&layers[s], chooses);
     return select(0u, 1u, (mark & chooses) == 0u && (mark & LAYER) < max(step.depth, 1u));
-}
-
-// The place of the first of so many new entries of the list, which its dispatch covers.
-fn choosers_from(round: u32, count: u32) -> u32 {
-    let list = LIST_RECHOOSE + round;
-    let first = counted_up(list, count);
-    let last = first + count - 1u;
-    if (count > 0u && (first % WORKGROUP == 0u || first / WORKGROUP != last / WORKGROUP)) {
-        cover(list, last / WORKGROUP);
-    }
-    return first;
 }
 
 // Marks the first `count` of four; for each 1 if it is to be entered. (One after the other without a loop: each wants an answer, and can
@@ -42,31 +31,31 @@ fn four_marked(who: vec4<u32>, count: u32, round: u32) -> vec4<u32> {
     return fresh;
 }
 
-// Enters those of four that are to be, from a place on.
-fn enter_four(first: u32, who: vec4<u32>, fresh: vec4<u32>) {
-    var place = first;
+// Enters those of four that are to be, from a number on.
+fn enter_four(round: u32, first: u32, who: vec4<u32>, fresh: vec4<u32>, thread: u32) {
+    var number = first;
     if (fresh.x > 0u) {
-        rechoose[place] = who.x;
+        rechoose[chooser_place(number, round, thread)] = who.x;
     }
-    place += fresh.x;
+    number += fresh.x;
     if (fresh.y > 0u) {
-        rechoose[place] = who.y;
+        rechoose[chooser_place(number, round, thread)] = who.y;
     }
-    place += fresh.y;
+    number += fresh.y;
     if (fresh.z > 0u) {
-        rechoose[place] = who.z;
+        rechoose[chooser_place(number, round, thread)] = who.z;
     }
-    place += fresh.z;
+    number += fresh.z;
     if (fresh.w > 0u) {
-        rechoose[place] = who.w;
+        rechoose[chooser_place(number, round, thread)] = who.w;
     }
 }
 
-fn touch(s: u32) {
+fn touch(s: u32, thread: u32) {
     let round = step.round + 1u;
     let fresh = marked(s, round);
-    let place = choosers_from(round, fresh);
+    let number = choosers_from(round, fresh, thread);
     if (fresh > 0u) {
-        rechoose[place] = s;
+        rechoose[chooser_place(number, round, thread)] = s;
     }
 }

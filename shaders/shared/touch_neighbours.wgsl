@@ -26,7 +26,7 @@ fn ones(four: vec4<u32>) -> u32 {
 }
 
 // Those in the lists of two, of the second if `both`.
-fn touch_neighbours(s: u32, t: u32, both: bool) {
+fn touch_neighbours(s: u32, t: u32, both: bool, thread: u32) {
     let round = step.round + 1u;
     let listed_s = neighbour_count[s];
     let listed_t = select(0u, neighbour_count[t], both);
@@ -42,9 +42,9 @@ fn touch_neighbours(s: u32, t: u32, both: bool) {
         let four_t = four_of(direct_t, read_t, turn);
         let fresh_s = four_marked(four_s, read_s, round);
         let fresh_t = four_marked(four_t, read_t, round);
-        let first = choosers_from(round, ones(fresh_s) + ones(fresh_t));
-        enter_four(first, four_s, fresh_s);
-        enter_four(first + ones(fresh_s), four_t, fresh_t);
+        let first = choosers_from(round, ones(fresh_s) + ones(fresh_t), thread);
+        enter_four(round, first, four_s, fresh_s, thread);
+        enter_four(round, first + ones(fresh_s), four_t, fresh_t, thread);
     }
     through(turn, turns);
 }

@@ -113,10 +113,15 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
+/// Whether a device is held, how many particles it has then, and how many are in cells.
+pub const HELD_WORDS: usize = 3;
+
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
     pub counters: wgpu::Buffer,
+    /// Of the words of `shaders/shared/held.wgsl`.
+    pub held: wgpu::Buffer,
     pub zone_sums: wgpu::Buffer,
     pub surface_sums: wgpu::Buffer,
     pub block_sums: wgpu::Buffer,
@@ -148,7 +153,8 @@ impl FixedBuffers {
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
-            counters: device.storage::<u32>("counters", counters::ALL_WORDS as u64)?,
+            counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
+            held: device.storage::<u32>("held", HELD_WORDS as u64)?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
@@ -324,7 +330,7 @@ impl ParticleBuffers {
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
             slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
-            rare: device.storage::<u32>("rare", capacity)?,
+            rare: device.storage::<u32>("rare", capacity + counters::FREE_ENTRIES)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
@@ -388,6 +394,7 @@ impl<'a> Buffers<'a> {
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
             (_, "counters") => &fixed.counters,
+            (_, "held") => &fixed.held,
             (_, "stretch_sums") => &cell.stretch_sums,
             (_, "chunk_sums") => &cell.chunk_sums,
             (_, "cell_start") => &cell.cell_start,

@@ -1,18 +1,20 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
-/// Words that are read.
-pub const WORDS: usize = CELL_COLLISIONS + 2 * COLLISION_COUNTS;
+/// Words that are read: all of them.
+pub const WORDS: usize = CHOOSERS + PART_WORDS * PARTS;
 /// Collisions in cells, in so many parts of two words.
 const CELL_COLLISIONS: usize = 53;
 const COLLISION_COUNTS: usize = 32;
-/// Words of the buffer: the last, `HELD` and `HELD_PARTICLES`, are read only of a device that is held.
-pub const ALL_WORDS: usize = WORDS + 2;
-pub const HELD: usize = WORDS;
-pub const HELD_PARTICLES: usize = WORDS + 1;
+/// The lengths of the parts of the lists of those that choose (`shaders/shared/choosers.gpu.wgsl`), each part's so far behind those before.
+const CHOOSERS: usize = 128;
+const PART_WORDS: usize = 256;
+const PARTS: usize = 16;
+/// Entries of these lists that are free because a part is shorter than another, at most, and some workgroups more.
+pub const FREE_ENTRIES: u64 = 64 * PARTS as u64;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
-/// The lists of those that choose, by round.
+/// The lists of those that choose, by round, of a device that has them in one part.
 const RECHOOSE: usize = 16;
 pub const MOST_ROUNDS: usize = 10;
 pub const BORDER: usize = 12;
@@ -66,7 +68,8 @@ pub struct Counters {
 impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
         let two_words = |words: &[u32]| u64::from(words[0]) | (u64::from(words[1]) << 32);
-        let in_cells: u64 = words[CELL_COLLISIONS..].chunks_exact(2).map(two_words).sum();
+        let in_cells: u64 =
+            words[CELL_COLLISIONS..CELL_COLLISIONS + 2 * COLLISION_COUNTS].chunks_exact(2).map(two_words).sum();
         Counters {
             // Less those that another device counts.
             collisions: two_words(&words[32..34]) + in_cells - u64::from(words[44]),
@@ -89,7 +92,10 @@ impl Counters {
             ghost_candidates: words[50],
             ghost_walls: words[51],
             cut_short: words[52],
-            choosers: std::array::from_fn(|round| words[RECHOOSE + round]),
+            choosers: std::array::from_fn(|round| {
+                let parts = words[CHOOSERS..].chunks_exact(PART_WORDS).map(|part| part[round]);
+                words[RECHOOSE + round] + parts.sum::<u32>()
+            }),
         }
     }
 

@@ -33,7 +33,7 @@ pub use buffers::{
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
-pub use counters::{ALL_WORDS as COUNTER_WORDS, Counters, MOST_ROUNDS};
+pub use counters::{Counters, MOST_ROUNDS, WORDS as COUNTER_WORDS};
 pub use domain::{Domain, DomainInput};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
@@ -49,7 +49,8 @@ pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;
 
 use buffers::{
-    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, ParticleBuffers, TallyWords,
+    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, HELD_WORDS, ParticleBuffers,
+    TallyWords,
 };
 use exchange::Guess;
 use kernels::{CollisionKernels, Kernels};
@@ -354,8 +355,8 @@ impl Subdomain {
                 Ok(Some(0))
             }
             Kept::Held => {
-                let words: Vec<u32> = device.read(&self.fixed.counters, counters::ALL_WORDS)?;
-                let (held, present) = (words[counters::HELD], words[counters::HELD_PARTICLES]);
+                let words: Vec<u32> = device.read(&self.fixed.held, HELD_WORDS)?;
+                let (held, present) = (words[0], words[1]);
                 let known = (held as usize) <= newborns.of_step.len() && u64::from(present) <= self.particle.capacity;
                 let step = held.checked_sub(1).filter(|_| known);
                 if let Some(step) = step {
@@ -382,7 +383,8 @@ impl Subdomain {
 
     fn clear_tallies(&self, device: &Device) {
         let mut encoder = device.encoder();
-        for buffer in [&self.fixed.counters, &self.fixed.zone_sums, &self.fixed.surface_sums, &self.fixed.block_sums] {
+        let FixedBuffers { counters, held, zone_sums, surface_sums, block_sums, .. } = &self.fixed;
+        for buffer in [counters, held, zone_sums, surface_sums, block_sums] {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);

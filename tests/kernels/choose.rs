@@ -50,7 +50,7 @@ impl Cloud {
         put_lists(&mut rig, &self.lists);
         // All of them choose in the first round.
         rig.put("rechoose", &(0..count as u32).collect::<Vec<_>>());
-        rig.set_counter(LIST_RECHOOSE, count as u32);
+        rig.set_choosers(0, count);
         rig
     }
 
@@ -194,7 +194,7 @@ fn choices_are_those_of_the_rule() {
         let before = vec![[7u32, 7]; count];
         rig.put("choices", &before);
         rig.put("rechoose", &some);
-        rig.set_counter(LIST_RECHOOSE + round as usize, some.len() as u32);
+        rig.set_choosers(round as usize, some.len());
         rig.step(cloud.step(round));
         rig.run("choose", some.len());
         let choices: Vec<[u32; 2]> = rig.get("choices", count);

@@ -310,7 +310,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
         put_lists(&mut rig, &lists);
         rig.put("cell_start", &starts);
         rig.put("updates_in", &updates);
-        rig.put("rechoose", &vec![0u32; COUNT]);
+        rig.put("rechoose", &vec![0u32; COUNT + 64 * PARTS]);
         rig.put("peers", &local.peers());
         rig.step(GpuStep { count: COUNT as u32, round: ROUND, ghosts, near2: NEAR2, ..local.step() });
         rig.run("receive", updates.len());
@@ -338,7 +338,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
             .filter(|&s| told.iter().any(|&ghost| has_it(s, ghost)))
             .map(|s| s as u32)
             .collect();
-        assert_eq!(rig.list("rechoose", LIST_RECHOOSE + ROUND as usize + 1), again);
+        assert_eq!(rig.choosers(ROUND as usize + 1, usize::MAX), again);
         // The check can fail: there are updates of both kinds, and particles that nothing near concerns.
         let open = listed_already.iter().filter(|&&listed| !listed).count();
         assert!(told.len() > 5 && again.len() > told.len() && again.len() < open - 50, "{} of {open}", again.len());

@@ -281,7 +281,7 @@ fn places_behind_the_last_particle_are_dead() {
     put_flights(&mut rig, &free_flights(COUNT));
     rig.put("layers", &vec![1u32; COUNT]);
     rig.put("bouncing", &vec![0u32; COUNT]);
-    rig.set_counter(COUNT_PRESENT, last as u32);
+    rig.set_held(PRESENT, last as u32);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("advect", COUNT);
     let found: Vec<GpuParticle> = rig.get("particles", COUNT);
@@ -303,7 +303,7 @@ fn cells_are_emptied_for_the_next_step() {
     for (few, peers, slot, held) in [(2, 0, 6, 0), (2, 0, 7, 0), (2, 1, 6, 0), (1, 0, 6, 0), (2, 0, 6, 1)] {
         let mut rig = Rig::new(&world);
         rig.constant("ROUNDS_OF_PAIRS", f64::from(held));
-        rig.set_counter(HELD, held);
+        rig.set_held(HELD, held);
         rig.constant("FEW_STRETCHES", f64::from(few));
         rig.put("sorted", &particles);
         rig.put("particles", &particles);
@@ -311,7 +311,7 @@ fn cells_are_emptied_for_the_next_step() {
         rig.put("cell_start", &vec![9u32; all + 8]);
         rig.put("stretch_sums", &[9u32; 4]);
         let (own, other) = if slot % 2 == 0 { (LIST_BOUNCE, LIST_BOUNCE_ODD) } else { (LIST_BOUNCE_ODD, LIST_BOUNCE) };
-        rig.set_counter(COUNT_PRESENT, 100);
+        rig.set_held(PRESENT, 100);
         rig.set_counter(COUNT_DROPPED, 3);
         rig.set_counter(other, 77);
         rig.put("dispatches", &[[0u32, 9, 5]; LISTS]);

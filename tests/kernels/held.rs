@@ -57,7 +57,7 @@ fn a_device_that_is_held_changes_nothing() {
     let nothing = vec![0u32; COUNT];
     rig.put("sorted", &sorted);
     rig.put("particles", &sorted);
-    rig.set_counter(COUNT_PRESENT, COUNT as u32);
+    rig.set_held(PRESENT, COUNT as u32);
     rig.put("choices", &partners);
     rig.put("rechoose", &chosen);
     rig.put("pairs", &nothing);
@@ -65,11 +65,11 @@ fn a_device_that_is_held_changes_nothing() {
     rig.put("layers", &vec![CHOOSES; COUNT]);
     rig.put("zones", &[GpuZone::default()]);
     rig.step(GpuStep { count: COUNT as u32, dt: 1e-6, ..GpuStep::default() });
-    rig.set_counter(LIST_RECHOOSE, COUNT as u32);
+    rig.set_choosers(0, COUNT);
     // What each of them leaves: particles, pairs, sums and counters.
     let mut left_by = |kernel: &str, held: u32| {
         rig.put("sums", &vec![0u32; (2 * ZONE_WORDS).max(BLOCK_WORDS + LEVELS)]);
-        rig.set_counter(HELD, held);
+        rig.set_held(HELD, held);
         if kernel == "advect" {
             put_flights(&mut rig, &free_flights(COUNT));
         }
@@ -77,7 +77,7 @@ fn a_device_that_is_held_changes_nothing() {
             "tally" => rig.run_groups("tally", [1, 1, 1]),
             _ => rig.run(kernel, COUNT),
         }
-        rig.set_counter(HELD, 0);
+        rig.set_held(HELD, 0);
         let mut left: Vec<u32> = rig.get("sums", 2 * ZONE_WORDS);
         left.extend(rig.get::<u32>("particles", 8 * COUNT));
         left.extend(rig.get::<u32>("pairs", COUNT));
@@ -105,7 +105,7 @@ fn the_steps_of_a_device_that_is_held_have_nobody() {
         rig.put("particles", &particles);
         rig.put("bins", &[[7u32; 2]; COUNT]);
         rig.put("cell_start", &vec![0u32; world.grid.cell_count()]);
-        rig.set_counter(HELD, held);
+        rig.set_held(HELD, held);
         rig.run("bin", COUNT);
         let counted: u32 = rig.get::<u32>("cell_start", world.grid.cell_count()).iter().sum();
         assert_eq!(counted, if held == 1 { 0 } else { COUNT as u32 });

@@ -66,7 +66,7 @@ fn mutual_choices(among_others: bool) {
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
         rig.put("layers", &layers);
         rig.put("rechoose", &entries);
-        rig.set_counter(LIST_RECHOOSE + round as usize, entries.len() as u32);
+        rig.set_choosers(round as usize, entries.len());
         rig.step(GpuStep { count: COUNT as u32, round, ..GpuStep::default() });
         rig.run("match_pairs", entries.len());
         assert_eq!(rig.counter(round as usize), expected.len() as u32, "round {round}");
@@ -117,7 +117,7 @@ fn pairs_beyond_reach_are_left_to_others_and_each_is_counted_by_one() {
         rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2]);
         rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
         rig.put("layers", &layers.iter().map(|mark| mark | CHOOSES << round).collect::<Vec<_>>());
-        rig.set_counter(LIST_RECHOOSE + round as usize, COUNT as u32);
+        rig.set_choosers(round as usize, COUNT);
         rig.step(GpuStep { count: COUNT as u32, round, reach, ..GpuStep::default() });
         rig.run("match_pairs", COUNT);
         if round < ROUNDS {

@@ -31,7 +31,8 @@ pub fn put_room(rig: &mut Rig, count: usize, room: usize) {
         records.iter_mut().for_each(|record| record[RECORD - DIRECT..].fill(NOBODY));
         *tails = vec![NOBODY; room];
     });
-    [LIST_TAILS, LIST_INCOMPLETE, LIST_RECHOOSE].into_iter().for_each(|list| rig.set_counter(list, 0));
+    [LIST_TAILS, LIST_INCOMPLETE].into_iter().for_each(|list| rig.set_counter(list, 0));
+    rig.set_choosers(0, 0);
 }
 
 pub fn put_lists(rig: &mut Rig, lists: &[Vec<u32>]) {

@@ -82,7 +82,7 @@ impl Crowd {
         self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
         let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
         put_to_complete(&mut self.rig, COUNT, &near);
-        self.rig.put("rechoose", &vec![NOBODY; COUNT + 16 * 64]);
+        self.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
         self.rig.run("neighbours", COUNT);
         complete_lists(&self.rig, LIST_INCOMPLETE);
         lists(&self.rig, COUNT, tails)
@@ -122,7 +122,7 @@ fn flights_begin_with_the_search() {
             crowd.rig.put(name, &vec![0u32; COUNT]);
         }
         put_room(&mut crowd.rig, COUNT, TAILS);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
         let count = COUNT as u32;
         let (newborn_offset, newborn_first_id) = (7, 5000);
         crowd.rig.step(GpuStep {
@@ -271,13 +271,13 @@ fn tails_without_room_are_reported_with_the_room_they_need() {
     let long = expected.iter().filter(|list| list.len() > DIRECT).count();
     assert!(cut > 0 && cut < long, "{cut} of {long}");
     // A device alone is held there, with all its particles; one among others is not.
-    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word) as usize), [1, COUNT]);
+    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.held(word) as usize), [1, COUNT]);
     for word in [HELD, HELD_PARTICLES] {
-        crowd.rig.set_counter(word, 0);
+        crowd.rig.set_held(word, 0);
     }
     crowd.depth = 2;
     crowd.run_near(room, CELL_NEAR2);
-    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.counter(word)), [0, 0]);
+    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.held(word)), [0, 0]);
     // With that room all have it.
     let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
     assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
@@ -316,7 +316,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
         crowd.rig.put("layers", &layers);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
@@ -350,7 +350,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
         }
         // No room is made for what is cut; and who does not choose is on no list of those who do.
         assert_eq!(long, longer, "depth {depth}");
-        let first = crowd.rig.list("rechoose", LIST_RECHOOSE);
+        let first = crowd.rig.choosers(0, usize::MAX);
         assert!(depth == 0 || first.iter().all(|&s| layer(s as usize) < depth));
         assert!(if depth > 0 && ghosts == 0 { noted > 100 && cut > 10 } else { noted == 0 }, "{noted}, {cut}");
     }
@@ -434,10 +434,10 @@ fn those_that_choose_are_the_same_in_every_form() {
             crowd.rig.form = form;
             crowd.rig.put("dispatches", &[0u32; 3 * LISTS]);
             crowd.run();
-            let choosers = crowd.rig.choosers(0);
-            assert!(choosers.len() > COUNT / 10 && (near < 1.0 || choosers.len() < COUNT), "{}", choosers.len());
             let [groups, y, _] = crowd.rig.get::<[u32; 3]>("dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
-            assert_eq!((groups as usize, y), (choosers.len().div_ceil(64), 1));
+            let choosers = crowd.rig.choosers(0, groups as usize);
+            assert!(choosers.len() > COUNT / 10 && (near < 1.0 || choosers.len() < COUNT), "{}", choosers.len());
+            assert!((groups as usize) < choosers.len() / 64 + 2 * PARTS && y == 1, "{groups} {y}");
             crowd.rig.run_groups("choose", [groups, 1, 1]);
             let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
             let chosen: Vec<[u32; 2]> = choosers.iter().map(|&s| choices[s as usize]).collect();
@@ -470,11 +470,11 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
         let mut crowd = flying(particles, dt);
         crowd.rig.constant("RIGID", f64::from(u8::from(rigid)));
         crowd.run();
-        let choosers = crowd.rig.choosers(0);
+        let choosers = crowd.rig.choosers(0, usize::MAX);
         assert!(crowd.rig.get::<[u32; 2]>("choices", COUNT).iter().all(|[partner, _]| *partner == NOBODY));
         // Now all.
         crowd.rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
-        crowd.rig.set_counter(LIST_RECHOOSE, COUNT as u32);
+        crowd.rig.set_choosers(0, COUNT);
         crowd.rig.run("choose", COUNT);
         let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
         let choose = |s: &u32| choices[*s as usize][0] != NOBODY;

@@ -26,9 +26,12 @@ pub const LIST_CHANGED: usize = 13;
 pub const LIST_OUTBOX: usize = 14;
 pub const LIST_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
+/// The lengths of the parts of these lists, in kernels of the form for GPUs.
+pub const CHOOSERS: usize = 128;
+pub const PART_WORDS: usize = 256;
+pub const PARTS: usize = 16;
 pub const LIST_ASKED: usize = 26;
 pub const LIST_BOUNCE_ODD: usize = 27;
-pub const COUNT_PRESENT: usize = 30;
 pub const COUNT_DROPPED: usize = 31;
 pub const LOST: usize = 34;
 pub const SAMPLED: usize = 35;
@@ -51,8 +54,10 @@ pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
 pub const CELL_COLLISIONS: usize = 53;
-pub const HELD: usize = 117;
-pub const HELD_PARTICLES: usize = 118;
+/// Words of `held`.
+pub const HELD: usize = 0;
+pub const HELD_PARTICLES: usize = 1;
+pub const PRESENT: usize = 2;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -284,6 +289,7 @@ impl Rig {
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
         rig.put("counters", &[0u32; COUNTERS]);
+        rig.put("held", &[0u32; 3]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
@@ -359,6 +365,14 @@ impl Rig {
         self.constant("GASES", gases.len() as f64);
     }
 
+    pub fn set_held(&self, word: usize, value: u32) {
+        device().write(&self.buffers["held"], 4 * word as u64, &[value]);
+    }
+
+    pub fn held(&self, word: usize) -> u32 {
+        self.get::<u32>("held", 3)[word]
+    }
+
     /// Sets one counter, the others as they are.
     pub fn set_counter(&self, slot: usize, value: u32) {
         device().write(&self.buffers["counters"], 4 * slot as u64, &[value]);
@@ -371,8 +385,8 @@ impl Rig {
     /// Collisions in cells, whatever parts they are counted in.
     pub fn cell_collisions(&self) -> u32 {
         let words: Vec<u32> = self.get("counters", COUNTERS);
-        assert!(words[CELL_COLLISIONS + 1..HELD].iter().step_by(2).all(|&high| high == 0));
-        words[CELL_COLLISIONS..HELD].iter().step_by(2).sum()
+        assert!(words[CELL_COLLISIONS + 1..CELL_COLLISIONS + 64].iter().step_by(2).all(|&high| high == 0));
+        words[CELL_COLLISIONS..CELL_COLLISIONS + 64].iter().step_by(2).sum()
     }
 
     /// Runs a kernel over workgroups.
@@ -394,9 +408,33 @@ impl Rig {
         device().read(&self.buffers[name], items).expect("the device's answer")
     }
 
-    /// Those that choose in a round, in ascending order.
-    pub fn choosers(&self, round: usize) -> Vec<u32> {
-        self.list("rechoose", LIST_RECHOOSE + round)
+    /// Those that choose in a round, in ascending order, from the entries that a dispatch over these workgroups has threads for.
+    pub fn choosers(&self, round: usize, groups: usize) -> Vec<u32> {
+        let lengths: Vec<u32> = self.get("counters", COUNTERS);
+        let listed: Vec<usize> = match self.form {
+            Form::Gpu => (0..PARTS)
+                .flat_map(|part| {
+                    let length = lengths[CHOOSERS + part * PART_WORDS + round] as usize;
+                    (0..length).map(move |k| (k / 64 * PARTS + part) * 64 + k % 64)
+                })
+                .collect(),
+            _ => (0..lengths[LIST_RECHOOSE + round] as usize).collect(),
+        };
+        assert!(listed.iter().all(|place| place / 64 < groups), "the dispatch covers the list");
+        let most = listed.iter().max().map_or(0, |&place| place + 1);
+        let entries: Vec<u32> = self.get("rechoose", most);
+        let mut found: Vec<u32> = listed.iter().map(|&place| entries[place]).collect();
+        found.sort_unstable();
+        found
+    }
+
+    /// The first so many entries of `rechoose` choose in a round.
+    pub fn set_choosers(&self, round: usize, count: usize) {
+        self.set_counter(LIST_RECHOOSE + round, count as u32);
+        for part in 0..PARTS {
+            let length = (0..count).filter(|place| place / 64 % PARTS == part).count();
+            self.set_counter(CHOOSERS + part * PART_WORDS + round, length as u32);
+        }
     }
 
     /// The entries of a list, in ascending order: which thread appends first is not determined.

@@ -131,7 +131,7 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
-        assert_eq!(rig.counter(COUNT_PRESENT), starts[cells]);
+        assert_eq!(rig.held(PRESENT), starts[cells]);
         // Few stretches are summed here.
         let stretches = cells / STRETCH + 1;
         rig.constant("FEW_STRETCHES", stretches as f64);
@@ -139,10 +139,10 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         of_stretches.resize(stretches.next_multiple_of(4), 7);
         rig.put("stretch_sums", &of_stretches);
         rig.put("cell_start", &all);
-        rig.set_counter(COUNT_PRESENT, 7);
+        rig.set_held(PRESENT, 7);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
-        assert_eq!(rig.counter(COUNT_PRESENT), starts[cells]);
+        assert_eq!(rig.held(PRESENT), starts[cells]);
         assert_ne!(starts[cells], 0, "the check can fail: there were particles");
     }
 }

@@ -286,7 +286,7 @@ fn those_near_a_collision_choose_again() {
             collided.insert(own);
         }
     }
-    assert_eq!(rig.list("rechoose", LIST_RECHOOSE + ROUND as usize + 1), again.into_iter().collect::<Vec<_>>());
+    assert_eq!(rig.choosers(ROUND as usize + 1, usize::MAX), again.into_iter().collect::<Vec<_>>());
     let unchanged = |s: usize| after[s] == cloud.particles[s] && flights[s] == cloud.flights[s];
     assert!((0..cloud.particles.len()).all(|s| unchanged(s) != collided.contains(&s)));
 }
@@ -331,7 +331,7 @@ fn a_wall_between_a_pair_stops_the_collision() {
         met += u32::from(collided);
     }
     assert_eq!(rig.counter(BLOCKED), blocked);
-    assert_eq!(rig.list("rechoose", LIST_RECHOOSE + ROUND as usize + 1), again.into_iter().collect::<Vec<_>>());
+    assert_eq!(rig.choosers(ROUND as usize + 1, usize::MAX), again.into_iter().collect::<Vec<_>>());
     // The check can fail: both happen.
     assert!(blocked > 5 && met > 100, "{blocked} blocked, {met} met");
 }

@@ -1,0 +1,8 @@
+// What a step leaves for the kernels behind it, each of whose threads reads it: other words than the counters, which are counted up meanwhile.
+
+// On a device alone, whose lists had too little room: one more than the place of the step in its interval, after whose search nothing
+// changes until the host has made room; and how many particles are in `sorted` then. The host alone clears them.
+const HELD: u32 = 0;
+const HELD_PARTICLES: u32 = 1;
+// The particles that are in cells.
+const PRESENT: u32 = 2;
