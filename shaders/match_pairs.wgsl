@@ -22,11 +22,16 @@ fn match_pairs(thread: Thread) {
         return;
     }
     let other = choices[s].x;
-    if (other == NOBODY || choices[other].x != s) {
+    if (other == NOBODY) {
+        return;
+    }
+    // Of those who have not chosen in this step the choice says nothing, but of ghosts.
+    let other_mark = layers[other];
+    let has_chosen = (other_mark & ((CHOOSES << (step.round + 1u)) - CHOOSES)) != 0u || (HALO && (other_mark & LAYER) != 0u);
+    if (!has_chosen || choices[other].x != s) {
         return;
     }
     // Where both have just chosen, the lower id speaks for the pair.
-    let other_mark = layers[other];
     let both = (other_mark & (CHOOSES << step.round)) != 0u;
     let first = id_of(sorted[s].tag) < id_of(sorted[other].tag);
     if (both && !first) {
@@ -47,7 +52,8 @@ fn match_pairs(thread: Thread) {
         if (!counted) {
             atomicAdd(&counters[FOREIGN], 1u);
         }
-        pairs[append(step.round)] = vec2<u32>(select(other, s, first), select(s, other, first));
+        let number = entries_from(step.round, 1u, linear(thread), step.total / 2u);
+        pairs[entry_place(number, step.round, linear(thread), step.total / 2u)] = vec2<u32>(select(other, s, first), select(s, other, first));
     } else if (counted) {
         atomicAdd(&counters[step.round], 1u);
     }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl found.wgsl
 // The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
 // are short (search.wgsl).
 //
@@ -72,7 +72,9 @@ fn neighbours_of(thread: Thread) {
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    choices[s].x = NOBODY;
+    if (HALO && step.depth > 0u && (atomicLoad(&layers[s]) & LAYER) != 0u) {
+        choices[s].x = NOBODY;
+    }
     if (!CAPPED) {
         neighbours[2u * s] = first_flight(s, 0u);
     }
@@ -125,47 +127,13 @@ fn neighbours_of(thread: Thread) {
         if (found == 0u) {
             continue;
         }
-        let velocity = sorted[s].motion.xyz;
-        var own_place = 0u;
-        if (own.all) {
-            own_place = atomicAdd(&neighbour_count[s], found);
-        }
         if (fresh != 0u) {
             list_choosers(s, 0u, last, fresh);
         }
         last = partners;
-        fresh = 0u;
-        var p = 0u;
-        for (; p < found; p++) {
-            let j = partners.x;
-            let other = places.x;
-            partners = partners.yzww;
-            places = places.yzww;
-            let near_wall = ((middle | other) & NEAR_WALL) != 0u;
-            let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
-            let theirs = listed_of(j);
-            if (own.all) {
-                enter(s, own_place + p, j);
-                if (near_wall) {
-                    to_complete(s, UNSCREENED);
-                }
-                chooses = chooses || collide;
-            } else if (own.some && theirs.all) {
-                note(s, j);
-            }
-            if (theirs.all) {
-                enter(j, atomicAdd(&neighbour_count[j], 1u), s);
-                if (near_wall) {
-                    to_complete(j, UNSCREENED);
-                }
-                if (collide) {
-                    fresh |= marked(j, 0u) << p;
-                }
-            } else if (theirs.some && own.all) {
-                note(j, s);
-            }
-        }
-        through(p, found);
+        let taken = take_found(s, own, middle, partners, places, found);
+        fresh = taken.fresh;
+        chooses = chooses || taken.collides;
     }
     through(k, turns);
     // (Threads that run together are together again here, and so count up the list's length together.)

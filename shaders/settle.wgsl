@@ -76,11 +76,12 @@ fn is_own(s: u32) -> bool {
 @compute @workgroup_size(WORKGROUP)
 fn settle(thread: Thread) {
     let k = linear(thread);
-    let count = atomicLoad(&counters[PAIRS + step.round]);
-    if (k >= count) {
+    let number = number_in_part(k);
+    let count = entries_in_part(k, step.round, step.total / 2u);
+    if (number >= count) {
         return;
     }
-    if (k == 0u) {
+    if (number == 0u) {
         let old = atomicAdd(&counters[COLLISIONS_LOW], count);
         if (old + count < old) {
             atomicAdd(&counters[COLLISIONS_HIGH], 1u);

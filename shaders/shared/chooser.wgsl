@@ -1,4 +1,4 @@
-//! uses: choosers.wgsl
+//! uses: parted_lists.wgsl
 // Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
 // those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
@@ -9,7 +9,7 @@ fn chooser(thread: u32) -> u32 {
     if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
     }
-    if (!has_entry(thread, step.round)) {
+    if (number_in_part(thread) >= entries_in_part(thread, LIST_RECHOOSE + step.round, step.total)) {
         return NOBODY;
     }
     return rechoose[thread];

@@ -25,8 +25,6 @@ const CUT_SHORT: u32 = 52;           // threads whose loops the device ended too
 // Collisions in cells since the last read, in COLLISION_COUNTS parts of two words, so that few threads count up the same word.
 const CELL_COLLISIONS: u32 = 53;
 const COLLISION_COUNTS: u32 = 32;
-// The lengths of the parts of the lists of those that choose, of up to MOST_LISTS rounds (choosers.gpu.wgsl), each part's so far from the next one's that another
-// part of a GPU's cache has them.
-const CHOOSERS: u32 = 128;
-const PART_WORDS: u32 = 256;
-const MOST_LISTS: u32 = 16;
+// The lengths of lists that are in parts (parted_lists.gpu.wgsl), by part, each part's so far from the next one's that another part of a GPU's cache has them.
+const PARTS_OF_LISTS: u32 = 128;
+const PART_WORDS: u32 = 64;

@@ -1,4 +1,4 @@
-// The lists of those that choose have one part.
+// The lists of parted_lists.wgsl have one part.
 
 fn empty_parts(thread: u32) {
 }

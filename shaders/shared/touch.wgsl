@@ -1,4 +1,4 @@
-//! uses: choosers.wgsl
+//! uses: parted_lists.wgsl
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
@@ -10,6 +10,14 @@ fn marked(s: u32, round: u32) -> u32 {
     let chooses = CHOOSES << round;
     let mark = atomicOr(&layers[s], chooses);
     return select(0u, 1u, (mark & chooses) == 0u && (mark & LAYER) < max(step.depth, 1u));
+}
+
+fn choosers_from(round: u32, count: u32, thread: u32) -> u32 {
+    return entries_from(LIST_RECHOOSE + round, count, thread, step.total);
+}
+
+fn chooser_place(number: u32, round: u32, thread: u32) -> u32 {
+    return entry_place(number, LIST_RECHOOSE + round, thread, step.total);
 }
 
 // Marks the first `count` of four; for each 1 if it is to be entered. (One after the other without a loop: each wants an answer, and can

@@ -329,7 +329,10 @@ impl ParticleBuffers {
             particles: device.storage::<u32>("particles", RECORD * capacity + tails)?,
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
             bins: device.storage::<[u32; 2]>("bins", scratch)?,
-            slots: device.storage::<u32>("slots", if features.halo { 2 * scratch } else { scratch })?,
+            slots: device.storage::<u32>(
+                "slots",
+                if features.halo { 2 * scratch } else { scratch } + 2 * counters::FREE_ENTRIES,
+            )?,
             rare: device.storage::<u32>("rare", capacity + counters::FREE_ENTRIES)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,

@@ -1,13 +1,13 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
 /// Words that are read: all of them.
-pub const WORDS: usize = CHOOSERS + PART_WORDS * PARTS;
+pub const WORDS: usize = PARTS_OF_LISTS + PART_WORDS * PARTS;
 /// Collisions in cells, in so many parts of two words.
 const CELL_COLLISIONS: usize = 53;
 const COLLISION_COUNTS: usize = 32;
-/// The lengths of the parts of the lists of those that choose (`shaders/shared/choosers.gpu.wgsl`), each part's so far behind those before.
-const CHOOSERS: usize = 128;
-const PART_WORDS: usize = 256;
+/// The lengths of lists that are in parts (`shaders/shared/parted_lists.gpu.wgsl`), each part's so far behind those before.
+const PARTS_OF_LISTS: usize = 128;
+const PART_WORDS: usize = 64;
 const PARTS: usize = 16;
 /// Entries of these lists that are free because a part is shorter than another, at most, and some workgroups more.
 pub const FREE_ENTRIES: u64 = 64 * PARTS as u64;
@@ -93,7 +93,7 @@ impl Counters {
             ghost_walls: words[51],
             cut_short: words[52],
             choosers: std::array::from_fn(|round| {
-                let parts = words[CHOOSERS..].chunks_exact(PART_WORDS).map(|part| part[round]);
+                let parts = words[PARTS_OF_LISTS..].chunks_exact(PART_WORDS).map(|part| part[RECHOOSE + round]);
                 words[RECHOOSE + round] + parts.sum::<u32>()
             }),
         }

@@ -202,7 +202,7 @@ fn all_are_found(among_others: bool) {
 #[test]
 fn lists_of_shorter_steps_are_those_of_a_search_of_all_pairs() {
     let mut crowd = crowd(17);
-    let mut before = usize::MAX;
+    let mut before = COUNT;
     for near2 in [12_000, 6_000, 1_500, 40, 1] {
         let lists = crowd.run_near(TAILS, near2);
         let expected = crowd.pairs_near(near2);
@@ -350,7 +350,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
         }
         // No room is made for what is cut; and who does not choose is on no list of those who do.
         assert_eq!(long, longer, "depth {depth}");
-        let first = crowd.rig.choosers(0, usize::MAX);
+        let first = crowd.rig.choosers(0, COUNT);
         assert!(depth == 0 || first.iter().all(|&s| layer(s as usize) < depth));
         assert!(if depth > 0 && ghosts == 0 { noted > 100 && cut > 10 } else { noted == 0 }, "{noted}, {cut}");
     }
@@ -435,7 +435,9 @@ fn those_that_choose_are_the_same_in_every_form() {
             crowd.rig.put("dispatches", &[0u32; 3 * LISTS]);
             crowd.run();
             let [groups, y, _] = crowd.rig.get::<[u32; 3]>("dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
-            let choosers = crowd.rig.choosers(0, groups as usize);
+            let choosers = crowd.rig.choosers(0, COUNT);
+            let places = crowd.rig.parted(LIST_RECHOOSE, COUNT);
+            assert!(places.iter().all(|place| place / 64 < groups as usize), "the dispatch covers the list");
             assert!(choosers.len() > COUNT / 10 && (near < 1.0 || choosers.len() < COUNT), "{}", choosers.len());
             assert!((groups as usize) < choosers.len() / 64 + 2 * PARTS && y == 1, "{groups} {y}");
             crowd.rig.run_groups("choose", [groups, 1, 1]);
@@ -470,8 +472,7 @@ fn those_kept_from_choosing_have_nobody_to_choose() {
         let mut crowd = flying(particles, dt);
         crowd.rig.constant("RIGID", f64::from(u8::from(rigid)));
         crowd.run();
-        let choosers = crowd.rig.choosers(0, usize::MAX);
-        assert!(crowd.rig.get::<[u32; 2]>("choices", COUNT).iter().all(|[partner, _]| *partner == NOBODY));
+        let choosers = crowd.rig.choosers(0, COUNT);
         // Now all.
         crowd.rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
         crowd.rig.set_choosers(0, COUNT);

@@ -27,8 +27,8 @@ pub const LIST_OUTBOX: usize = 14;
 pub const LIST_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
 /// The lengths of the parts of these lists, in kernels of the form for GPUs.
-pub const CHOOSERS: usize = 128;
-pub const PART_WORDS: usize = 256;
+pub const PARTS_OF_LISTS: usize = 128;
+pub const PART_WORDS: usize = 64;
 pub const PARTS: usize = 16;
 pub const LIST_ASKED: usize = 26;
 pub const LIST_BOUNCE_ODD: usize = 27;
@@ -408,33 +408,41 @@ impl Rig {
         device().read(&self.buffers[name], items).expect("the device's answer")
     }
 
-    /// Those that choose in a round, in ascending order, from the entries that a dispatch over these workgroups has threads for.
-    pub fn choosers(&self, round: usize, groups: usize) -> Vec<u32> {
+    /// Where the entries are of a list in parts, if it has any, that has so many at most (`shaders/shared/parted_lists.wgsl`).
+    pub fn parted(&self, list: usize, most: usize) -> Vec<usize> {
         let lengths: Vec<u32> = self.get("counters", COUNTERS);
-        let listed: Vec<usize> = match self.form {
-            Form::Gpu => (0..PARTS)
-                .flat_map(|part| {
-                    let length = lengths[CHOOSERS + part * PART_WORDS + round] as usize;
-                    (0..length).map(move |k| (k / 64 * PARTS + part) * 64 + k % 64)
-                })
-                .collect(),
-            _ => (0..lengths[LIST_RECHOOSE + round] as usize).collect(),
+        if self.form != Form::Gpu {
+            return (0..lengths[list] as usize).collect();
+        }
+        let room = (most / (64 * PARTS) + 1) * 64;
+        let places = |part: usize| {
+            let length = lengths[PARTS_OF_LISTS + part * PART_WORDS + list] as usize;
+            (0..length.min(room)).map(move |k| (k / 64 * PARTS + part) * 64 + k % 64)
         };
-        assert!(listed.iter().all(|place| place / 64 < groups), "the dispatch covers the list");
-        let most = listed.iter().max().map_or(0, |&place| place + 1);
-        let entries: Vec<u32> = self.get("rechoose", most);
-        let mut found: Vec<u32> = listed.iter().map(|&place| entries[place]).collect();
+        (0..PARTS).flat_map(places).collect()
+    }
+
+    /// The first so many entries of such a list are all that it has.
+    pub fn set_parted(&self, list: usize, count: usize) {
+        self.set_counter(list, count as u32);
+        for part in 0..PARTS {
+            let length = (0..count).filter(|place| place / 64 % PARTS == part).count();
+            self.set_counter(PARTS_OF_LISTS + part * PART_WORDS + list, length as u32);
+        }
+    }
+
+    /// Those that choose in a round, of so many particles, in ascending order.
+    pub fn choosers(&self, round: usize, particles: usize) -> Vec<u32> {
+        let places = self.parted(LIST_RECHOOSE + round, particles);
+        let entries: Vec<u32> = self.get("rechoose", particles + 64 * PARTS);
+        let mut found: Vec<u32> = places.into_iter().map(|place| entries[place]).collect();
         found.sort_unstable();
         found
     }
 
     /// The first so many entries of `rechoose` choose in a round.
     pub fn set_choosers(&self, round: usize, count: usize) {
-        self.set_counter(LIST_RECHOOSE + round, count as u32);
-        for part in 0..PARTS {
-            let length = (0..count).filter(|place| place / 64 % PARTS == part).count();
-            self.set_counter(CHOOSERS + part * PART_WORDS + round, length as u32);
-        }
+        self.set_parted(LIST_RECHOOSE + round, count);
     }
 
     /// The entries of a list, in ascending order: which thread appends first is not determined.

@@ -109,7 +109,7 @@ fn prepared(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bo
     }
     rig.put("choices", &choices);
     rig.put("pairs", &pairs.iter().map(|&(i, j, _)| [i as u32, j as u32]).collect::<Vec<_>>());
-    rig.set_counter(ROUND as usize, pairs.len() as u32);
+    rig.set_parted(ROUND as usize, pairs.len());
     rig.step(cloud.step(ROUND));
     rig
 }
@@ -286,7 +286,7 @@ fn those_near_a_collision_choose_again() {
             collided.insert(own);
         }
     }
-    assert_eq!(rig.choosers(ROUND as usize + 1, usize::MAX), again.into_iter().collect::<Vec<_>>());
+    assert_eq!(rig.choosers(ROUND as usize + 1, cloud.particles.len()), again.into_iter().collect::<Vec<_>>());
     let unchanged = |s: usize| after[s] == cloud.particles[s] && flights[s] == cloud.flights[s];
     assert!((0..cloud.particles.len()).all(|s| unchanged(s) != collided.contains(&s)));
 }
@@ -331,7 +331,7 @@ fn a_wall_between_a_pair_stops_the_collision() {
         met += u32::from(collided);
     }
     assert_eq!(rig.counter(BLOCKED), blocked);
-    assert_eq!(rig.choosers(ROUND as usize + 1, usize::MAX), again.into_iter().collect::<Vec<_>>());
+    assert_eq!(rig.choosers(ROUND as usize + 1, cloud.particles.len()), again.into_iter().collect::<Vec<_>>());
     // The check can fail: both happen.
     assert!(blocked > 5 && met > 100, "{blocked} blocked, {met} met");
 }

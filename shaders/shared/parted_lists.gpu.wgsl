@@ -1,0 +1,49 @@
+//! uses: step.wgsl counters.wgsl together.wgsl list_parts.wgsl
+// The same in LIST_PARTS parts, each with a length of its own: an H200 counts up one word once in two nanoseconds, also where it does so once for all threads
+// that run together. Workgroups of those who append take turns, and so do those of the parts' entries in the list. A part has room for its share of the
+// entries; what it has no room for goes to the next that has. (All together have more room than there are entries.)
+
+fn room_of_part(most: u32) -> u32 {
+    return (most / (WORKGROUP * LIST_PARTS) + 1u) * WORKGROUP;
+}
+
+fn part_of_thread(thread: u32) -> u32 {
+    return (thread / WORKGROUP) % LIST_PARTS;
+}
+
+// The workgroup for the entry of this number.
+fn group_of_entry(number: u32, part: u32) -> u32 {
+    return number / WORKGROUP * LIST_PARTS + part;
+}
+
+fn number_in_part(thread: u32) -> u32 {
+    return thread / (WORKGROUP * LIST_PARTS) * WORKGROUP + thread % WORKGROUP;
+}
+
+fn entries_in_part(thread: u32, list: u32, most: u32) -> u32 {
+    return min(atomicLoad(&counters[length_of_part(part_of_thread(thread), list)]), room_of_part(most));
+}
+
+fn entries_from(list: u32, count: u32, thread: u32, most: u32) -> u32 {
+    let part = part_of_thread(thread);
+    let first = counted_up(length_of_part(part, list), count);
+    let last = first + count - 1u;
+    if (count > 0u && (first % WORKGROUP == 0u || first / WORKGROUP != last / WORKGROUP)) {
+        cover(list, group_of_entry(min(last, room_of_part(most) - 1u), part));
+    }
+    return first;
+}
+
+fn entry_place(number: u32, list: u32, thread: u32, most: u32) -> u32 {
+    let room = room_of_part(most);
+    var part = part_of_thread(thread);
+    var found = number;
+    for (var turn = 0u; turn < LIST_PARTS && found >= room; turn++) {
+        part = (part + 1u) % LIST_PARTS;
+        found = atomicAdd(&counters[length_of_part(part, list)], 1u);
+        if (found < room) {
+            cover(list, group_of_entry(found, part));
+        }
+    }
+    return group_of_entry(found, part) * WORKGROUP + found % WORKGROUP;
+}
