@@ -21,19 +21,22 @@ fn match_pairs(thread: Thread) {
     if (s == NOBODY || held[HELD] > 0u) {
         return;
     }
+    let own_tag = sorted[s].tag;
     let other = choices[s].x;
     if (other == NOBODY) {
         return;
     }
-    // Of those who have not chosen in this step the choice says nothing, but of ghosts.
     let other_mark = layers[other];
+    let other_choice = choices[other].x;
+    let other_tag = sorted[other].tag;
+    // Of those who have not chosen in this step the choice says nothing, but of ghosts.
     let has_chosen = (other_mark & ((CHOOSES << (step.round + 1u)) - CHOOSES)) != 0u || (HALO && (other_mark & LAYER) != 0u);
-    if (!has_chosen || choices[other].x != s) {
+    if (!has_chosen || other_choice != s) {
         return;
     }
     // Where both have just chosen, the lower id speaks for the pair.
     let both = (other_mark & (CHOOSES << step.round)) != 0u;
-    let first = id_of(sorted[s].tag) < id_of(sorted[other].tag);
+    let first = id_of(own_tag) < id_of(other_tag);
     if (both && !first) {
         return;
     }

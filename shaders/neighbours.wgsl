@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl found.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
 // The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
 // are short (search.wgsl).
 //
@@ -56,6 +56,57 @@ fn note(list: u32, entry: u32) {
     }
 }
 
+// What comes of partners that were found.
+struct Taken {
+    // Of the partners those that choose and are in no list yet, a bit for each.
+    fresh: u32,
+    // Whether the particle itself may collide with one.
+    collides: bool,
+}
+
+fn take_found(s: u32, own: Listed, middle: u32, found_partners: vec4<u32>, found_places: vec4<u32>, found: u32) -> Taken {
+    var partners = found_partners;
+    var places = found_places;
+    var taken = Taken(0u, false);
+    let velocity = sorted[s].motion.xyz;
+    var own_place = 0u;
+    if (own.all) {
+        own_place = atomicAdd(&neighbour_count[s], found);
+    }
+    var p = 0u;
+    for (; p < found; p++) {
+        let j = partners.x;
+        let other = places.x;
+        partners = partners.yzww;
+        places = places.yzww;
+        let near_wall = ((middle | other) & NEAR_WALL) != 0u;
+        let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
+        let theirs = listed_of(j);
+        if (own.all) {
+            enter(s, own_place + p, j);
+            if (near_wall) {
+                to_complete(s, UNSCREENED);
+            }
+            taken.collides = taken.collides || collide;
+        } else if (own.some && theirs.all) {
+            note(s, j);
+        }
+        if (theirs.all) {
+            enter(j, atomicAdd(&neighbour_count[j], 1u), s);
+            if (near_wall) {
+                to_complete(j, UNSCREENED);
+            }
+            if (collide) {
+                taken.fresh |= marked(j, 0u) << p;
+            }
+        } else if (theirs.some && own.all) {
+            note(j, s);
+        }
+    }
+    through(p, found);
+    return taken;
+}
+
 // Enters a particle, and of four those that have a bit, in the list of those that choose.
 fn list_choosers(s: u32, own: u32, four: vec4<u32>, bits: u32) {
     let first = choosers_from(0u, own + countOneBits(bits), s);
@@ -68,6 +119,9 @@ fn list_choosers(s: u32, own: u32, four: vec4<u32>, bits: u32) {
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(thread: Thread) {
     let s = linear(thread);
+    // (Read before it is known whether there is a particle: a GPU would wait twice.)
+    let middle = middles[s];
+    let here = cells[s] - 1u;
     // The slots behind the last cell's hold no particle.
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
@@ -78,12 +132,10 @@ fn neighbours_of(thread: Thread) {
     if (!CAPPED) {
         neighbours[2u * s] = first_flight(s, 0u);
     }
-    let middle = middles[s];
     let reach = reach_of(s, middle);
     // What comes after it of its own row, and the four rows after that.
     let y_step = step.size.x;
     let z_step = step.size.x * step.size.y;
-    let here = cells[s] - 1u;
     let n = reach.near2;
     let r0 = s + 1u;
     let e0 = cell_start[here + select(2u, 3u, reach.high2.x < n || reach.astray)] - r0;

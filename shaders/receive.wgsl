@@ -59,7 +59,7 @@ fn receive(thread: Thread) {
     touch(s, entry);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
-        touch_neighbours(s, s, false, entry);
+        touch_neighbours(neighbour_count[s], direct_of(s), 0u, vec4<u32>(0u), entry);
     } else {
         touch_around(s, cell, entry);
     }

@@ -93,6 +93,10 @@ fn settle(thread: Thread) {
     var j = particle_of(sorted[pair.y]);
     let flight_i = flight_of(flights[2u * pair.x]);
     let flight_j = flight_of(flights[2u * pair.y]);
+    let listed_i = neighbour_count[pair.x];
+    let listed_j = neighbour_count[pair.y];
+    let direct_i = direct_of(pair.x);
+    let direct_j = direct_of(pair.y);
     let mass_i = gases[kind_of(i.tag)].mass;
     let mass_j = gases[kind_of(j.tag)].mass;
     let mu = mass_i * mass_j / (mass_i + mass_j);
@@ -112,7 +116,7 @@ fn settle(thread: Thread) {
     }
     // All whose choice this can change must choose again, whether they collided or not: the choices are a function of the
     // state alone, whoever else is asked to choose. (The two are in each other's lists.)
-    touch_neighbours(pair.x, pair.y, true, k);
+    touch_neighbours(listed_i, direct_i, listed_j, direct_j, k);
     if (apart) {
         flights[2u * pair.x].z = j.tag;
         flights[2u * pair.y].z = i.tag;

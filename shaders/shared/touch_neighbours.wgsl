@@ -25,13 +25,9 @@ fn ones(four: vec4<u32>) -> u32 {
     return four.x + four.y + four.z + four.w;
 }
 
-// Those in the lists of two, of the second if `both`.
-fn touch_neighbours(s: u32, t: u32, both: bool, thread: u32) {
+// Those in two lists, which are as long, and of which this is in the record.
+fn touch_neighbours(listed_s: u32, direct_s: vec4<u32>, listed_t: u32, direct_t: vec4<u32>, thread: u32) {
     let round = step.round + 1u;
-    let listed_s = neighbour_count[s];
-    let listed_t = select(0u, neighbour_count[t], both);
-    let direct_s = direct_of(s);
-    let direct_t = direct_of(t);
     let most = max(listed_s, listed_t);
     let turns = select(1u, 1u + most / 4u, most > DIRECT);
     var turn = 0u;

@@ -2,6 +2,7 @@
 //! once, here, from the plan.
 
 use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
+use crate::gpu::Device;
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
@@ -10,6 +11,9 @@ use super::nearness;
 use super::scales::Scales;
 use super::walls::Walls;
 
+const MOST_TALLY_LOOPS: u32 = 32;
+/// So many workgroups give a GPU enough to do.
+const FILLING_GROUPS: u64 = 1024;
 /// Threads of a workgroup. Part of the plan's bits: a driver may contract differently for another size.
 pub const WORKGROUP: u32 = 64;
 /// Particles of a cell of the method `cell` that a thread puts in order by itself, at most: as `shaders/shared/members.wgsl`
@@ -105,12 +109,22 @@ impl Features {
     }
 }
 
+/// Particles that a thread of the tally adds, one after the other. Few where there are few, on a GPU: it would wait for each, with most of it idle.
+pub fn tally_loops(device: &Device, plan: &Plan) -> u32 {
+    if device.adapter().is_cpu() {
+        return MOST_TALLY_LOOPS;
+    }
+    let groups = plan.particles / u64::from(WORKGROUP);
+    (groups / FILLING_GROUPS).clamp(1, MOST_TALLY_LOOPS.into()) as u32
+}
+
 pub fn constants(
     plan: &Plan,
     features: Features,
     patches: Patches,
     walls: &Walls,
     scales: &Scales,
+    tally_loops: u32,
 ) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
     let [coats_at, vents_at, works_at] = patches.ends();
@@ -128,6 +142,7 @@ pub fn constants(
         ("TOLERANCE", walls.tolerance),
         ("CLEARANCE_UNIT", CLEARANCE_UNIT),
         ("CHUNK", CHUNK as f64),
+        ("CHUNK_LOOPS", f64::from(tally_loops)),
         ("FEW_STRETCHES", FEW_STRETCHES as f64),
         ("ROUNDS", f64::from(plan.rounds)),
         ("DIAMETER", plan.diameter),

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants};
+use super::constants::{Features, Patches, block_counts, constants, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
@@ -34,6 +34,8 @@ pub struct Domain {
     pub(super) features: Features,
     pub(super) constants: Vec<(&'static str, f64)>,
     pub(super) compiled: Compiled,
+    /// Of a thread of the tally.
+    pub(super) tally_loops: u32,
     pub(super) buffers: DomainBuffers,
     pub(super) words: TallyWords,
     pub(super) patches: Patches,
@@ -61,11 +63,13 @@ impl Domain {
             surfaces: SURFACE_COPIES * input.patches.copy_words(),
             blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
         };
-        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan));
+        let tally_loops = tally_loops(device, plan);
+        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);
         Ok(Domain {
             plan: plan.clone(),
             features,
             compiled: Compiled::new(device, features, &constants)?,
+            tally_loops,
             constants,
             buffers: DomainBuffers::new(
                 device,

@@ -36,9 +36,6 @@ const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ASKED: u32 = 2;
 
-/// Particles per workgroup of the tally: WORKGROUP threads x CHUNK_LOOPS.
-const TALLY_CHUNK: u64 = 64 * 32;
-
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
     /// the slots of those that are to be done.
@@ -427,7 +424,8 @@ impl Subdomain {
     }
 
     pub fn tally(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        let chunks = u64::from(step.total).div_ceil(TALLY_CHUNK) as u32;
+        let chunk = u64::from(WORKGROUP) * u64::from(self.domain.tally_loops);
+        let chunks = u64::from(step.total).div_ceil(chunk) as u32;
         // Two gases at a time.
         let pairs = (self.domain.plan.gases.len() as u32).div_ceil(2);
         let groups = [self.domain.zones as u32, chunks, pairs];
