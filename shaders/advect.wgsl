@@ -48,31 +48,24 @@ fn advect(thread: Thread) {
     if (COLLISIONS && step.peers == 0u && few_stretches()) {
         empty_cells(s, groups_of(thread) * WORKGROUP);
     }
-    // (Read before it is known whether the particle is there and flies: a GPU would wait twice.)
-    var place: vec4<u32>;
-    var motion: vec4<f32>;
-    var flight: vec4<u32>;
-    if (COLLISIONS) {
-        place = sorted[s].place;
-        motion = sorted[s].motion;
-    }
-    if (ROUNDS_OF_PAIRS) {
-        // Where the particle will be.
-        flight = particles[s].place;
-    }
     if (s >= step.total || (ROUNDS_OF_PAIRS && held[HELD] > 0u)) {
         return;
     }
+    var place: vec4<u32>;
+    var motion: vec4<f32>;
+    var mark = 0u;
     if (COLLISIONS) {
-        // A slot behind the last particle, or a ghost.
-        var nobody = s >= held[PRESENT];
-        if (step.peers > 0u) {
-            nobody = (layers[s] & LAYER) != 0u;
+        if (ROUNDS_OF_PAIRS || step.peers > 0u) {
+            mark = layers[s];
         }
+        // A slot behind the last particle, or a ghost.
+        let nobody = select(s >= held[PRESENT], (mark & LAYER) != 0u, step.peers > 0u);
         if (nobody) {
             particles[s].place.w = NOBODY;
             return;
         }
+        place = sorted[s].place;
+        motion = sorted[s].motion;
     } else {
         if (!enter(s)) {
             return;
@@ -87,7 +80,11 @@ fn advect(thread: Thread) {
     let velocity = motion.xyz;
     var meets_wall: bool;
     if (ROUNDS_OF_PAIRS) {
-        meets_wall = flight_of(flight).wall < step.dt;
+        // Its flight, where the particle will be, knows when; of most it is known that they meet none.
+        meets_wall = false;
+        if ((mark & (NEAR | TURNED_TO_WALL)) != 0u) {
+            meets_wall = flight_of(particles[s].place).wall < step.dt;
+        }
     } else {
         // (What enters in this step, which is rare, starts at a time of its own.)
         meets_wall = is_newborn(id_of(place.w)) || may_hit(position, velocity, 0.0, step.dt);

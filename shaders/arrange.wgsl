@@ -24,9 +24,6 @@ fn parted_or_moved(cell: vec3<u32>) -> bool {
 @compute @workgroup_size(WORKGROUP)
 fn arrange(thread: Thread) {
     let i = linear(thread);
-    // (Read before it is known whether there is a particle: a GPU would wait twice.)
-    let bin = bins[i];
-    let particle = particles[i];
     if (step.peers > 0u) {
         // Places behind the last particle: particles have been dropped that are nowhere near this device.
         if (i >= cell_start[step.bins] && i < step.total) {
@@ -36,19 +33,20 @@ fn arrange(thread: Thread) {
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
+    let bin = bins[i];
     if (bin.x == NOBODY) {
         return;
     }
     let begin = cell_start[bin.x];
     let place = begin + bin.y;
     let end = cell_start[bin.x + 1u];
-    let listed = !fits_a_thread(begin, end) || parted_or_moved(nearest_cell(particle.place.xyz));
+    let listed = !fits_a_thread(begin, end) || parted_or_moved(nearest_cell(particles[i].place.xyz));
     if (listed || end - begin > MEMBERS) {
-        slots[place] = id_of(particle.place.w);
+        slots[place] = id_of(particles[i].place.w);
     }
     if (listed) {
         crowded[append(LIST_CROWDED)] = i;
         return;
     }
-    lay(particle, place, bin.x);
+    lay(i, place, bin.x);
 }

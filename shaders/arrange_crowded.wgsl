@@ -54,14 +54,13 @@ fn arrange_crowded(thread: Thread) {
     }
     let i = crowded[place_in_list];
     let cell = bins[i].x;
-    let particle = particles[i];
-    let place = place_by_id(cell, id_of(particle.place.w));
-    lay(particle, place, cell);
+    let place = place_by_id(cell, id_of(particles[i].place.w));
+    lay(i, place, cell);
     // (Where walls may be that move `collide_moved` finds the parts.)
     if (PARTED_GAS && !moving_in(cell_of(cell))) {
         let entry = cell_volume[index_of(cell)];
         if ((entry & PARTED) != 0u) {
-            layers[place] = part_of(particle.place.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;
+            layers[place] = part_of(particles[i].place.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;
             tell_cut_short();
         }
     }

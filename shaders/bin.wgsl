@@ -22,9 +22,6 @@ override ROUNDS_OF_PAIRS: bool = true;
 @compute @workgroup_size(WORKGROUP)
 fn bin(thread: Thread) {
     let i = step.first + linear(thread);
-    // (Read before it is known whether there is a particle: a GPU would wait twice.)
-    var place = particles[i].place;
-    var velocity = particles[i].motion.xyz;
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
@@ -32,11 +29,8 @@ fn bin(thread: Thread) {
         bins[i] = vec2<u32>(NOBODY, 0u);
         return;
     }
-    if (ORIFICES && i - step.count < step.newborns) {
-        place = particles[i].place;
-        velocity = particles[i].motion.xyz;
-    }
-    let middle = shifted(place.xyz, velocity * (FLOWN * step.dt));
+    let place = particles[i].place;
+    let middle = shifted(place.xyz, particles[i].motion.xyz * (FLOWN * step.dt));
     let cell = nearest_cell(middle);
     let there = place.w != NOBODY;
     // The border layer of the box has no bins to fill.

@@ -33,16 +33,16 @@ fn choose(thread: Thread) {
     var best_time = NEVER;
     var best_id = NOBODY;
     let listed = neighbour_count[s];
+    if (listed == 0u) {
+        choices[s] = best;
+        return;
+    }
     let place = sorted[s].place;
     let velocity = sorted[s].motion.xyz;
     let own_flight = flight_of(flights[2u * s]);
     let own_latest = min(step.dt, own_flight.wall);
     var direct = direct_of(s);
     let tail = direct.w;
-    if (listed == 0u) {
-        choices[s] = best;
-        return;
-    }
     for (var k = 0u; k < listed; k++) {
         var j = direct.x;
         direct = direct.yzww;

@@ -119,9 +119,6 @@ fn list_choosers(s: u32, own: u32, four: vec4<u32>, bits: u32) {
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_of(thread: Thread) {
     let s = linear(thread);
-    // (Read before it is known whether there is a particle: a GPU would wait twice.)
-    let middle = middles[s];
-    let here = cells[s] - 1u;
     // The slots behind the last cell's hold no particle.
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
@@ -132,10 +129,12 @@ fn neighbours_of(thread: Thread) {
     if (!CAPPED) {
         neighbours[2u * s] = first_flight(s, 0u);
     }
+    let middle = middles[s];
     let reach = reach_of(s, middle);
     // What comes after it of its own row, and the four rows after that.
     let y_step = step.size.x;
     let z_step = step.size.x * step.size.y;
+    let here = cells[s] - 1u;
     let n = reach.near2;
     let r0 = s + 1u;
     let e0 = cell_start[here + select(2u, 3u, reach.high2.x < n || reach.astray)] - r0;

@@ -33,9 +33,6 @@ fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {
 @compute @workgroup_size(WORKGROUP)
 fn order(thread: Thread) {
     let i = linear(thread);
-    // (Read before it is known whether there is a particle: a GPU would wait twice.)
-    let bin = bins[i];
-    let whole = particles[i];
     // Places behind the last particle: on a device alone, whose host learns late how many have left through vents, and where
     // particles have been dropped that are nowhere near this device.
     if (i >= cell_start[step.bins] && i < step.total) {
@@ -45,10 +42,12 @@ fn order(thread: Thread) {
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
+    let bin = bins[i];
     let cell = bin.x;
     if (cell == NOBODY) {
         return;
     }
+    let whole = particles[i];
     let own_id = id_of(whole.place.w);
     let place = cell_start[cell] + bin.y;
     sorted[place] = whole;

@@ -56,6 +56,9 @@ fn receive(thread: Thread) {
     }
     sorted[s] = after;
     flights[2u * s] = packed_flight(updates_in[entry].flight);
+    if (updates_in[entry].flight.wall < step.dt) {
+        atomicOr(&layers[s], TURNED_TO_WALL);
+    }
     touch(s, entry);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {

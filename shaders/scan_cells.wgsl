@@ -1,4 +1,4 @@
-//! uses: step.wgsl held.wgsl stretches.wgsl
+//! uses: step.wgsl held.wgsl stretches.wgsl starts.wgsl
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`, of few stretches the sums themselves, of more what `scan_stretches` made of them; reads counts and writes
@@ -12,18 +12,6 @@
 @group(0) @binding(29) var<storage, read> stretch_sums: array<vec4<u32>>;
 
 const FOUR: vec4<u32> = vec4<u32>(0u, 1u, 2u, 3u);
-
-// Where the particles of the cells of a four start, of which `before` are before it, and of the next one.
-struct Starts {
-    starts: vec4<u32>,
-    next: u32,
-}
-
-fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
-    let two = counts.x + counts.y;
-    let three = two + counts.z;
-    return Starts(before + vec4<u32>(0u, counts.x, two, three), before + three + counts.w);
-}
 
 @compute @workgroup_size(WORKGROUP)
 fn scan_cells(thread: Thread) {
@@ -58,28 +46,5 @@ fn scan_cells(thread: Thread) {
     if (chunk == step.bins / CHUNK) {
         held[PRESENT] = before + own;
     }
-    let begin = chunk * (CHUNK / 4u);
-    let end = begin + CHUNK / 4u;
-    if (own == 0u) {
-        for (var four = begin; four < end; four++) {
-            cell_start[four] = vec4<u32>(before);
-        }
-        return;
-    }
-    // Four fours are read before any is written: a read would wait for what was written before it.
-    for (var four = begin; four < end; four += 4u) {
-        let counts0 = cell_start[four];
-        let counts1 = cell_start[four + 1u];
-        let counts2 = cell_start[four + 2u];
-        let counts3 = cell_start[four + 3u];
-        let starts0 = starts_of(counts0, before);
-        let starts1 = starts_of(counts1, starts0.next);
-        let starts2 = starts_of(counts2, starts1.next);
-        let starts3 = starts_of(counts3, starts2.next);
-        cell_start[four] = starts0.starts;
-        cell_start[four + 1u] = starts1.starts;
-        cell_start[four + 2u] = starts2.starts;
-        cell_start[four + 3u] = starts3.starts;
-        before = starts3.next;
-    }
+    write_starts(thread, chunk, before, own);
 }

@@ -157,5 +157,11 @@ fn settle(thread: Thread) {
     let wall_j = wall_time(j.position, j.velocity, time, step.dt);
     flights[2u * pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
     flights[2u * pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
+    if (wall_i < step.dt) {
+        atomicOr(&layers[pair.x], TURNED_TO_WALL);
+    }
+    if (wall_j < step.dt) {
+        atomicOr(&layers[pair.y], TURNED_TO_WALL);
+    }
     tell_cut_short();
 }

@@ -6,8 +6,8 @@
 @group(0) @binding(27) var<storage, read_write> cells: array<u32>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 
-fn lay(particle: Packed, place: u32, cell: u32) {
-    sorted[place] = particle;
+fn lay(i: u32, place: u32, cell: u32) {
+    sorted[place] = particles[i];
     if (step.peers > 0u) {
         cells[place] = cell;
         // Collisions within cells want no ghosts.

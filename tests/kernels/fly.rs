@@ -146,7 +146,12 @@ fn advect_flies_the_free_and_lists_the_others() {
         }
         rig.put("newborns", &born);
         rig.put("bouncing", &vec![0u32; COUNT]);
-        rig.put("layers", &vec![0u32; COUNT]);
+        // Of those without such a mark no flight is looked at.
+        let mark = |k: usize| {
+            let marks = [NEAR, TURNED_TO_WALL];
+            if rounds && (meets_wall(k) || k % 5 == 0) { marks[k % 2] } else { 0 }
+        };
+        rig.put("layers", &(0..COUNT).map(mark).collect::<Vec<_>>());
         rig.put("cell_start", &[0u32]);
         rig.step(GpuStep {
             peers: 1,
@@ -246,7 +251,11 @@ fn ghosts_leave_dead_slots() {
     for flight in flights.iter_mut().step_by(3) {
         flight.wall = 0.5 * DT;
     }
-    let layers: Vec<u32> = (0..COUNT).map(|_| stream.below(3) | [0, SHARED, NEAR][stream.below(3) as usize]).collect();
+    let mut layers: Vec<u32> =
+        (0..COUNT).map(|_| stream.below(3) | [0, SHARED, NEAR][stream.below(3) as usize]).collect();
+    for mark in layers.iter_mut().step_by(3) {
+        *mark |= TURNED_TO_WALL;
+    }
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
     put_flights(&mut rig, &flights);

@@ -71,6 +71,7 @@ pub const SOLID: u32 = 3;
 pub const SHARED: u32 = 0x100;
 pub const LISTED: u32 = 0x200;
 pub const NEAR: u32 = 0x400;
+pub const TURNED_TO_WALL: u32 = 0x8000;
 pub const UNSCREENED: u32 = 0x2000;
 pub const LONG: u32 = 0x4000;
 pub const CHOOSES: u32 = 0x10000;

@@ -1,0 +1,29 @@
+//! uses: stretches.wgsl four_starts.wgsl
+// Where the particles of a chunk's cells start, of which `before` are before it and `own` in it, in place of how many there are in each cell.
+fn write_starts_of_chunk(chunk: u32, before_chunk: u32, own: u32) {
+    var before = before_chunk;
+    let begin = chunk * (CHUNK / 4u);
+    let end = begin + CHUNK / 4u;
+    if (own == 0u) {
+        for (var four = begin; four < end; four++) {
+            cell_start[four] = vec4<u32>(before);
+        }
+        return;
+    }
+    // Four fours are read before any is written: a read would wait for what was written before it.
+    for (var four = begin; four < end; four += 4u) {
+        let counts0 = cell_start[four];
+        let counts1 = cell_start[four + 1u];
+        let counts2 = cell_start[four + 2u];
+        let counts3 = cell_start[four + 3u];
+        let starts0 = starts_of(counts0, before);
+        let starts1 = starts_of(counts1, starts0.next);
+        let starts2 = starts_of(counts2, starts1.next);
+        let starts3 = starts_of(counts3, starts2.next);
+        cell_start[four] = starts0.starts;
+        cell_start[four + 1u] = starts1.starts;
+        cell_start[four + 2u] = starts2.starts;
+        cell_start[four + 3u] = starts3.starts;
+        before = starts3.next;
+    }
+}
