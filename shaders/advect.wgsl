@@ -1,6 +1,6 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl held.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl emptying.wgsl entering.wgsl walls.wgsl held.wgsl
 // Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
-// device alone, where cells are few, empties these for the next step.
+// device alone, where cells are few or the device is a GPU, empties these for the next step.
 //
 // Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `cell_start`, `stretch_sums`, `particles` (where they were in `sorted`; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
@@ -45,7 +45,7 @@ fn advect(thread: Thread) {
         empty_bounces();
         atomicStore(&counters[COUNT_DROPPED], 0u);
     }
-    if (COLLISIONS && step.peers == 0u && few_stretches()) {
+    if (COLLISIONS && step.peers == 0u && advect_empties()) {
         empty_cells(s, groups_of(thread) * WORKGROUP);
     }
     if (s >= step.total || (ROUNDS_OF_PAIRS && held[HELD] > 0u)) {

@@ -64,11 +64,10 @@ struct Taken {
     collides: bool,
 }
 
-fn take_found(s: u32, own: Listed, middle: u32, found_partners: vec4<u32>, found_places: vec4<u32>, found: u32) -> Taken {
+fn take_found(s: u32, velocity: vec3<f32>, own: Listed, middle: u32, found_partners: vec4<u32>, found_places: vec4<u32>, found: u32) -> Taken {
     var partners = found_partners;
     var places = found_places;
     var taken = Taken(0u, false);
-    let velocity = sorted[s].motion.xyz;
     var own_place = 0u;
     if (own.all) {
         own_place = atomicAdd(&neighbour_count[s], found);
@@ -149,6 +148,7 @@ fn neighbours_of(thread: Thread) {
     let e4 = e3 + r4.y;
     let turns = max(e4, FEWEST_TURNS);
     let own = listed_of(s);
+    let velocity = sorted[s].motion.xyz;
     // Of those that were found last who is to be entered in the list of those that choose, a bit for each; and whether it may itself.
     var last = vec4<u32>(0u);
     var fresh = 0u;
@@ -182,7 +182,7 @@ fn neighbours_of(thread: Thread) {
             list_choosers(s, 0u, last, fresh);
         }
         last = partners;
-        let taken = take_found(s, own, middle, partners, places, found);
+        let taken = take_found(s, velocity, own, middle, partners, places, found);
         fresh = taken.fresh;
         chooses = chooses || taken.collides;
     }

@@ -1,6 +1,6 @@
 //! The buffers of a subdomain, named as the shaders name them.
 
-use crate::gpu::{Device, GpuError};
+use crate::gpu::{Device, Form, GpuError};
 
 use super::cell_table::CellTable;
 use super::constants::{Features, WORKGROUP};
@@ -20,6 +20,11 @@ pub const FEW_STRETCHES: u64 = 64;
 /// Whether so many bins are few stretches.
 pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
+}
+
+/// Whether on a device alone `advect` empties the cells for the next step (`shaders/shared/emptying.wgsl`).
+pub fn advect_empties(form: Form, bins: u64) -> bool {
+    form == Form::Gpu || few_stretches(bins)
 }
 /// Cells that a thread empties, at most (`shaders/reset.wgsl`, `shaders/advect.wgsl`).
 pub const EMPTIED_CELLS: u64 = 16;

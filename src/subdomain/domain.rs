@@ -1,6 +1,6 @@
 //! What all subdomains of one device share: the plan, the compiled kernels, the walls, the zones.
 
-use crate::gpu::{Device, GpuError};
+use crate::gpu::{Device, Form, GpuError};
 use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
@@ -34,6 +34,8 @@ pub struct Domain {
     pub(super) features: Features,
     pub(super) constants: Vec<(&'static str, f64)>,
     pub(super) compiled: Compiled,
+    /// Of the kernels.
+    pub(super) form: Form,
     /// Of a thread of the tally.
     pub(super) tally_loops: u32,
     pub(super) buffers: DomainBuffers,
@@ -69,6 +71,7 @@ impl Domain {
             plan: plan.clone(),
             features,
             compiled: Compiled::new(device, features, &constants)?,
+            form: device.form(),
             tally_loops,
             constants,
             buffers: DomainBuffers::new(

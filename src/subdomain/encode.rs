@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, few_stretches, step_stride};
+use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, advect_empties, few_stretches, step_stride};
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -251,7 +251,8 @@ impl Subdomain {
     pub fn reset(&self, rec: &mut Recording<'_>) {
         let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
         let mut cells = CellBuffers::start_bytes(bins) / 4;
-        if !few_stretches(bins) {
+        let left = self.emptied && self.advect_empties();
+        if !few_stretches(bins) && !left {
             rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(4 * cells));
             rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
             cells = 1;
@@ -335,6 +336,11 @@ impl Subdomain {
         }
     }
 
+    /// `shaders/shared/emptying.wgsl`.
+    fn advect_empties(&self) -> bool {
+        advect_empties(self.domain.form, self.bins())
+    }
+
     fn bins(&self) -> u64 {
         self.cells().all
     }
@@ -406,7 +412,7 @@ impl Subdomain {
         let device = rec.device();
         let offset = self.offset(device, step, 0);
         // As many threads as particles, or more where they empty cells.
-        let empties = self.kernels.sort.is_some() && self.place.is_alone() && few_stretches(self.bins());
+        let empties = self.kernels.sort.is_some() && self.place.is_alone() && self.advect_empties();
         let emptying = if empties { self.bins().div_ceil(EMPTIED_CELLS) } else { 0 };
         let groups = threads(device, u64::from(step.total).max(emptying));
         let pass = rec.phase("advect");

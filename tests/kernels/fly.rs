@@ -149,7 +149,7 @@ fn advect_flies_the_free_and_lists_the_others() {
         // Of those without such a mark no flight is looked at.
         let mark = |k: usize| {
             let marks = [NEAR, TURNED_TO_WALL];
-            if rounds && (meets_wall(k) || k % 5 == 0) { marks[k % 2] } else { 0 }
+            if rounds && (meets_wall(k) || k.is_multiple_of(5)) { marks[k % 2] } else { 0 }
         };
         rig.put("layers", &(0..COUNT).map(mark).collect::<Vec<_>>());
         rig.put("cell_start", &[0u32]);

@@ -1,8 +1,9 @@
 //! What a run did in its steps: the amounts by which bytes and operations are counted.
 
 use crate::geometry::Grid;
+use crate::gpu::Form;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS, few_stretches};
+use crate::subdomain::{GpuParticle, MEMBERS, advect_empties};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -49,7 +50,7 @@ pub struct Work {
 impl Work {
     /// Of the steps since `before`. The lengths of lists are those in the last steps of intervals, `lists` those of neighbours in the last step
     /// of all; the cells are those of the particles at the end.
-    pub fn new(model: &Model, before: &Done, after: &Done, outcome: &Outcome, lists: [f64; 2]) -> Work {
+    pub fn new(model: &Model, before: &Done, after: &Done, outcome: &Outcome, lists: [f64; 2], form: Form) -> Work {
         let plan = &model.plan;
         let steps = (after.phases.steps - before.phases.steps) as f64;
         let particle_steps = (after.phases.particle_steps - before.phases.particle_steps) as f64;
@@ -65,7 +66,7 @@ impl Work {
             steps,
             particle_steps,
             cell_steps: cells * steps,
-            emptied: if few_stretches(cells as u64) { cells * steps } else { 0.0 },
+            emptied: if advect_empties(form, cells as u64) { cells * steps } else { 0.0 },
             filled: filled * steps,
             shared: shared * steps,
             gathered: gathered * steps,
