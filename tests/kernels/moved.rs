@@ -110,7 +110,7 @@ fn at_rest_and_moved(seed: u32, shape: &dyn Fn(Vector) -> Shape, gas: GasSide, m
     }
     still.start = start;
     let (particles, start) = (still.particles.clone(), still.start.clone());
-    [still, Cloud { world, table, particles, start, motion: Some(motion) }]
+    [still, Cloud { world, table, particles, start, motion: Some(motion), form: device().form() }]
 }
 
 /// Collisions of some runs, those through walls left out.

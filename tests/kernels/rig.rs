@@ -54,6 +54,17 @@ pub const MOVED: usize = 48;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
 pub const CELL_COLLISIONS: usize = 53;
+/// The forms of kernels that the device can run.
+pub fn forms() -> Vec<Form> {
+    device().adapter().forms()
+}
+
+/// Whether a word of the counters is the length of a part of a list (`shaders/shared/list_parts.gpu.wgsl`).
+pub fn is_of_part(form: Form, word: usize) -> bool {
+    let of_parts = PARTS_OF_LISTS..PARTS_OF_LISTS + PARTS * PART_WORDS;
+    form == Form::Gpu && of_parts.contains(&word) && (word - PARTS_OF_LISTS) % PART_WORDS < LISTS
+}
+
 /// Words of `held`.
 pub const HELD: usize = 0;
 pub const HELD_PARTICLES: usize = 1;

@@ -1,5 +1,6 @@
 //! `bin` and `order`: the particles by cell, exactly; `arrange` and `arrange_crowded`: by cell, and by id where `collide` wants it.
 
+use corpuscle::gpu::Form;
 use corpuscle::subdomain::{
     CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES,
 };
@@ -235,9 +236,12 @@ fn particles_of_cells_are_arranged() {
         bins[k] = [cell[k], place - start[cell[k] as usize]];
         by_slot[place as usize] = particles[k];
     }
-    for (walls, peers) in [(false, 0), (true, 1)] {
+    let cases = [(false, 0), (true, 1)];
+    for (form, (walls, peers)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
         let ordered = |c: u32| {
-            let crowded = start[c as usize + 1] - start[c as usize] / 4 * 4 > CROWD;
+            let [begin, end] = [start[c as usize], start[c as usize + 1]];
+            // On a GPU no thread of `collide_crowded` puts a cell in order by itself.
+            let crowded = if form == Form::Gpu { end - begin > MEMBERS } else { end - begin / 4 * 4 > CROWD };
             crowded || walls && (c == parted || moved(c))
         };
         let mut expected = by_slot.clone();
@@ -247,6 +251,7 @@ fn particles_of_cells_are_arranged() {
         let mut volume = vec![1e-9f32.to_bits(); cells.count()];
         volume[parted as usize] = PARTED | 2 << 24;
         let mut rig = Rig::new(&world);
+        rig.form = form;
         rig.put("particles", &particles);
         rig.put("bins", &bins);
         rig.put("cell_start", &start);
