@@ -51,7 +51,7 @@ const FEWEST_TURNS: f64 = 4.0;
 // Beginnings of lines of the kernels, by which their branches and loops are found.
 const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
 const MEETING_WALLS: &str = "if (step.ghosts != GHOSTS_ASKED && (layers";
-const MUTUAL: &str = "if (other == NOBODY";
+const MUTUAL: &str = "if (!has_chosen";
 const LISTED: &str = "for (var k = 0u; k < listed";
 const IN_ORDER: &str = "if (count <= MEMBERS)";
 const FITTING: &str = "if (fits_a_thread(";
@@ -129,7 +129,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let before =
                 counted.turn("scan_cells", "for (var four = stretch * (WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
             // Few stretches are summed by each chunk: half of them, by fours, in the mean.
-            let sum = if work.emptied > 0.0 {
+            let sum = if work.few_stretches {
                 let stretches = cells / work.steps.max(1.0) / (CHUNK * CHUNK) as f64;
                 counted.turn("scan_cells", "for (var four = 0u; four < stretch")? * (stretches / 8.0)
             } else {
@@ -157,7 +157,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
         "settle" => {
             let [alone, mutual] = counted.of("match_pairs")?.around(MUTUAL)?;
-            let touched = counted.turn("settle", "for (; k < listed")? * (2.0 * entries);
+            // Most lists are of one turn.
+            let touched = counted.turn("settle", "for (; turn < turns")?;
             alone * choosers + (mutual + counted.straight("settle")? + touched) * collisions
         }
         "lost" => {

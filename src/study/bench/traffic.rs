@@ -40,12 +40,12 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
             n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
                 + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
         }
-        // Middle and cell in, where the cells start, that nobody has chosen and a flight (that sort leaves where diameters are capped, then in)
+        // Middle and cell in, where the cells start, a flight (that sort leaves where diameters are capped, then in)
         // out; of those with neighbours the state in and the length of
         // the list in and out; the lists out; of those that may collide their mark in and out, and their entry.
         "neighbours" => {
             let of_listed = PARTICLE + 2.0 * WORD;
-            n * (4.0 * WORD + FLIGHT)
+            n * (2.0 * WORD + FLIGHT)
                 + filled * WORD
                 + work.listed * of_listed
                 + candidates * WORD
@@ -67,9 +67,10 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + work.crowded * 2.0 * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
-        // State in and out; flight where there is one; the cells that it empties out. Without collisions newborns as in `bin`.
+        // State in and out; with rounds the marks, and the flights of those that may meet a wall; the cells that it empties out. Without collisions newborns as in `bin`.
         "advect" => {
-            n * (2.0 * PARTICLE + if rounds { FLIGHT } else { 0.0 })
+            n * (2.0 * PARTICLE + if rounds { WORD } else { 0.0 })
+                + if rounds { work.near_walls * FLIGHT } else { 0.0 }
                 + if method == Method::None { entered } else { work.emptied * WORD }
         }
         // The states, once for all zones.
@@ -129,10 +130,10 @@ mod tests {
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
         assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
         assert_eq!([floor("sort", rounds), floor("sort", cell)], [88.0, 72.0]);
-        assert_eq!(floor("neighbours", rounds), 32.0);
+        assert_eq!(floor("neighbours", rounds), 24.0);
         let capped = Work { capped: true, ..work };
-        assert_eq!(["sort", "neighbours"].map(|phase| bytes(phase, rounds, &capped)), [104.0, 32.0].map(Some));
-        assert_eq!([floor("advect", rounds), floor("advect", cell)], [80.0, 64.0]);
+        assert_eq!(["sort", "neighbours"].map(|phase| bytes(phase, rounds, &capped)), [104.0, 24.0].map(Some));
+        assert_eq!([floor("advect", rounds), floor("advect", cell)], [68.0, 64.0]);
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));

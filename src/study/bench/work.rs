@@ -3,7 +3,7 @@
 use crate::geometry::Grid;
 use crate::gpu::Form;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS, advect_empties};
+use crate::subdomain::{GpuParticle, MEMBERS, advect_empties, few_stretches};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -17,6 +17,8 @@ pub struct Work {
     pub cell_steps: f64,
     /// Of them those that a kernel empties: of many the buffers are cleared, outside of the phases.
     pub emptied: f64,
+    /// The cells are few to the scan.
+    pub few_stretches: bool,
     pub filled: f64,
     pub shared: f64,
     /// Particles in cells with two or more.
@@ -67,6 +69,7 @@ impl Work {
             particle_steps,
             cell_steps: cells * steps,
             emptied: if advect_empties(form, cells as u64) { cells * steps } else { 0.0 },
+            few_stretches: few_stretches(cells as u64),
             filled: filled * steps,
             shared: shared * steps,
             gathered: gathered * steps,
