@@ -82,6 +82,7 @@ fn settle(thread: Thread) {
         return;
     }
     if (number == 0u) {
+        tell_entries(step.round, count);
         let old = atomicAdd(&counters[COLLISIONS_LOW], count);
         if (old + count < old) {
             atomicAdd(&counters[COLLISIONS_HIGH], 1u);

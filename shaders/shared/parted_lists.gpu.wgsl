@@ -47,3 +47,8 @@ fn entry_place(number: u32, list: u32, thread: u32, most: u32) -> u32 {
     }
     return group_of_entry(found, part) * WORKGROUP + found % WORKGROUP;
 }
+
+// (The word that is the length of a list of one part.)
+fn tell_entries(list: u32, count: u32) {
+    atomicAdd(&counters[list], count);
+}

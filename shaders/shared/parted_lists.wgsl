@@ -25,3 +25,7 @@ fn entries_from(list: u32, count: u32, thread: u32, most: u32) -> u32 {
 fn entry_place(number: u32, list: u32, thread: u32, most: u32) -> u32 {
     return number;
 }
+
+// Tells of how many entries a part has, to who asks for those of all parts: once for each, by the thread of its first entry.
+fn tell_entries(list: u32, count: u32) {
+}

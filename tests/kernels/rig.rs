@@ -51,6 +51,7 @@ pub const CANDIDATES: usize = 47;
 pub const GHOST_CANDIDATES: usize = 50;
 pub const GHOST_WALLS: usize = 51;
 pub const MOVED: usize = 48;
+pub const COLLISIONS_LOW: usize = 32;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
 pub const CELL_COLLISIONS: usize = 53;
@@ -436,7 +437,7 @@ impl Rig {
 
     /// The first so many entries of such a list are all that it has.
     pub fn set_parted(&self, list: usize, count: usize) {
-        self.set_counter(list, count as u32);
+        self.set_counter(list, if self.form == Form::Gpu { 0 } else { count as u32 });
         for part in 0..PARTS {
             let length = (0..count).filter(|place| place / 64 % PARTS == part).count();
             self.set_counter(PARTS_OF_LISTS + part * PART_WORDS + list, length as u32);

@@ -260,6 +260,23 @@ fn exchanges_with_modes_are_those_of_f64() {
     assert!(constant > pairs.len() / 5, "{constant} of {}", pairs.len());
 }
 
+/// How many collide in a round is counted once, for the run and for the sample of lost collisions, in every form of the kernels.
+#[test]
+fn the_collisions_of_a_round_are_counted_in_every_form() {
+    let cloud = Cloud::new(&mut Stream::new(35), World::plain(), 1600, 0.9);
+    let pairs = meetings(&cloud);
+    for form in forms() {
+        let mut rig = prepared(&cloud, &pairs, true, false);
+        rig.form = form;
+        rig.set_parted(ROUND as usize, pairs.len());
+        rig.run("settle", pairs.len());
+        let counted = [rig.counter(COLLISIONS_LOW), rig.counter(ROUND as usize)];
+        assert_eq!(counted, [pairs.len() as u32; 2], "{form:?}");
+    }
+    // In several parts of a list.
+    assert!(pairs.len() > 64, "{}", pairs.len());
+}
+
 /// After a collision both flights start at the meeting, name each other, and all their neighbours choose
 /// again, each once; nobody else changes.
 #[test]
