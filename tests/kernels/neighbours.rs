@@ -420,7 +420,7 @@ fn flying(mut particles: Vec<GpuParticle>, dt: f32) -> Crowd {
 /// more than it keeps; the dispatch covers the list.
 #[test]
 fn those_that_choose_are_the_same_in_every_form() {
-    for near in [1.0, 0.2] {
+    for near in [1.0, 0.7] {
         let mut particles = World::plain().particles(&mut Stream::new(20), COUNT, 400.0);
         let middle = particles[0].position;
         for particle in &mut particles {
@@ -434,11 +434,16 @@ fn those_that_choose_are_the_same_in_every_form() {
             crowd.rig.form = form;
             crowd.rig.put("dispatches", &[0u32; 3 * LISTS]);
             crowd.run();
+            // Else whom a list has is a matter of the order of the threads.
+            assert_eq!(crowd.rig.counter(TAILS_WANTED), 0, "there is room for all lists");
             let [groups, y, _] = crowd.rig.get::<[u32; 3]>("dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
             let choosers = crowd.rig.choosers(0, COUNT);
             let places = crowd.rig.parted(LIST_RECHOOSE, COUNT);
             assert!(places.iter().all(|place| place / 64 < groups as usize), "the dispatch covers the list");
             assert!(choosers.len() > COUNT / 10 && (near < 1.0 || choosers.len() < COUNT), "{}", choosers.len());
+            // A thread keeps four of those it finds, which are half of its list, until it enters them.
+            let longest = crowd.rig.get::<u32>("neighbour_count", COUNT).into_iter().max().unwrap_or(0);
+            assert!(near > 0.9 || longest > 16, "{longest}");
             assert!((groups as usize) < choosers.len() / 64 + 2 * PARTS && y == 1, "{groups} {y}");
             crowd.rig.run_groups("choose", [groups, 1, 1]);
             let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
