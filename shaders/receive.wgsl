@@ -37,8 +37,10 @@ fn touch_around(s: u32, cell: vec3<u32>, thread: u32) {
 
 @compute @workgroup_size(WORKGROUP)
 fn receive(thread: Thread) {
+    // (Of those that run together all must be of one part of the list that they append to.)
+    let number = linear(thread);
     // The first entry says how many follow.
-    let entry = linear(thread) + 1u;
+    let entry = number + 1u;
     if (entry > updates_in[0].cell) {
         return;
     }
@@ -59,12 +61,12 @@ fn receive(thread: Thread) {
     if (updates_in[entry].flight.wall < step.dt) {
         atomicOr(&layers[s], TURNED_TO_WALL);
     }
-    touch(s, entry);
+    touch(s, number);
     let layer = atomicLoad(&layers[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
-        touch_neighbours(neighbour_count[s], direct_of(s), 0u, vec4<u32>(0u), entry);
+        touch_neighbours(neighbour_count[s], direct_of(s), 0u, vec4<u32>(0u), number);
     } else {
-        touch_around(s, cell, entry);
+        touch_around(s, cell, number);
     }
     tell_cut_short();
 }
