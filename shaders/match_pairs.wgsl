@@ -1,7 +1,7 @@
 //! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl chooser.wgsl held.wgsl
 // Settle, part 1: the pairs whose choices are mutual.
 //
-// Reads `choices`, `sorted`; writes `pairs` (indices, lower id first) and their count in `counters`.
+// Reads `choices`, `sorted`, `layers`; writes `pairs` (indices, lower id first) and their count in `counters`.
 // One thread per particle that has just chosen. The pairs are disjoint, so their order in the list does not matter. In the
 // extra round that counts lost events the pairs are only counted.
 

@@ -2,7 +2,7 @@
 // The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
 // are short (search.wgsl).
 //
-// Reads what the search does, `sorted` and `newborns`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and `choices`, where
+// Reads what the search does, `sorted` and `newborns`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and of ghosts `choices`, where
 // nobody has chosen; appends lists that are longer, or have neighbours that may be
 // behind a wall, to `incomplete`, for `complete_lists`, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the

@@ -1,6 +1,6 @@
 //! uses: step.wgsl counters.wgsl together.wgsl list_parts.wgsl
-// The same in LIST_PARTS parts, each with a length of its own: an H200 counts up one word once in two nanoseconds, also where it does so once for all threads
-// that run together. Workgroups of those who append take turns, and so do those of the parts' entries in the list. A part has room for its share of the
+// The same in LIST_PARTS parts, each with a length of its own: a GPU counts up one word for one group of threads that run together after the other. Threads of one group must have numbers
+// of one workgroup. Workgroups of those who append take turns, and so do those of the parts' entries in the list. A part has room for its share of the
 // entries; what it has no room for goes to the next that has. (All together have more room than there are entries.)
 
 fn room_of_part(most: u32) -> u32 {

@@ -1,6 +1,14 @@
-//! uses: stretches.wgsl four_starts.wgsl starts_of_chunk.wgsl
+//! uses: starts_of_chunk.wgsl
 // The same on a GPU: the threads that run together do their chunks together, four after four, so that what they read and write at a time lies together. Not where
 // these chunks are not one behind the other.
+
+// Each thread's four behind those of the threads before it; how many particles are before the next fours.
+fn write_fours(four: u32, counts: vec4<u32>, before: u32) -> u32 {
+    let all = counts.x + counts.y + counts.z + counts.w;
+    cell_start[four] = starts_of(counts, before + subgroupExclusiveAdd(all)).starts;
+    return before + subgroupAdd(all);
+}
+
 fn write_starts(thread: Thread, chunk: u32, before_chunk: u32, own: u32) {
     let first = subgroupMin(chunk);
     let threads = subgroupAdd(1u);
@@ -10,24 +18,16 @@ fn write_starts(thread: Thread, chunk: u32, before_chunk: u32, own: u32) {
         return;
     }
     var before = subgroupMin(before_chunk);
-    let begin = first * (CHUNK / 4u) + lane;
     for (var turn = 0u; turn < CHUNK / 4u; turn += 4u) {
-        let four = begin + turn * threads;
+        // (All are read before any is written.)
+        let four = first * (CHUNK / 4u) + turn * threads + lane;
         let counts0 = cell_start[four];
         let counts1 = cell_start[four + threads];
         let counts2 = cell_start[four + 2u * threads];
         let counts3 = cell_start[four + 3u * threads];
-        let all0 = counts0.x + counts0.y + counts0.z + counts0.w;
-        let all1 = counts1.x + counts1.y + counts1.z + counts1.w;
-        let all2 = counts2.x + counts2.y + counts2.z + counts2.w;
-        let all3 = counts3.x + counts3.y + counts3.z + counts3.w;
-        cell_start[four] = starts_of(counts0, before + subgroupExclusiveAdd(all0)).starts;
-        before += subgroupAdd(all0);
-        cell_start[four + threads] = starts_of(counts1, before + subgroupExclusiveAdd(all1)).starts;
-        before += subgroupAdd(all1);
-        cell_start[four + 2u * threads] = starts_of(counts2, before + subgroupExclusiveAdd(all2)).starts;
-        before += subgroupAdd(all2);
-        cell_start[four + 3u * threads] = starts_of(counts3, before + subgroupExclusiveAdd(all3)).starts;
-        before += subgroupAdd(all3);
+        before = write_fours(four, counts0, before);
+        before = write_fours(four + threads, counts1, before);
+        before = write_fours(four + 2u * threads, counts2, before);
+        before = write_fours(four + 3u * threads, counts3, before);
     }
 }

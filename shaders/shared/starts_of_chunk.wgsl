@@ -1,4 +1,16 @@
-//! uses: stretches.wgsl four_starts.wgsl
+//! uses: stretches.wgsl
+// Where the particles of the cells of a four start, of which `before` are before it, and of the next one.
+struct Starts {
+    starts: vec4<u32>,
+    next: u32,
+}
+
+fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
+    let two = counts.x + counts.y;
+    let three = two + counts.z;
+    return Starts(before + vec4<u32>(0u, counts.x, two, three), before + three + counts.w);
+}
+
 // Where the particles of a chunk's cells start, of which `before` are before it and `own` in it, in place of how many there are in each cell.
 fn write_starts_of_chunk(chunk: u32, before_chunk: u32, own: u32) {
     var before = before_chunk;

@@ -1,4 +1,4 @@
-// The same on a GPU, which does atomic operations on one word one after the other (an H200 some two in a nanosecond): one for all threads that come
+// The same on a GPU, which does atomic operations on one word one after the other: one for all threads that come
 // here together. The word must be the same for all of them.
 
 fn counted_up(word: u32, count: u32) -> u32 {

@@ -11,7 +11,7 @@ use super::{Form, GpuError};
 const PATIENCE: Duration = Duration::from_secs(120);
 const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
-/// A divisor of the threads of any workgroup of kernels with two forms.
+/// A divisor of the threads of any workgroup of kernels with a form for software devices.
 pub const WORKGROUP_DIVISOR: u32 = 64;
 
 /// What `corpuscle adapters` lists, and what a run records.

@@ -2,7 +2,7 @@
 //!
 //! Each addition, multiplication, division, comparison, shift, logical operation, conversion, selection, root or other function of a number
 //! is one operation, of a vector one for each component; a scalar product of n components is 2 n - 1, a cross product 9, a
-//! fused multiply-add 2, an atomic 1. Of two forms of a kernel it is that for GPUs. What is made of constants alone is none, nor is moving, packing, or reading and writing with the addresses that
+//! fused multiply-add 2, an atomic 1. Of several forms of a kernel it is the plain one. What is made of constants alone is none, nor is moving, packing, or reading and writing with the addresses that
 //! the source does not spell out, nor a change of sign. Divisions and functions take a device longer than the one operation that they count.
 //!
 //! What a kernel is compiled without is not counted, both sides of `&&` and `||` are. What stands in a branch or in a loop is a [`Stretch`] of its own:

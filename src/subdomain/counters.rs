@@ -9,7 +9,7 @@ const COLLISION_COUNTS: usize = 32;
 const PARTS_OF_LISTS: usize = 128;
 const PART_WORDS: usize = 64;
 const PARTS: usize = 16;
-/// Entries of these lists that are free because a part is shorter than another, at most, and some workgroups more.
+/// Entries for which a list in parts has room beyond the most that it may have.
 pub const FREE_ENTRIES: u64 = 64 * PARTS as u64;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;

@@ -144,3 +144,49 @@ fn what_threads_count_together_is_what_each_counts() {
         assert_eq!(end, counting);
     }
 }
+
+const OF_PARTS: &str = "
+fn cover(list: u32, group: u32) {
+    atomicMax(&counters[0], group + 1u);
+}
+
+@group(0) @binding(0) var<storage, read> inputs: array<u32>;
+@group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(WORKGROUP)
+fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+    let most = arrayLength(&inputs);
+    // All to one part, which has no room for them.
+    let thread = id.x % WORKGROUP + id.x / WORKGROUP * (WORKGROUP * LIST_PARTS);
+    let number = entries_from(7u, 1u, thread, most);
+    outputs[id.x] = vec4<u32>(entry_place(number, 7u, thread, most), room_of_part(most), inputs[id.x], 1u);
+}
+";
+
+/// What a part of a list has no room for goes to others: each entry has a place of its own, within the room of the list.
+#[test]
+fn what_a_part_has_no_room_for_goes_to_others() {
+    if !device().adapter().forms().contains(&Form::Gpu) {
+        return;
+    }
+    let count = 64 * 40;
+    let text = [
+        "override WORKGROUP: u32 = 64;\nconst LISTS: u32 = 32;\n",
+        "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n",
+        "const PARTS_OF_LISTS: u32 = 128;\nconst PART_WORDS: u32 = 64;\n",
+        include_str!("../../shaders/shared/together.gpu.wgsl"),
+        include_str!("../../shaders/shared/list_parts.gpu.wgsl"),
+        include_str!("../../shaders/shared/parted_lists.gpu.wgsl"),
+        OF_PARTS,
+    ];
+    let text = text.map(|part| part.replace("//!", "//")).concat();
+    let outputs = Probe::new(text, &[]).run(device(), &vec![0u32; count], count, [40, 1, 1]);
+    let room = outputs[0][1] as usize;
+    let mut places: Vec<usize> = outputs.iter().map(|output| output[0] as usize).collect();
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!(places.len(), count, "each has a place of its own");
+    assert!(places.iter().all(|&place| place / 64 / 16 < room / 64), "within the room of the list");
+    // The check can fail: one part has room for few of them.
+    assert!(room < count / 4);
+}

@@ -39,7 +39,7 @@ impl Probe {
         }));
         let inputs = device.storage_of("inputs", inputs).expect("memory");
         let outputs = device.storage::<[u32; 4]>("outputs", threads as u64).expect("memory");
-        let counters = device.storage::<u32>("counters", 4).expect("memory");
+        let counters = device.storage::<u32>("counters", 2048).expect("memory");
         let buffers = |name: &str| match name {
             "inputs" => Some(&inputs),
             "outputs" => Some(&outputs),
