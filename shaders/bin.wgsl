@@ -6,7 +6,7 @@
 // owned here nor lies in the halo) and the counts where `scan_cells` puts the starts (`cell_start`, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
 // within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is held
-// (counters.wgsl) nobody is in any cell, and nobody enters.
+// (held.wgsl) nobody is in any cell, and nobody enters.
 
 // What part of the step's flight is flown to the place that decides the cell.
 override FLOWN: f32 = 0.5;

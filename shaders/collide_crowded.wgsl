@@ -3,7 +3,8 @@
 //
 // Reads `crowds`, `cell_start`, `cell_volume` and `slots`; writes `order_by_id`; reads and writes `sorted`, and among other devices
 // leaves the number of a cell's candidates with its first particle, in `neighbour_count`. One thread per entry of `crowds`; each works on
-// its own particles, in order of their ids, in which those of up to CROWD slots need not lie.
+// its own particles, in order of their ids, in which those of up to CROWD slots need not lie where NETWORKS are (crowds.wgsl); elsewhere all do, and neither
+// `slots` nor `order_by_id` is touched.
 
 @group(0) @binding(62) var<storage, read> crowds: array<u32>;
 // Four ids each.

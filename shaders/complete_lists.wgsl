@@ -6,7 +6,7 @@
 // entry of the list that these have left, or per ghost that was asked and has its list yet to be completed.
 //
 // Where a tail is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
-// has, and the room that was wanted is kept for the host. A device alone is held (counters.wgsl): it leaves `sorted` as it is, from which the
+// has, and the room that was wanted is kept for the host. A device alone is held (held.wgsl): it leaves `sorted` as it is, from which the
 // host goes on with more room. Among others, of whom one alone may be short of room, the interval is run again.
 //
 // When ghosts are asked rounds may have changed flights, and so the start of the step is taken from `firsts` and `newborns`. The test of a pair

@@ -1,5 +1,5 @@
 //! uses: step.wgsl particle.wgsl newborn.wgsl
-// Puts the particles back as they were before a step that was held after its search (counters.wgsl), on a device alone.
+// Puts the particles back as they were before a step that was held after its search (held.wgsl), on a device alone.
 //
 // Reads `sorted`; writes `particles`, where those that entered in this step leave dead slots: they enter again. One thread per
 // particle, which writes its own slot.

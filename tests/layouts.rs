@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 use std::mem::offset_of;
 
-use corpuscle::gpu::KERNELS;
+use corpuscle::gpu::{KERNELS, KernelSource};
 use corpuscle::subdomain::{
-    CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
+    CROWD, FREE_ENTRIES, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending,
+    GpuStep, GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, LIST_PARTS, MEMBERS, PART_WORDS,
+    PARTS_OF_LISTS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -107,7 +108,11 @@ fn differences(module: &Module, twin: &Twin) -> Option<Vec<String>> {
 
 fn modules() -> Vec<(&'static str, Module)> {
     let parse = |source| naga::front::wgsl::parse_str(source).expect("the build has parsed it");
-    KERNELS.iter().map(|kernel| (kernel.name, parse(kernel.source))).collect()
+    let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.forms[0], kernel.forms[1]];
+    KERNELS
+        .iter()
+        .flat_map(|kernel| sources(kernel).into_iter().flatten().map(|source| (kernel.name, parse(source))))
+        .collect()
 }
 
 /// The structs that the buffers of a module hold, by name, those within structs and arrays included.
@@ -193,9 +198,9 @@ fn a_wrong_twin_is_found() {
     assert!(differences(order, &twin!("NoSuchStruct", Short, start)).is_none());
 }
 
-/// Counts of operations, and tests, go by it.
+/// Counts of operations, room for lists, and tests go by them.
 #[test]
-fn kernels_put_as_many_in_order_as_the_host_has_it() {
+fn constants_of_kernels_are_those_of_the_host() {
     let value = |module: &Module, name: &str| {
         let (_, constant) = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name))?;
         match module.global_expressions[constant.init] {
@@ -203,7 +208,9 @@ fn kernels_put_as_many_in_order_as_the_host_has_it() {
             _ => panic!("{name} is no number"),
         }
     };
-    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)] {
+    let of_lists = [("LIST_PARTS", LIST_PARTS), ("PART_WORDS", PART_WORDS), ("PARTS_OF_LISTS", PARTS_OF_LISTS)]
+        .map(|(name, words)| (name, words as u32));
+    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)].into_iter().chain(of_lists) {
         let found: Vec<u32> = modules().iter().filter_map(|(_, module)| value(module, name)).collect();
         assert!(
             !found.is_empty() && found.iter().all(|&value| value == of_host),

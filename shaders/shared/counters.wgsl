@@ -1,6 +1,6 @@
 // Slots of the counters that the host reads some steps late (src/subdomain/counters.rs).
 
-const PAIRS: u32 = 0;               // 0 .. 32: lengths of the lists of this step, see lists.wgsl
+const PAIRS: u32 = 0;               // 0 .. 32: lengths of the lists of this step, see lists.wgsl (of lists in parts nothing, but of pairs for the sample of lost ones)
 const COLLISIONS_LOW: u32 = 32;     // of the rounds since the last read, two words
 const COLLISIONS_HIGH: u32 = 33;
 const LOST: u32 = 34;               // lost pairs in the sampled steps
@@ -25,6 +25,7 @@ const CUT_SHORT: u32 = 52;           // threads whose loops the device ended too
 // Collisions in cells since the last read, in COLLISION_COUNTS parts of two words, so that few threads count up the same word.
 const CELL_COLLISIONS: u32 = 53;
 const COLLISION_COUNTS: u32 = 32;
+const MISPLACED: u32 = 117;          // entries of lists that found no place, and threads that were parted while they counted together (together.gpu.wgsl)
 // The lengths of lists that are in parts (parted_lists.gpu.wgsl), by part, each part's so far from the next one's that another part of a GPU's cache has them.
 const PARTS_OF_LISTS: u32 = 128;
 const PART_WORDS: u32 = 64;

@@ -40,7 +40,7 @@ const GROUP_LIMIT: u32 = 65535;
 @group(0) @binding(19) var<storage, read_write> dispatches: array<atomic<u32>>;
 
 // (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs, `pack`, over
-// the border, and `order` and `neighbours`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
+// the border, and `order`, `neighbours` and `receive`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
 //
 // Makes sure that a list's dispatch has this workgroup.
 fn cover(list: u32, group: u32) {

@@ -1,7 +1,10 @@
+//! uses: counters.wgsl
 // The same on a GPU, which does atomic operations on one word one after the other: one for all threads that come
-// here together. The word must be the same for all of them.
+// here together. The word must be the same for all of them. That they are still together when the first has counted, in loops and branches of some of them, too, is what drivers do and no
+// standard promises: it is seen, and told of.
 
 fn counted_up(word: u32, count: u32) -> u32 {
+    let together = subgroupBallot(true);
     let before = subgroupExclusiveAdd(count);
     let all = subgroupAdd(count);
     var first = 0u;
@@ -9,5 +12,9 @@ fn counted_up(word: u32, count: u32) -> u32 {
     if (count > 0u && before == 0u) {
         first = atomicAdd(&counters[word], all);
     }
-    return subgroupMax(first) + before;
+    let place = subgroupMax(first) + before;
+    if (any(subgroupBallot(true) != together)) {
+        atomicAdd(&counters[MISPLACED], 1u);
+    }
+    return place;
 }

@@ -11,7 +11,7 @@ fn read_of(listed: u32, turn: u32) -> u32 {
     return select(0u, min(listed - min(4u * turn - 1u, listed), 4u), listed > DIRECT);
 }
 
-// And which, `count` at least 1 behind the first turn.
+// And which: `count` of them count.
 fn four_of(direct: vec4<u32>, count: u32, turn: u32) -> vec4<u32> {
     if (turn == 0u || count == 0u) {
         return direct;

@@ -107,7 +107,7 @@ impl Device {
         Device::opened(selector, None)
     }
 
-    /// The same with another of the forms of kernels that it can run, which is no matter of results.
+    /// The same with another of the forms of kernels that it can run ([`Form`]).
     ///
     /// # Errors
     /// As [`Device::open`], and if it cannot run that form.

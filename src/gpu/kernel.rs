@@ -44,7 +44,7 @@ impl KernelSource {
     }
 }
 
-/// The forms of kernels, which all give the same to the last bit.
+/// The forms of kernels, which all give the same to the last bit where a driver rounds alike in each, as software devices do. A run has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// For any device.

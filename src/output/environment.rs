@@ -33,6 +33,9 @@ pub struct AdapterRecord {
     pub driver: String,
     pub driver_info: String,
     pub device_type: String,
+    /// That of the kernels (`docs/performance.md`, "What a software device does"); empty in the record of an older version.
+    #[serde(default)]
+    pub form: String,
     pub limits: BTreeMap<String, u64>,
     pub features: Vec<String>,
 }
@@ -88,6 +91,7 @@ mod tests {
             driver: "llvmpipe".to_owned(),
             driver_info: "Mesa 22.3.6".to_owned(),
             device_type: "Cpu".to_owned(),
+            form: "software".to_owned(),
             limits: [("max_buffer_size".to_owned(), u64::MAX)].into(),
             features: vec!["TIMESTAMP_QUERY".to_owned()],
         };

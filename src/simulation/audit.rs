@@ -197,6 +197,13 @@ impl Account {
                 counters.cut_short
             ));
         }
+        if counters.misplaced > 0 {
+            return Err(format!(
+                "{} entries of lists found no place: the driver runs threads apart that count together, or a list has too little \
+                 room; please report this, with the output of `corpuscle adapters`",
+                counters.misplaced
+            ));
+        }
         if counters.tally_overflow > 0 {
             return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
         }

@@ -296,7 +296,7 @@ pub struct ParticleBuffers {
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub middles: wgpu::Buffer,

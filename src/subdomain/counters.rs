@@ -1,16 +1,18 @@
 //! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
 
+use super::constants::WORKGROUP;
+
 /// Words that are read: all of them.
-pub const WORDS: usize = PARTS_OF_LISTS + PART_WORDS * PARTS;
+pub const WORDS: usize = PARTS_OF_LISTS + PART_WORDS * LIST_PARTS;
 /// Collisions in cells, in so many parts of two words.
 const CELL_COLLISIONS: usize = 53;
 const COLLISION_COUNTS: usize = 32;
 /// The lengths of lists that are in parts (`shaders/shared/parted_lists.gpu.wgsl`), each part's so far behind those before.
-const PARTS_OF_LISTS: usize = 128;
-const PART_WORDS: usize = 64;
-const PARTS: usize = 16;
-/// Entries for which a list in parts has room beyond the most that it may have.
-pub const FREE_ENTRIES: u64 = 64 * PARTS as u64;
+pub const PARTS_OF_LISTS: usize = 128;
+pub const PART_WORDS: usize = 64;
+pub const LIST_PARTS: usize = 16;
+/// Entries for which a list in parts has room beyond the most that it may have: each part's is a whole number of workgroups.
+pub const FREE_ENTRIES: u64 = WORKGROUP as u64 * LIST_PARTS as u64;
 /// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
 pub const LISTS: usize = 32;
 pub const NEAR_WALLS: usize = 9;
@@ -61,6 +63,8 @@ pub struct Counters {
     pub ghost_walls: u32,
     /// Threads whose loops the device ended too soon.
     pub cut_short: u32,
+    /// Entries of lists that found no place, and threads that were parted while they counted together.
+    pub misplaced: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
     pub choosers: [u32; MOST_ROUNDS],
 }
@@ -92,6 +96,7 @@ impl Counters {
             ghost_candidates: words[50],
             ghost_walls: words[51],
             cut_short: words[52],
+            misplaced: words[117],
             choosers: std::array::from_fn(|round| {
                 let parts = words[PARTS_OF_LISTS..].chunks_exact(PART_WORDS).map(|part| part[RECHOOSE + round]);
                 words[RECHOOSE + round] + parts.sum::<u32>()
@@ -100,7 +105,7 @@ impl Counters {
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 15] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 16] {
         [
             &mut self.lost,
             &mut self.sampled,
@@ -117,6 +122,7 @@ impl Counters {
             &mut self.candidates,
             &mut self.near_walls,
             &mut self.cut_short,
+            &mut self.misplaced,
         ]
     }
 

@@ -33,7 +33,9 @@ pub use buffers::{
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
-pub use counters::{Counters, MOST_ROUNDS, WORDS as COUNTER_WORDS};
+pub use counters::{
+    Counters, FREE_ENTRIES, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS,
+};
 pub use domain::{Domain, DomainInput};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{

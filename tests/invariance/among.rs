@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corpuscle::gpu::Device;
+use corpuscle::gpu::{AdapterDescription, Device, Form};
 use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
@@ -10,6 +10,7 @@ use corpuscle::simulation::{
     SimulationError, Stock, initial_particles,
 };
 
+use crate::bits::{Bits, assert_same};
 use crate::whole_run::{Run, Witness};
 
 /// What must not matter.
@@ -73,19 +74,29 @@ pub type Wrap = dyn for<'a> Fn(&'a dyn Communicator) -> Box<dyn Communicator + '
 /// A scene on a device, for any number of ranks.
 pub struct World<'a> {
     model: &'a Model,
-    one: (Setup, Device),
+    one: Vec<(Setup, Device)>,
     several: (Setup, Device),
+}
+
+/// The forms of kernels of one rank, in turn, and of several. What these are compared with has the form that the device takes first. A software device rounds alike in
+/// all, so these have the others; a GPU need not, and its ranks have its own.
+fn forms(adapter: &AdapterDescription) -> (Vec<Form>, Form) {
+    match adapter.forms()[..] {
+        [first, .., last] if adapter.is_cpu() => {
+            (adapter.forms().into_iter().filter(|&form| form != first).collect(), last)
+        }
+        _ => (vec![adapter.forms()[0]], adapter.forms()[0]),
+    }
 }
 
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
-        // (What these are compared with has kernels in the form that the device takes; these have the others, if it can run them.)
-        let forms = Device::open(None).expect("an adapter").adapter().forms();
+        let (of_one, of_several) = forms(Device::open(None).expect("an adapter").adapter());
         let made = |ranks, form| {
             let device = Device::open_in(None, form).expect("an adapter");
             (Setup::new(model, &device, ranks, None).expect("a set-up"), device)
         };
-        World { model, one: made(1, forms[forms.len() / 2]), several: made(2, forms[forms.len() - 1]) }
+        World { model, one: of_one.into_iter().map(|form| made(1, form)).collect(), several: made(2, of_several) }
     }
 
     /// What rank 0 sees; all ranks must see the same rows and counts.
@@ -95,7 +106,21 @@ impl<'a> World<'a> {
     }
 
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
-        let (setup, device) = if way.ranks == 1 { &self.one } else { &self.several };
+        if way.ranks > 1 {
+            return self.try_run_on(&self.several, way, wrap);
+        }
+        let mut runs = Vec::new();
+        for one in &self.one {
+            runs.push(self.try_run_on(one, way, wrap)?);
+        }
+        for other in &runs[1..] {
+            assert_same("another form of the kernels", &Bits::of(&runs[0]), &Bits::of(other));
+        }
+        Ok(runs.swap_remove(0))
+    }
+
+    fn try_run_on(&self, on: &(Setup, Device), way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
+        let (setup, device) = on;
         let mut setup = setup.clone();
         if let Some(order) = way.order {
             let mut particles = initial_particles(self.model).expect("the gas of the start");

@@ -139,7 +139,7 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
     let model = thin();
     let cells = model.plan.grid.cell_count() as u64;
     assert!(!few_stretches(cells) && few_stretches(cells / 2), "{cells}");
-    let runs = same(&model, &[Way::new(3, Off, 2), Way::new(4, Dynamic, 8)]);
+    let runs = same(&model, &[Way::new(1, Off, 2), Way::new(3, Off, 2), Way::new(4, Dynamic, 8)]);
     assert!(runs[0].outcome.collisions > 0);
 }
 

@@ -24,6 +24,17 @@ impl Probe {
 
     /// What it writes for so many threads in these workgroups.
     pub fn run<T: Pod>(self, device: &Device, inputs: &[T], threads: usize, groups: [u32; 3]) -> Vec<[u32; 4]> {
+        self.run_and_count(device, inputs, threads, groups).0
+    }
+
+    /// The same, and the counters.
+    pub fn run_and_count<T: Pod>(
+        self,
+        device: &Device,
+        inputs: &[T],
+        threads: usize,
+        groups: [u32; 3],
+    ) -> (Vec<[u32; 4]>, Vec<u32>) {
         // A table of kernels is static; this one is as long as the program.
         let source = Box::leak(Box::new(KernelSource {
             name: "probe",
@@ -50,6 +61,7 @@ impl Probe {
         let mut recording = Recording::new(device);
         bound.dispatch(recording.phase("probe"), 0, groups);
         recording.submit();
-        device.read(&outputs, threads).expect("the device's answer")
+        let read = device.read(&outputs, threads).expect("the device's answer");
+        (read, device.read(&counters, 2048).expect("the device's answer"))
     }
 }

@@ -26,10 +26,8 @@ pub const LIST_CHANGED: usize = 13;
 pub const LIST_OUTBOX: usize = 14;
 pub const LIST_UPDATES: usize = 15;
 pub const LIST_RECHOOSE: usize = 16;
-/// The lengths of the parts of these lists, in kernels of the form for GPUs.
-pub const PARTS_OF_LISTS: usize = 128;
-pub const PART_WORDS: usize = 64;
-pub const PARTS: usize = 16;
+/// Of the lists that kernels of the form for GPUs have in parts.
+pub use corpuscle::subdomain::{LIST_PARTS as PARTS, PART_WORDS, PARTS_OF_LISTS};
 pub const LIST_ASKED: usize = 26;
 pub const LIST_BOUNCE_ODD: usize = 27;
 pub const COUNT_DROPPED: usize = 31;
@@ -54,6 +52,7 @@ pub const MOVED: usize = 48;
 pub const COLLISIONS_LOW: usize = 32;
 pub const FAST_PAIRS: usize = 49;
 pub const CUT_SHORT: usize = 52;
+pub const MISPLACED: usize = 117;
 pub const CELL_COLLISIONS: usize = 53;
 /// The forms of kernels that the device can run.
 pub fn forms() -> Vec<Form> {

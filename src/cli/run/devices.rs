@@ -43,10 +43,14 @@ pub fn agree_on_run(model: &Model, execution: &Execution, comm: &dyn Communicato
     Ok(ranks::agree(comm, &facts)?)
 }
 
-/// Their adapters must be of one model and driver: else their bits would differ.
+/// Their adapters must be of one model and driver, and take one form of the kernels: else their bits might differ.
 pub fn agree_on_device(device: &Device, comm: &dyn Communicator) -> Result<(), CliError> {
     let info = &device.adapter().info;
-    let facts = [("adapter", info.name.clone()), ("driver", format!("{} {}", info.driver, info.driver_info))];
+    let facts = [
+        ("adapter", info.name.clone()),
+        ("driver", format!("{} {}", info.driver, info.driver_info)),
+        ("form of the kernels", device.form().name().to_owned()),
+    ];
     Ok(ranks::agree(comm, &facts)?)
 }
 

@@ -11,6 +11,7 @@
 //! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
 //! | walls, for a flight near them and at each hit | one cell, one triangle up to the side it shows |
 //! | members of a crowded cell, twice, and what puts a cell in order; candidates in it | all; those that collided |
+//! | ids of a crowded cell, where a thread for each particle puts it in order | all of a mean cell, by fours |
 //! | particles in the tally | all up to the test of the zone for each zone and two gases, once the rest |
 //!
 //! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
@@ -22,10 +23,12 @@ use crate::subdomain::CROWD;
 
 use super::work::{CHUNK, Work};
 
-/// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count.
-const COUNTED: [&str; 19] = [
+/// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count, and
+/// `arrange_crowded` where it has all of the crowded cells.
+const COUNTED: [&str; 20] = [
     "bin",
     "arrange",
+    "arrange_crowded",
     "scan_sums",
     "scan_stretches",
     "scan_cells",
@@ -58,6 +61,7 @@ const FITTING: &str = "if (fits_a_thread(";
 /// Loops over the rows of four slots of a crowded cell, and over half of them.
 const ROWS: [(&str, u32); 2] =
     [("for (var k = 0u; k < ROWS;", CROWD / 4), ("for (var k = 0u; k < ROWS / 2u", CROWD / 8)];
+const LOWER_IDS: &str = "for (var k = begin >> 2u";
 const COLLIDING: &str = "if (count > 1u)";
 const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
 const MAY_HIT: &str = "if (around == CLASS_SOLID";
@@ -144,7 +148,12 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let order = counted.away_from_walls("order")?;
             (if work.capped { order + counted.straight("start_flights")? } else { order }) * n
         }
-        "sort" => counted.straight("arrange")? * n,
+        "sort" => {
+            // Each looks at all of its cell, by fours.
+            let fours = work.crowded / (work.shared - work.few).max(1.0) / 4.0;
+            let crowd = counted.straight("arrange_crowded")? + counted.turn("arrange_crowded", LOWER_IDS)? * fours;
+            counted.straight("arrange")? * n + crowd * if work.by_threads { work.crowded } else { 0.0 }
+        }
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
             let meeting = counted.of("complete_lists")?.inner(MEETING_WALLS)?;
@@ -169,8 +178,9 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let few = counted.turn("collide", IN_ORDER)? + counted.turn("collide", COLLIDING)?;
             let crowds = counted.of("collide_crowded")?;
             let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * f64::from(turns)).sum::<Operations>();
-            let crowd = crowds.straight() + crowds.inner(FITTING)?.straight() + network;
-            let crowd = crowd + counted.turn("collide_crowded", COLLIDING)?;
+            let order = crowds.inner(FITTING)?.straight() + network;
+            let order = if work.by_threads { Operations::default() } else { order };
+            let crowd = crowds.straight() + order + counted.turn("collide_crowded", COLLIDING)?;
             counted.straight("collide")? * cells
                 + counted.turn("collide", "if (bin_end > begin + 1u)")? * work.shared
                 + few * work.few
@@ -256,6 +266,18 @@ mod tests {
             }
             assert_eq!(operations("exchange", method, &work, &counted), None);
         }
+    }
+
+    /// A crowded cell is put in order once: where it collides, or by a thread for each of its particles before.
+    #[test]
+    fn crowded_cells_are_put_in_order_in_one_phase() {
+        let counted = lean(Method::Cell);
+        let by_network = Work { particle_steps: 100.0, shared: 2.0, crowded: 50.0, ..Work::default() };
+        let by_threads = Work { by_threads: true, ..by_network };
+        let [sort, collide] = ["sort", "collide"].map(|phase| {
+            [by_network, by_threads].map(|work| operations(phase, Method::Cell, &work, &counted).unwrap().all())
+        });
+        assert!(sort[0] < sort[1] && collide[0] > collide[1], "{sort:?} {collide:?}");
     }
 
     /// Each amount costs where it is dealt with, and nowhere else.

@@ -33,12 +33,14 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "bin" => n * (PARTICLE + 2.0 * WORD) + entered + filled * 2.0 * WORD,
         // Counters in, and the starts out in their place; sums of stretches of cells out.
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
-        // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells.
+        // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells, and
+        // where threads put these in order their entries.
         "sort" => {
             // Cell, layer and marks, middle and length of the list.
+            let listed = if work.by_threads { 2.0 } else { 1.0 };
             let of_rounds = if rounds { 4.0 * WORD + if work.capped { FLIGHT } else { 0.0 } } else { 0.0 };
             n * (PARTICLE + 2.0 * WORD + PARTICLE + of_rounds)
-                + (filled + if rounds { 0.0 } else { work.crowded }) * WORD
+                + (filled + if rounds { 0.0 } else { listed * work.crowded }) * WORD
         }
         // Middle and cell in, where the cells start, a flight (that sort leaves where diameters are capped, then in)
         // out; of those with neighbours the state in and the length of
@@ -59,12 +61,13 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         }
         "lost" => work.lost_choosers * (choice + matched),
         // Where the cells start; of cells with two or more their volume and their states in; those that collide out; of crowded ones
-        // slots in, and the order out.
+        // slots in, and the order out, but where they lie in it.
         "collide" => {
+            let ordered = if work.by_threads { 0.0 } else { 2.0 };
             cells * WORD
                 + work.shared * WORD
                 + work.gathered * PARTICLE
-                + work.crowded * 2.0 * WORD
+                + ordered * work.crowded * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
         // State in and out; with rounds the marks, and the flights of those that may meet a wall; the cells that it empties out. Without collisions newborns as in `bin`.
@@ -152,5 +155,7 @@ mod tests {
         let crowded = Work { crowded: 1.0, ..Work::default() };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
         assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));
+        let by_threads = Work { by_threads: true, ..crowded };
+        assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &by_threads)), [8.0, 0.0].map(Some));
     }
 }

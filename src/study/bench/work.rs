@@ -27,8 +27,9 @@ pub struct Work {
     pub chunks: f64,
     /// Cells with two or more that are put in order where they collide.
     pub few: f64,
-    /// Particles in cells of more.
+    /// Particles in cells of more; whether a thread for each puts them in order (`shaders/shared/crowds.gpu.wgsl`).
     pub crowded: f64,
+    pub by_threads: bool,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
     pub listed: f64,
@@ -75,6 +76,7 @@ impl Work {
             gathered: gathered * steps,
             few: few * steps,
             crowded: crowded * steps,
+            by_threads: form == Form::Gpu,
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,
