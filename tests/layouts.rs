@@ -6,9 +6,8 @@ use std::mem::offset_of;
 
 use corpuscle::gpu::{KERNELS, KernelSource};
 use corpuscle::subdomain::{
-    CROWD, FREE_ENTRIES, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending,
-    GpuStep, GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, LIST_PARTS, MEMBERS, PART_WORDS,
-    PARTS_OF_LISTS,
+    CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
+    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, LIST_PARTS, MEMBERS, PART_WORDS, PARTS_OF_LISTS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 

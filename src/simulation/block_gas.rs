@@ -116,6 +116,11 @@ impl BlockGas {
 impl Cap {
     /// (sigma/sigma_max)^2, never nothing.
     fn share(self, density: f64) -> u32 {
+        // Of most blocks it is known without a root that it is all, with room for any rounding.
+        let least_spacing = self.diameter / self.spacings;
+        if density * least_spacing.powi(3) < 1.0 - 1e-9 {
+            return FULL_SHARE;
+        }
         let ratio = kinetics::capped_diameter(self.diameter, Some(self.spacings), density) / self.diameter;
         ((ratio * ratio * f64::from(FULL_SHARE)).round() as u32).max(1)
     }
@@ -178,5 +183,10 @@ pub mod tests {
         assert!((growth - (surely(8000.0) / surely(1000.0)).cbrt()).abs() < 1e-3, "{growth}");
         assert_eq!(block_gas(vec![1.0]).shares(&[block(1_000_000)]), Vec::<u32>::new());
         assert_eq!(Cap { diameter: 1e10, spacings: 1.0 }.share(1e30), 1);
+        // The first that have less than all are those of the diameter's own spacing.
+        let cap = Cap { diameter: 0.3, spacings: 0.7 };
+        let least = (0.7f64 / 0.3).powi(3);
+        assert_eq!([0.0, 0.5, 1.0 - 1e-8, 1.0 + 1e-8].map(|part| cap.share(part * least)), [FULL_SHARE; 4]);
+        assert!(cap.share(1.001 * least) < FULL_SHARE);
     }
 }

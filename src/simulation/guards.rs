@@ -53,8 +53,9 @@ pub struct GuardState {
 pub struct Guards<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
-    /// m3.
+    /// m3, and of the largest.
     block_volumes: Vec<f64>,
+    full_block: f64,
     state: GuardState,
 }
 
@@ -76,7 +77,8 @@ pub struct Shown<'a> {
 
 impl<'a> Guards<'a> {
     pub fn new(scene: &'a Scene, plan: &'a Plan, block_volumes: Vec<f64>) -> Guards<'a> {
-        Guards { scene, plan, block_volumes, state: GuardState::default() }
+        let full_block = block_volumes.iter().copied().fold(0.0, f64::max);
+        Guards { scene, plan, block_volumes, full_block, state: GuardState::default() }
     }
 
     pub fn state(&self) -> &GuardState {
@@ -158,14 +160,17 @@ impl<'a> Guards<'a> {
     fn dense(&self, blocks: &[BlockSum], shares: &[u32]) -> Option<Warning> {
         let bound = limit(Quantity::Occupancy, self.plan.method)?.bound;
         let per_density = kinetics::occupancy(1.0, self.plan.diameter);
-        let full = self.block_volumes.iter().copied().fold(0.0, f64::max);
         let (mut total, mut within, mut sum) = (0, 0, 0.0);
         for (index, (block, &room)) in blocks.iter().zip(&self.block_volumes).enumerate() {
             total += block.number;
             let number = block.number as f64;
+            // Of most blocks it is known without a root: with the whole diameter and all particles it holds.
+            if bound.holds(number / room * per_density) {
+                continue;
+            }
             let share = shares.get(index).map_or(1.0, |&share| f64::from(share) / f64::from(FULL_SHARE));
             let occupancy = |number: f64| number / room * per_density * share * share.sqrt();
-            if room > LEAST_VOLUME * full && !bound.holds(occupancy(number - SURE * number.sqrt())) {
+            if room > LEAST_VOLUME * self.full_block && !bound.holds(occupancy(number - SURE * number.sqrt())) {
                 within += block.number;
                 sum += number * occupancy(number);
             }
@@ -204,13 +209,15 @@ impl<'a> Guards<'a> {
     fn starved(&self, blocks: &[BlockSum]) -> Option<Warning> {
         let bound = limit(Quantity::CellParticles, self.plan.method)?.bound;
         let cell = self.plan.grid.cell;
-        let full = self.block_volumes.iter().copied().fold(0.0, f64::max);
         let (mut total, mut within, mut sum) = (0, 0, 0.0);
         for (block, &room) in blocks.iter().zip(&self.block_volumes) {
             total += block.number;
             let number = block.number as f64;
             let in_cell = |number: f64| number / room * cell.powi(3);
-            let holds = room <= LEAST_VOLUME * full || bound.holds(in_cell(number + SURE * number.sqrt()));
+            if bound.holds(in_cell(number)) {
+                continue;
+            }
+            let holds = room <= LEAST_VOLUME * self.full_block || bound.holds(in_cell(number + SURE * number.sqrt()));
             if !holds && kinetics::mean_free_path(number / room, self.plan.diameter) <= cell {
                 within += block.number;
                 sum += number * in_cell(number);

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::block_gas::BlockGas;
+use super::block_gas::{BlockGas, Part};
 use super::run_state::StateError;
 use crate::plan::{FAST_TAIL, LADDER_TAIL, Plan};
 use crate::subdomain::BlockSum;
@@ -118,17 +118,7 @@ impl Ladder {
     pub fn demand(&self, blocks: &[BlockSum], fast: &[u32], met: [u64; 2]) -> Demand {
         let total: u64 = blocks.iter().map(|block| block.number).sum();
         let shares = self.gas.shares(blocks);
-        let mut parts = self.gas.parts(blocks, &shares);
-        parts.sort_by(|a, b| b.rate.total_cmp(&a.rate));
-        let mut beyond = 0;
-        let mut rate = 0.0;
-        for part in parts {
-            rate = part.rate;
-            beyond += part.number;
-            if beyond as f64 > LADDER_TAIL * total as f64 {
-                break;
-            }
-        }
+        let rate = rate_beyond(&mut self.gas.parts(blocks, &shares), LADDER_TAIL * total as f64);
         let allowed = FAST_TAIL * total as f64;
         let fast_level = fast.iter().position(|&count| f64::from(count) <= allowed).unwrap_or(fast.len());
         let [met, met_fast] = met;
@@ -188,8 +178,31 @@ impl Ladder {
     }
 }
 
+/// The highest rate that, with all higher ones, is that of more than so many particles, or the least of all. (There are as many parts as blocks, each
+/// interval: they are not sorted for it.)
+fn rate_beyond(parts: &mut [Part], tail: f64) -> f64 {
+    let (mut open, mut beyond, mut rate) = (parts, 0, 0.0);
+    while !open.is_empty() {
+        let (higher, middle, lower) = open.select_nth_unstable_by(open.len() / 2, |a, b| b.rate.total_cmp(&a.rate));
+        let among = higher.iter().map(|part| part.number).sum::<u64>();
+        if (beyond + among) as f64 > tail {
+            open = higher;
+            continue;
+        }
+        rate = middle.rate;
+        beyond += among + middle.number;
+        if beyond as f64 > tail {
+            break;
+        }
+        open = lower;
+    }
+    rate
+}
+
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::simulation::block_gas::tests::{block, block_gas};
 
@@ -242,5 +255,28 @@ mod tests {
         };
         assert_eq!(collision([1000, 2]), 1000.0 - 1000f64.sqrt());
         assert_eq!(collision([0, 0]), 0.0);
+    }
+
+    proptest! {
+        /// Also among equal rates, with parts without particles, and where all together are not beyond the tail.
+        #[test]
+        fn the_rate_beyond_the_tail_is_that_of_sorted_parts(
+            parts in prop::collection::vec((0u32..40, 0u64..9), 0..200),
+            tail in prop_oneof![Just(0.0), 0.0..20.0, 0.0..1500.0],
+        ) {
+            let part = |(rate, number)| Part { rate: f64::from(rate), number };
+            let mut parts: Vec<Part> = parts.into_iter().map(part).collect();
+            let mut sorted = parts.clone();
+            sorted.sort_by(|a, b| b.rate.total_cmp(&a.rate));
+            let (mut beyond, mut expected) = (0, 0.0);
+            for part in &sorted {
+                expected = part.rate;
+                beyond += part.number;
+                if beyond as f64 > tail {
+                    break;
+                }
+            }
+            prop_assert_eq!(rate_beyond(&mut parts, tail), expected);
+        }
     }
 }

@@ -22,6 +22,7 @@ mod step_slot;
 mod tallies;
 mod walls;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::gpu::{BoundKernel, Constants, Device, GpuError, PhaseTimer, Readback, Recording};
@@ -471,8 +472,13 @@ impl Subdomain {
         let tally_bytes = self.tally_bytes() as usize;
         let (words, patches, blocks) = (self.domain.words, self.domain.patches, self.domain.blocks);
         let (result, staging) = readback.finish(device, |bytes| {
-            let all: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes[..tally_bytes]);
-            (Tallies::decode(&all, words, patches, blocks), bytes[tally_bytes..].to_vec())
+            let (tallied, stamps) = bytes.split_at(tally_bytes);
+            // (What the driver maps lies on a page.)
+            let all: Cow<'_, [u32]> = match bytemuck::try_cast_slice(tallied) {
+                Ok(all) => Cow::Borrowed(all),
+                Err(_) => Cow::Owned(bytemuck::pod_collect_to_vec(tallied)),
+            };
+            (Tallies::decode(&all, words, patches, blocks), stamps.to_vec())
         })?;
         self.staging.push(staging);
         Ok(result)
