@@ -151,7 +151,10 @@ impl<'a> Simulation<'a> {
             setup.particles.own(model, comm, share, |particle| particle.id() as usize % ranks)?
         };
         let place = decomposition.as_ref().map_or_else(|| Place::alone(plan), |cut| cut.place().1);
-        let subdomain = Subdomain::new(device, setup.domain.clone(), place, &own)?;
+        let mut subdomain = Subdomain::new(device, setup.domain.clone(), place, &own)?;
+        if options.dispatch_by_lengths {
+            subdomain.dispatch_by_lengths();
+        }
         let first_id = plan.initial_particles as u32;
         let scene = &model.scene;
         let inflow =

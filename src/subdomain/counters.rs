@@ -28,6 +28,11 @@ pub const DROPPED: usize = 31;
 pub const TAILS: usize = 29;
 pub const TAILS_WANTED: usize = 36;
 
+/// Places among which a list in parts has its entries, of which it has so many at most (`shaders/shared/parted_lists.gpu.wgsl`).
+pub const fn places_in_parts(most: u64) -> u64 {
+    (most / FREE_ENTRIES + 1) * FREE_ENTRIES
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
     pub collisions: u64,

@@ -1,11 +1,11 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
-use crate::gpu::{BoundKernel, Device, Recording, fold};
+use crate::gpu::{BoundKernel, Device, Form, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
 use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, advect_empties, few_stretches, step_stride};
-use super::constants::{Features, WORKGROUP};
+use super::constants::{Features, MEMBERS, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
 use super::layout::{GpuMotion, GpuStep};
@@ -305,7 +305,8 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.cells {
             let pass = rec.phase("sort");
             kernels.arrange.dispatch(pass, offset, slots);
-            kernels.arrange_crowded.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_CROWDED);
+            let arguments = (&self.fixed.dispatches, LIST_CROWDED);
+            self.over_list(&kernels.arrange_crowded, (device, pass), offset, arguments, step.total.into());
         }
     }
 
@@ -315,7 +316,8 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
-            kernels.complete_lists.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_INCOMPLETE);
+            let arguments = (&self.fixed.rechoose_dispatches, LIST_INCOMPLETE);
+            self.over_list(&kernels.complete_lists, (device, pass), offset, arguments, step.total.into());
         }
     }
 
@@ -326,7 +328,9 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("collide");
             kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
-            kernels.collide_crowded.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_CROWDS);
+            // (Each has several particles.)
+            let arguments = (&self.fixed.dispatches, LIST_CROWDS);
+            self.over_list(&kernels.collide_crowded, (device, pass), offset, arguments, (step.total / MEMBERS).into());
             if let Some(parted) = &kernels.parted {
                 parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
             }
@@ -345,6 +349,32 @@ impl Subdomain {
         self.cells().all
     }
 
+    /// Kernels over lists are dispatched over the entries that these have, as on any device, also where it is a GPU and the lists are short.
+    pub fn dispatch_by_lengths(&mut self) {
+        self.short_lists = 0;
+    }
+
+    /// Over the entries of a list, `item` of these arguments, that has them among so many places.
+    fn over_list(
+        &self,
+        kernel: &BoundKernel,
+        (device, pass): (&Device, &mut wgpu::ComputePass<'_>),
+        offset: u32,
+        (arguments, item): (&wgpu::Buffer, u32),
+        places: u64,
+    ) {
+        if places <= self.short_lists {
+            kernel.dispatch(pass, offset, threads(device, places));
+        } else {
+            kernel.dispatch_indirect(pass, offset, arguments, item);
+        }
+    }
+
+    /// Of a list that is in parts on a GPU.
+    fn places(&self, most: u64) -> u64 {
+        if self.domain.form == Form::Gpu { counters::places_in_parts(most) } else { most }
+    }
+
     pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
             self.choosing(&kernels.choose, rec, "choose", step, round);
@@ -356,7 +386,9 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             self.choosing(&kernels.match_pairs, rec, "settle", step, round);
             let offset = self.offset(rec.device(), step, round);
-            kernels.settle.dispatch_indirect(rec.phase("settle"), offset, &self.fixed.dispatches, round);
+            let (device, places) = (rec.device(), self.places(u64::from(step.total / 2)));
+            let pass = rec.phase("settle");
+            self.over_list(&kernels.settle, (device, pass), offset, (&self.fixed.dispatches, round), places);
         }
     }
 
@@ -398,9 +430,10 @@ impl Subdomain {
         step: &StepSlot,
         round: u32,
     ) {
-        let offset = self.offset(rec.device(), step, round);
-        let pass = rec.phase(phase);
-        kernel.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
+        let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
+        let places = self.places(step.total.into());
+        let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
+        self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
     }
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
@@ -417,12 +450,8 @@ impl Subdomain {
         let groups = threads(device, u64::from(step.total).max(emptying));
         let pass = rec.phase("advect");
         self.kernels.advect.dispatch(pass, offset, groups);
-        self.kernels.bounce.dispatch_indirect(
-            pass,
-            offset,
-            &self.fixed.dispatches,
-            LIST_BOUNCE[step.slot as usize % 2],
-        );
+        let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);
+        self.over_list(&self.kernels.bounce, (device, pass), offset, arguments, step.total.into());
         self.emptied = self.place.is_alone();
         if !self.emptied {
             self.count = step.total;

@@ -25,7 +25,7 @@ mod walls;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::gpu::{BoundKernel, Constants, Device, GpuError, PhaseTimer, Readback, Recording};
+use crate::gpu::{BoundKernel, Constants, Device, Form, GpuError, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 
 pub use buffers::{
@@ -35,7 +35,7 @@ pub use buffers::{
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
 pub use counters::{
-    Counters, FREE_ENTRIES, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS,
+    Counters, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS, places_in_parts,
 };
 pub use domain::{Domain, DomainInput};
 pub use exchange::{Messages, Outgoing};
@@ -100,9 +100,14 @@ pub struct Subdomain {
     spare_staging: Vec<wgpu::Buffer>,
     /// The last step that was encoded leaves lists and cells empty for the next.
     emptied: bool,
+    /// Lists with so few places have a thread for each.
+    short_lists: u64,
     /// A copy of the flights of each step, with their lists, before particles take their room.
     watched: Option<wgpu::Buffer>,
 }
+
+/// Places of a list for each of which a GPU is told of a thread: it would wait longer for the number of the entries.
+const SHORT_LIST: u64 = 1 << 16;
 
 /// The most particles that room is made for ahead of need: a device alone has at most all that the plan has.
 fn most(plan: &Plan, features: Features) -> u64 {
@@ -154,6 +159,7 @@ impl Subdomain {
             staging: Vec::new(),
             spare_staging: Vec::new(),
             emptied: false,
+            short_lists: if domain.form == Form::Gpu { SHORT_LIST } else { 0 },
             watched: None,
             domain,
         };

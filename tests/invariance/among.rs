@@ -63,6 +63,7 @@ impl Way {
             balance,
             stop_after_steps: self.stop,
             lists_start_short,
+            dispatch_by_lengths: self.ranks.is_multiple_of(2),
             ..Options::default()
         }
     }

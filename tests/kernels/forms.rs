@@ -1,6 +1,7 @@
 //! What kernels have several forms of is the same in each, to the last bit.
 
 use corpuscle::gpu::{Device, Form};
+use corpuscle::subdomain::places_in_parts;
 
 use crate::oracle::random::Stream;
 use crate::probe::Probe;
@@ -234,6 +235,8 @@ fn what_a_part_has_no_room_for_goes_to_others() {
     places.dedup();
     assert_eq!(places.len(), count, "each has a place of its own");
     assert!(places.iter().all(|&place| place / 64 / 16 < room / 64), "within the room of the list");
+    // What the host takes for it where it tells a thread for each place.
+    assert_eq!((room * PARTS) as u64, places_in_parts(count as u64));
     // The check can fail: one part has room for few of them.
     assert!(room < count / 4);
     // Those for whom all parts together have no room are told of.

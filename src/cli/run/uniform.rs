@@ -20,6 +20,11 @@ pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), 
     if execution.stop_after_steps.is_some() || checkpoints.every.is_some() || checkpoints.stop_after.is_some() {
         tracing::warn!("a control volume takes no steps: it is not stopped after some, and writes no checkpoints");
     }
+    if execution.gpu.is_some() || execution.batch.is_some() || execution.sharing.subdomains > 1 {
+        tracing::warn!(
+            "a control volume runs on no device and is not shared out: it needs no --gpu, --batch or --subdomains"
+        );
+    }
     let folder = OutputFolder::create(folder, *force)?;
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
     folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
