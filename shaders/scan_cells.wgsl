@@ -11,6 +11,8 @@
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(29) var<storage, read> stretch_sums: array<vec4<u32>>;
 
+@group(0) @binding(66) var<storage, read_write> cell_counts: array<vec4<u32>>;
+
 const FOUR: vec4<u32> = vec4<u32>(0u, 1u, 2u, 3u);
 
 @compute @workgroup_size(WORKGROUP)

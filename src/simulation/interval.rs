@@ -12,7 +12,7 @@ use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Step
 use super::SimulationError;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
-use super::step::{LOST, Sampling, step};
+use super::step::{BLOCKS, LOST, Sampling, TALLY, step};
 
 /// An interval as it was decided.
 pub struct Interval {
@@ -208,14 +208,19 @@ impl Machine<'_, '_> {
         let steps = Steps { first: interval.first_step, done, dt: interval.dt, tallied: &interval.tallied };
         let slots = self.subdomain.begin_interval(device, &steps, &interval.entering(), &interval.tables)?;
         let last = interval.steps - 1;
+        // The step before the last is timed, which leaves the next one's particles counted; of the last what that one has not.
+        let timed = last.saturating_sub(1);
+        let at_the_end: &[&'static str] = if interval.tallied[timed as usize] { &[BLOCKS] } else { &[TALLY, BLOCKS] };
         let mut rec = Recording::new(device);
         let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in (done..).zip(slots) {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
-            if k == last {
+            if k == timed {
                 rec.time(self.timer);
+            } else if k == last {
+                rec.time_alone(self.timer, at_the_end);
             } else {
-                rec.time_alone(self.timer.filter(|_| sampling.lost), LOST);
+                rec.time_alone(self.timer.filter(|_| sampling.lost), &[LOST]);
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
