@@ -2,7 +2,8 @@
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
-// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time).
+// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time), in the first round of a
+// device alone also `cell_start`, which it empties, if need be by more threads than choose.
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
 // collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
 // choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on

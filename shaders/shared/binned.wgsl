@@ -6,7 +6,7 @@ override COLLISIONS: bool = true;
 override FLOWN: f32 = 0.5;
 
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
-// Zero before the first of a step: emptied by the first of `choose`, or where they lie apart from the starts by `scan_cells`.
+// Zero before the first of a step: emptied by the first of `choose` or a clear, or where they lie apart from the starts by `scan_cells`.
 @group(0) @binding(66) var<storage, read_write> cell_counts: array<atomic<u32>>;
 
 fn bins_next() -> bool {

@@ -12,9 +12,8 @@ fn counted_up(word: u32, count: u32) -> u32 {
     if (count > 0u && before == 0u) {
         first = atomicAdd(&counters[word], all);
     }
-    let place = subgroupMax(first) + before;
     if (any(subgroupBallot(true) != together)) {
         atomicAdd(&counters[MISPLACED], 1u);
     }
-    return place;
+    return subgroupMax(first) + before;
 }

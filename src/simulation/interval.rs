@@ -47,7 +47,7 @@ pub struct InFlight {
     pub interval: Interval,
     pub before: Remembered,
     pub tallies: Pending,
-    /// Phases that were timed: of the last step, and what is once an interval.
+    /// Phases that were timed: of one step, and what is once an interval.
     pub phases: Vec<&'static str>,
     /// Particles on this rank, ghosts included, in the last step.
     pub present: u32,
@@ -208,8 +208,10 @@ impl Machine<'_, '_> {
         let steps = Steps { first: interval.first_step, done, dt: interval.dt, tallied: &interval.tallied };
         let slots = self.subdomain.begin_interval(device, &steps, &interval.entering(), &interval.tables)?;
         let last = interval.steps - 1;
-        // The step before the last is timed, which leaves the next one's particles counted; of the last what that one has not.
-        let timed = last.saturating_sub(1);
+        // The last step is timed; on a device alone, where all but the last count the next one's particles, and the first has a `bin` of its own, the one
+        // before, unless that is the first that is to be done, and of the last what that one has not.
+        let early = self.subdomain.place().is_alone() && last > done + 1;
+        let timed = if early { last - 1 } else { last };
         let at_the_end: &[&'static str] = if interval.tallied[timed as usize] { &[BLOCKS] } else { &[TALLY, BLOCKS] };
         let mut rec = Recording::new(device);
         let (mut present, mut cells) = (0, GridCells::default());

@@ -254,7 +254,7 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
-    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
+    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/choose.wgsl`, `shaders/scan_cells.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
     /// which a small step would wait for.
     pub fn reset(&self, rec: &mut Recording<'_>) {
         let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
@@ -436,7 +436,8 @@ impl Subdomain {
     ) {
         let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
         // At least as many as the first of `choose` has cells to empty for (`shaders/scan_sums.wgsl`).
-        let places = self.places(step.total.into()).max(u64::from(WORKGROUP) * (self.bins() / STRETCH + 1));
+        let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
+        let places = self.places(step.total.into()).max(emptying);
         let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
         self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
     }

@@ -30,7 +30,7 @@ use crate::plan::Plan;
 
 pub use buffers::{
     BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS,
-    few_stretches, most_particles,
+    choose_empties, few_stretches, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};

@@ -163,7 +163,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("neighbours", "for (; p < found")? * (0.5 * candidates)
         }
         "choose" => {
-            let emptied = counted.turn("choose", "for (var four = thread")? * (cells / 4.0);
+            let emptied = counted.turn("choose", "for (var four = thread")? * (work.emptied / 4.0);
             counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions) + emptied
         }
         "settle" => {
@@ -295,7 +295,7 @@ mod tests {
             ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
             ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
             ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),
-            ("cells", Work { cell_steps: 1280.0, ..work }, &["scan", "choose"]),
+            ("cells", Work { emptied: 640.0, ..work }, &["choose"]),
         ];
         let method = Method::ClosestApproach;
         let counted = lean(method);

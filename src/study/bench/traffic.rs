@@ -51,8 +51,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + candidates * WORD
                 + work.first_choosers * 3.0 * WORD
         }
-        // The cells, which are emptied, out.
-        "choose" => work.choosers * choice + cells * WORD,
+        // The cells that are emptied out.
+        "choose" => work.choosers * choice + work.emptied * WORD,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
             work.choosers * matched
@@ -140,9 +140,10 @@ mod tests {
         assert_eq!([rounds, cell, Method::None].map(|method| floor("advect", method)), [76.0, 72.0, 64.0]);
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
-        let of_cells = [("scan", rounds), ("choose", rounds), ("scan", cell)];
-        let found = of_cells.map(|(phase, method)| bytes(phase, method, &cells));
-        assert_eq!(found, [64.0 * 8.0 + 4.0, 64.0 * 4.0, 64.0 * 12.0 + 4.0].map(Some));
+        let found = [rounds, cell].map(|method| bytes("scan", method, &cells));
+        assert_eq!(found, [64.0 * 8.0 + 4.0, 64.0 * 12.0 + 4.0].map(Some));
+        let emptied = Work { emptied: 64.0, ..Work::default() };
+        assert_eq!(bytes("choose", rounds, &emptied), Some(64.0 * 4.0));
         let entered = Work { newborns: 2.0, ..Work::default() };
         let moved = [rounds, cell, Method::None];
         assert_eq!(moved.map(|method| bytes("advect", method, &entered)), [Some(96.0); 3]);
