@@ -64,9 +64,7 @@ fn twins() -> Vec<Twin> {
             tallies_left,
             slot,
             near2,
-            flight,
-            next_newborns,
-            bins_next
+            flight
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         twin!("Packed", Packed, place, motion),

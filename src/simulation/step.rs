@@ -24,15 +24,11 @@ const PHASES: [&str; 13] = [
     "settle",
     LOST,
     "advect",
-    TALLY,
-    BLOCKS,
+    "tally",
+    "blocks",
 ];
 /// In the first step of an interval.
 pub const LOST: &str = "lost";
-/// In some steps, of which the last of an interval is one.
-pub const TALLY: &str = "tally";
-/// In the last step of an interval.
-pub const BLOCKS: &str = "blocks";
 
 /// Where in a step a phase is.
 pub fn place(phase: &str) -> usize {
@@ -41,7 +37,7 @@ pub fn place(phase: &str) -> usize {
 
 /// Whether a phase is once an interval, and so no part of a mean step.
 pub fn once_an_interval(phase: &str) -> bool {
-    [LOST, BLOCKS].contains(&phase)
+    [LOST, "blocks"].contains(&phase)
 }
 
 /// What else a step does.

@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, Form, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, STRETCH, choose_empties, few_stretches, step_stride};
+use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, advect_empties, few_stretches, step_stride};
 use super::constants::{Features, MEMBERS, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -64,7 +64,6 @@ impl Subdomain {
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
-        let flies_to_bins = self.place.is_alone() && self.kernels.sort.is_some();
         for (k, (&born, &tallied)) in (0u32..).zip(of_step.iter().zip(tallied)) {
             let slot = StepSlot {
                 slot: k,
@@ -79,8 +78,6 @@ impl Subdomain {
                 total: self.count + born,
                 tallies_left,
                 near2,
-                next: if flies_to_bins { of_step.get(k as usize + 1).copied() } else { None },
-                binned: flies_to_bins && k > done,
             };
             let slot = newborns.entering(slot, k);
             tallies_left -= u32::from(tallied);
@@ -204,9 +201,6 @@ impl Subdomain {
                 slot: slot.slot,
                 near2: slot.near2,
                 flight: self.place.flight,
-                next_newborns: slot.next.unwrap_or(0),
-                bins_next: slot.next.is_some().into(),
-                pad: [0; 2],
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -238,8 +232,6 @@ impl Subdomain {
             total: self.count,
             tallies_left: 0,
             near2: 0,
-            next: None,
-            binned: false,
         };
         self.write_parameters(device, &slot);
         slot
@@ -254,13 +246,14 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
-    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/choose.wgsl`, `shaders/scan_cells.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
+    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
     /// which a small step would wait for.
     pub fn reset(&self, rec: &mut Recording<'_>) {
         let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
         let mut cells = CellBuffers::start_bytes(bins) / 4;
-        if !few_stretches(bins) && !self.emptied {
-            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(4 * cells));
+        let left = self.emptied && self.advect_empties();
+        if !few_stretches(bins) && !left {
+            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(4 * cells));
             rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
             cells = 1;
         }
@@ -273,10 +266,8 @@ impl Subdomain {
 
     /// The particles that are here, and the newborns, which it puts behind them; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if !step.binned {
-            let slots = u64::from(step.count) + u64::from(step.newborns);
-            self.bin_slots(rec, step, slots);
-        }
+        let slots = u64::from(step.count) + u64::from(step.newborns);
+        self.bin_slots(rec, step, slots);
     }
 
     pub(super) fn bin_slots(&self, rec: &mut Recording<'_>, step: &StepSlot, slots: u64) {
@@ -347,6 +338,11 @@ impl Subdomain {
                 moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
             }
         }
+    }
+
+    /// `shaders/shared/emptying.wgsl`.
+    fn advect_empties(&self) -> bool {
+        advect_empties(self.domain.form, self.bins())
     }
 
     fn bins(&self) -> u64 {
@@ -435,9 +431,7 @@ impl Subdomain {
         round: u32,
     ) {
         let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
-        // At least as many as the first of `choose` has cells to empty for (`shaders/scan_sums.wgsl`).
-        let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
-        let places = self.places(step.total.into()).max(emptying);
+        let places = self.places(step.total.into());
         let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
         self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
     }
@@ -448,15 +442,12 @@ impl Subdomain {
             let bytes = 4 * RECORD * u64::from(step.total);
             rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
         }
-        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.form, self.bins());
-        if self.kernels.sort.is_some() && self.place.is_alone() && !empties {
-            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(CellBuffers::start_bytes(self.bins())));
-        }
         let device = rec.device();
         let offset = self.offset(device, step, 0);
-        let entering = u64::from(step.next.unwrap_or(0));
-        let stretches = if self.kernels.sort.is_some() { self.bins() / STRETCH + 1 } else { 0 };
-        let groups = threads(device, (u64::from(step.total) + entering).max(stretches));
+        // As many threads as particles, or more where they empty cells.
+        let empties = self.kernels.sort.is_some() && self.place.is_alone() && self.advect_empties();
+        let emptying = if empties { self.bins().div_ceil(EMPTIED_CELLS) } else { 0 };
+        let groups = threads(device, u64::from(step.total).max(emptying));
         let pass = rec.phase("advect");
         self.kernels.advect.dispatch(pass, offset, groups);
         let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);

@@ -6,7 +6,6 @@
 mod oracle;
 
 mod asked;
-mod binned;
 mod blocks;
 mod bounce;
 mod ceilings;

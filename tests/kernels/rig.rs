@@ -318,7 +318,7 @@ impl Rig {
         rig.put("shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        for buffer in ["cell_start", "cell_counts", "bins", "stretch_sums", "cells", "middles", "neighbour_count"] {
+        for buffer in ["cell_start", "stretch_sums", "cells", "middles", "neighbour_count"] {
             rig.put(buffer, &[0u32; 4]);
         }
         rig
