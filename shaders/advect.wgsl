@@ -1,19 +1,17 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl emptying.wgsl entering.wgsl walls.wgsl held.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl held.wgsl binned.wgsl
 // Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
-// device alone, where cells are few or the device is a GPU, empties these for the next step.
+// device alone counts the particles of the cells for the step that follows in the interval, and puts its newborns behind the others.
 //
-// Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `cell_start`, `stretch_sums`, `particles` (where they were in `sorted`; dead slots in place of ghosts), and appends
+// Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `stretch_sums`, `bins`, `cell_counts`, `particles` (where they were in `sorted`; dead slots in place of ghosts), and appends
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
-// particle, which writes its own slot, and as many more as there are cells for.
+// particle, which writes its own slot, for each of those newborns, and as many as there are stretches of cells.
 
-override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
 override VENTS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(65) var<storage, read> held: array<u32>;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read> sorted: array<Packed>;
 @group(0) @binding(32) var<storage, read_write> layers: array<u32>;
 @group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
@@ -27,12 +25,7 @@ fn empty_bounces() {
     atomicStore(&dispatches[3u * list + 1u], 1u);
 }
 
-// The share of a thread of so many.
-fn empty_cells(thread: u32, threads: u32) {
-    let fours = (step.bins / CHUNK + 1u) * (CHUNK / 4u);
-    for (var four = thread; four < fours; four += threads) {
-        cell_start[four] = vec4<u32>(0u);
-    }
+fn empty_sums(thread: u32) {
     if (thread < arrayLength(&stretch_sums)) {
         stretch_sums[thread] = 0u;
     }
@@ -45,23 +38,36 @@ fn advect(thread: Thread) {
         empty_bounces();
         atomicStore(&counters[COUNT_DROPPED], 0u);
     }
-    if (COLLISIONS && step.peers == 0u && advect_empties()) {
-        empty_cells(s, groups_of(thread) * WORKGROUP);
+    let alone = held[INTERVAL] > 0u;
+    if (COLLISIONS && alone) {
+        empty_sums(s);
     }
-    if (s >= step.total || (ROUNDS_OF_PAIRS && held[HELD] > 0u)) {
+    let held_back = ROUNDS_OF_PAIRS && held[HELD] > 0u;
+    if (bins_next() && s < step.total + step.next_newborns && (held_back || s >= step.total)) {
+        // Those who enter in the step that follows; on a device that is held nobody.
+        if (!held_back && enter_among(s, step.newborns + step.next_newborns)) {
+            bin_next(s, particles[s].place.xyz, particles[s].motion.xyz);
+        } else {
+            bin_nobody(s);
+        }
+    }
+    if (s >= step.total || held_back) {
         return;
     }
     var place: vec4<u32>;
     var motion: vec4<f32>;
     var mark = 0u;
     if (COLLISIONS) {
-        if (ROUNDS_OF_PAIRS || step.peers > 0u) {
+        if (ROUNDS_OF_PAIRS || !alone) {
             mark = layers[s];
         }
         // A slot behind the last particle, or a ghost.
-        let nobody = select(s >= held[PRESENT], (mark & LAYER) != 0u, step.peers > 0u);
+        let nobody = select(s >= held[PRESENT], (mark & LAYER) != 0u, !alone);
         if (nobody) {
             particles[s].place.w = NOBODY;
+            if (bins_next()) {
+                bin_nobody(s);
+            }
             return;
         }
         place = sorted[s].place;
@@ -91,7 +97,7 @@ fn advect(thread: Thread) {
     }
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {
-            if (step.peers > 0u) {
+            if (!alone) {
                 layers[s] |= NEAR;
             }
             atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
@@ -108,6 +114,9 @@ fn advect(thread: Thread) {
     }
     if (COLLISIONS) {
         particles[s] = Packed(vec4<u32>(end, place.w), motion);
+        if (bins_next()) {
+            bin_next(s, end, velocity);
+        }
     } else {
         particles[s].place = vec4<u32>(end, place.w);
     }

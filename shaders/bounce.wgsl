@@ -1,14 +1,13 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl binned.wgsl
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions `particles`), the walls,
-// `coats` and `vents`; writes `particles` (NOBODY for one that has left) and the integer tallies `sums`: of the surfaces,
+// `coats` and `vents`; writes `particles` (NOBODY for one that has left), counts it in its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces,
 // the coats, the vents and the moving walls that the scene has. One thread per entry of `bouncing`, which writes its own particle;
 // random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
 
-override COLLISIONS: bool = true;
 override ROUNDS_OF_PAIRS: bool = true;
 override SPIN: bool = true;
 override SURFACES: bool = true;
@@ -47,6 +46,7 @@ const ENERGY_RANGE: f32 = 4.29e9;
 @group(0) @binding(10) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
 @group(0) @binding(26) var<storage, read> bouncing: array<u32>;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
 
 // Where the copy of this thread's workgroup starts.
 var<private> copy: u32;
@@ -223,6 +223,9 @@ fn bounce(thread: Thread) {
     }
     if (VENTS && particle.tag == NOBODY) {
         particles[s].tag = NOBODY;
+        if (bins_next()) {
+            bin_nobody(s);
+        }
         return;
     }
     particle.position = shifted(particle.position, particle.velocity * end);
@@ -235,4 +238,7 @@ fn bounce(thread: Thread) {
         atomicAdd(&counters[OUTSIDE], 1u);
     }
     particles[s] = particle;
+    if (bins_next()) {
+        bin_next(s, particle.position, particle.velocity);
+    }
 }

@@ -1,8 +1,9 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl stretches.wgsl emptying.wgsl
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
-// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time).
+// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time), in the first round of a
+// device alone also `cell_start`, which it empties, if need be by more threads than choose.
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
 // collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
 // choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
@@ -20,8 +21,21 @@ override RIGID: bool = false;
 
 @group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
 
+@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
+
+// The share of a thread of so many: after the search nobody on a device alone asks where the cells start.
+fn empty_cells(thread: u32, threads: u32) {
+    let fours = (step.bins / CHUNK + 1u) * (CHUNK / 4u);
+    for (var four = thread; four < fours; four += threads) {
+        cell_start[four] = vec4<u32>(0u);
+    }
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn choose(thread: Thread) {
+    if (step.peers == 0u && step.round == 0u && choose_empties()) {
+        empty_cells(linear(thread), groups_of(thread) * WORKGROUP);
+    }
     let s = chooser(linear(thread));
     if (s == NOBODY) {
         return;

@@ -1,6 +1,6 @@
 //! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl
 // Empties the lists, and the cells, whatever is in them: before the first step of an interval, and among other devices before each. The other steps
-// begin with what `scan_sums` and `advect` have emptied.
+// begin with what `scan_sums` and `advect` have emptied, and of cells `choose`, `scan_cells` or a clear.
 //
 // Writes the lengths of the lists in `counters`, all of `dispatches`, `rechoose_dispatches` and `asked_dispatches`, and as many words of `cell_start` and
 // `stretch_sums` as it has threads for. One thread per list, and per FOURS fours of cells and stretch of cells.

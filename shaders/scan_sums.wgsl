@@ -1,7 +1,7 @@
-//! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl stretches.wgsl
+//! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl stretches.wgsl emptying.wgsl
 // Scan, part 1: how many particles each chunk of cells has, and each stretch; and on a device alone empties the lists of the step before.
 //
-// Reads the counts in `cell_start`, by fours; writes `chunk_sums`, and adds to `stretch_sums` (zero before). One thread per chunk. The cell
+// Reads the counts in `cell_start`, the buffer that `bin` counts in, by fours; writes `chunk_sums`, and adds to `stretch_sums` (zero before). One thread per chunk. The cell
 // behind the last, and those up to a whole chunk, are counted as ones without particles. Of the lists those are left that `bin` and `advect` have to do with.
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -17,6 +17,10 @@ fn scan_sums(thread: Thread) {
             empty_list(chunk);
         }
         empty_parts(chunk);
+        // The first of `choose` has at least so many threads, which empty the cells: 64 of them each.
+        if (chunk == LIST_RECHOOSE && choose_empties()) {
+            atomicStore(&rechoose_dispatches[3u * chunk], min(step.bins / (CHUNK * WORKGROUP) + 1u, GROUP_LIMIT));
+        }
     }
     if (chunk > step.bins / CHUNK) {
         return;

@@ -64,7 +64,8 @@ fn twins() -> Vec<Twin> {
             tallies_left,
             slot,
             near2,
-            flight
+            flight,
+            next_newborns
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         twin!("Packed", Packed, place, motion),

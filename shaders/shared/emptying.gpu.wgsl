@@ -1,4 +1,4 @@
 // On a GPU always: it waits for a clear as long as for a kernel.
-fn advect_empties() -> bool {
+fn choose_empties() -> bool {
     return true;
 }

@@ -3,7 +3,12 @@
 
 // Puts the newborn of a slot there; false where there is no room for it, which is counted, and the host stops the run.
 fn enter(slot: u32) -> bool {
-    if (!ORIFICES || slot - step.count >= step.newborns) {
+    return enter_among(slot, step.newborns);
+}
+
+// Of so many from this step's first on.
+fn enter_among(slot: u32, entering: u32) -> bool {
+    if (!ORIFICES || slot - step.count >= entering) {
         return true;
     }
     if (slot >= step.capacity) {

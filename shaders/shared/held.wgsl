@@ -6,3 +6,5 @@ const HELD: u32 = 0;
 const HELD_PARTICLES: u32 = 1;
 // The particles that are in cells.
 const PRESENT: u32 = 2;
+// On a device alone that sorts its particles how many steps the interval has, else 0; from the host.
+const INTERVAL: u32 = 3;

@@ -54,6 +54,8 @@ struct Step {
     near2: u32,
     // Layers of cells around the own ones beyond which particles stray; 0 where all other devices are peers, or none has ghosts.
     flight: u32,
+    // Newborns of the step that follows in the interval, where particles are counted for it as they fly (binned.wgsl).
+    next_newborns: u32,
 }
 
 // `ghosts`: all of them choose; the outermost wait; the pass over those that were asked.

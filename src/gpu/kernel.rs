@@ -202,7 +202,7 @@ impl Kernel {
 }
 
 /// Bytes of the uniform `step` that a dispatch sees.
-pub const STEP_BYTES: u64 = 160;
+pub const STEP_BYTES: u64 = 176;
 
 fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     let ty = match binding.access {

@@ -58,8 +58,8 @@ impl PhaseTimer {
 pub struct Recording<'a> {
     device: &'a Device,
     timer: Option<&'a PhaseTimer>,
-    /// The phase that is timed alone.
-    alone: Option<&'static str>,
+    /// The phases that are timed, if not all.
+    alone: Option<&'a [&'static str]>,
     encoder: Option<wgpu::CommandEncoder>,
     pass: Option<wgpu::ComputePass<'static>>,
     /// The phase whose pass is open, where it is timed.
@@ -83,10 +83,10 @@ impl<'a> Recording<'a> {
         self.alone = None;
     }
 
-    /// Times of the phases from here on this one alone.
-    pub fn time_alone(&mut self, timer: Option<&'a PhaseTimer>, name: &'static str) {
+    /// Times of the phases from here on these alone.
+    pub fn time_alone(&mut self, timer: Option<&'a PhaseTimer>, names: &'a [&'static str]) {
         self.time(timer);
-        self.alone = Some(name);
+        self.alone = Some(names);
     }
 
     /// The names of the phases timed so far, in order.
@@ -97,7 +97,7 @@ impl<'a> Recording<'a> {
     /// The pass in which the dispatches of `name` go; a phase goes on until another is named.
     pub fn phase(&mut self, name: &'static str) -> &mut wgpu::ComputePass<'static> {
         let slot = self.names.len() as u32;
-        let timer = self.timer.filter(|_| slot < SLOTS && self.alone.is_none_or(|alone| alone == name));
+        let timer = self.timer.filter(|_| slot < SLOTS && self.alone.is_none_or(|alone| alone.contains(&name)));
         let goes_on = self.open == Some(name) || (self.open.is_none() && timer.is_none());
         if self.pass.is_none() || !goes_on {
             self.pass = None;

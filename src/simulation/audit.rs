@@ -269,7 +269,7 @@ impl Account {
         for (total, own) in self.counted.injected_momentum.iter_mut().zip(interval.momentum) {
             *total += own;
         }
-        // One step was timed, the last; a tally is in fewer steps than the rest.
+        // One step was timed; a tally is in fewer steps than the rest.
         for &(name, seconds) in timed {
             let share = match name {
                 "tally" => u64::from(samples),

@@ -12,7 +12,7 @@ use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Step
 use super::SimulationError;
 use super::decomposition::Decomposition;
 use super::exchange::{Exchange, Traffic};
-use super::step::{LOST, Sampling, step};
+use super::step::{BLOCKS, LOST, Sampling, TALLY, step};
 
 /// An interval as it was decided.
 pub struct Interval {
@@ -47,7 +47,7 @@ pub struct InFlight {
     pub interval: Interval,
     pub before: Remembered,
     pub tallies: Pending,
-    /// Phases that were timed: of the last step, and what is once an interval.
+    /// Phases that were timed: of one step, and what is once an interval.
     pub phases: Vec<&'static str>,
     /// Particles on this rank, ghosts included, in the last step.
     pub present: u32,
@@ -208,14 +208,21 @@ impl Machine<'_, '_> {
         let steps = Steps { first: interval.first_step, done, dt: interval.dt, tallied: &interval.tallied };
         let slots = self.subdomain.begin_interval(device, &steps, &interval.entering(), &interval.tables)?;
         let last = interval.steps - 1;
+        // The last step is timed; on a device alone, where all but the last count the next one's particles, and the first has a `bin` of its own, the one
+        // before, unless that is the first that is to be done, and of the last what that one has not.
+        let early = self.subdomain.place().is_alone() && last > done + 1;
+        let timed = if early { last - 1 } else { last };
+        let at_the_end: &[&'static str] = if interval.tallied[timed as usize] { &[BLOCKS] } else { &[TALLY, BLOCKS] };
         let mut rec = Recording::new(device);
         let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in (done..).zip(slots) {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
-            if k == last {
+            if k == timed {
                 rec.time(self.timer);
+            } else if k == last {
+                rec.time_alone(self.timer, at_the_end);
             } else {
-                rec.time_alone(self.timer.filter(|_| sampling.lost), LOST);
+                rec.time_alone(self.timer.filter(|_| sampling.lost), &[LOST]);
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;

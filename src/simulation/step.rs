@@ -24,11 +24,15 @@ const PHASES: [&str; 13] = [
     "settle",
     LOST,
     "advect",
-    "tally",
-    "blocks",
+    TALLY,
+    BLOCKS,
 ];
 /// In the first step of an interval.
 pub const LOST: &str = "lost";
+/// In some steps, of which the last of an interval is one.
+pub const TALLY: &str = "tally";
+/// In the last step of an interval.
+pub const BLOCKS: &str = "blocks";
 
 /// Where in a step a phase is.
 pub fn place(phase: &str) -> usize {
@@ -37,7 +41,7 @@ pub fn place(phase: &str) -> usize {
 
 /// Whether a phase is once an interval, and so no part of a mean step.
 pub fn once_an_interval(phase: &str) -> bool {
-    [LOST, "blocks"].contains(&phase)
+    [LOST, BLOCKS].contains(&phase)
 }
 
 /// What else a step does.

@@ -14,7 +14,7 @@ use super::walls::Walls;
 /// Cells per thread of the scan.
 pub const CHUNK: u64 = 64;
 /// Those of a workgroup, of a thread each.
-const STRETCH: u64 = CHUNK * WORKGROUP as u64;
+pub const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 /// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
 pub const FEW_STRETCHES: u64 = 64;
 /// Whether so many bins are few stretches.
@@ -22,11 +22,11 @@ pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
 }
 
-/// Whether on a device alone `advect` empties the cells for the next step (`shaders/shared/emptying.wgsl`).
-pub fn advect_empties(form: Form, bins: u64) -> bool {
+/// Whether on a device alone the first of `choose` empties the cells for the next step (`shaders/shared/emptying.wgsl`).
+pub fn choose_empties(form: Form, bins: u64) -> bool {
     form == Form::Gpu || few_stretches(bins)
 }
-/// Cells that a thread empties, at most (`shaders/reset.wgsl`, `shaders/advect.wgsl`).
+/// Cells that a thread empties, at most (`shaders/reset.wgsl`).
 pub const EMPTIED_CELLS: u64 = 16;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
@@ -118,8 +118,9 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
-/// Whether a device is held, how many particles it has then, and how many are in cells.
-pub const HELD_WORDS: usize = 3;
+/// Whether a device is held, how many particles it has then, how many are in cells, and `INTERVAL`.
+pub const HELD_WORDS: usize = 4;
+pub const HELD_INTERVAL: u64 = 3;
 
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {
@@ -183,8 +184,11 @@ pub fn step_stride(device: &Device) -> u64 {
     crate::gpu::STEP_BYTES.next_multiple_of(alignment.max(1))
 }
 
-/// Bytes of these buffers for each bin.
-pub const BYTES_PER_BIN: f64 = 4.0 + 4.0 / CHUNK as f64 + 4.0 / STRETCH as f64;
+/// Bytes of these buffers for each bin, with the counts apart from the starts or in their place.
+pub fn bytes_per_bin(apart: bool) -> f64 {
+    let words = if apart { 2.0 } else { 1.0 };
+    4.0 * (words + 1.0 / CHUNK as f64 + 1.0 / STRETCH as f64)
+}
 
 /// What grows with the number of cells that have bins.
 pub struct CellBuffers {
@@ -194,15 +198,21 @@ pub struct CellBuffers {
     pub stretch_sums: wgpu::Buffer,
     /// First the counts of a step's cells, then where their particles start.
     pub cell_start: wgpu::Buffer,
+    /// Of the method `cell` the counts, apart from the starts; zero between scan and flight.
+    pub cell_counts: wgpu::Buffer,
+    apart: bool,
 }
 
 impl CellBuffers {
-    pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
+    pub fn new(device: &Device, bins: u64, apart: bool) -> Result<CellBuffers, GpuError> {
         Ok(CellBuffers {
             capacity: bins,
             chunk_sums: device.storage::<u32>("chunk_sums", (bins / STRETCH + 1) * (STRETCH / CHUNK))?,
             stretch_sums: device.storage::<u32>("stretch_sums", bins / STRETCH + 1)?,
             cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
+            cell_counts: device
+                .storage::<u32>("cell_counts", if apart { CellBuffers::start_bytes(bins) / 4 } else { 4 })?,
+            apart,
         })
     }
 }
@@ -213,8 +223,13 @@ impl CellBuffers {
         4 * CHUNK * (bins / CHUNK + 1)
     }
 
+    /// Where the counts are.
+    pub fn counts(&self) -> &wgpu::Buffer {
+        if self.apart { &self.cell_counts } else { &self.cell_start }
+    }
+
     pub fn bytes(&self) -> u64 {
-        self.chunk_sums.size() + self.stretch_sums.size() + self.cell_start.size()
+        self.chunk_sums.size() + self.stretch_sums.size() + self.cell_start.size() + self.cell_counts.size()
     }
 }
 
@@ -405,6 +420,9 @@ impl<'a> Buffers<'a> {
             (_, "held") => &fixed.held,
             (_, "stretch_sums") => &cell.stretch_sums,
             (_, "chunk_sums") => &cell.chunk_sums,
+            ("bin" | "scan_sums" | "reset", "cell_start") => cell.counts(),
+            ("scan_cells", "cell_counts") => &cell.cell_counts,
+            (_, "cell_counts") => cell.counts(),
             (_, "cell_start") => &cell.cell_start,
             (_, "wall_start") => &domain.wall_start,
             (_, "wall_list") => &domain.wall_list,
@@ -471,8 +489,10 @@ mod tests {
             let found = bytes(features, 6400) - bytes(features, 3200);
             assert_eq!(found as f64, 3200.0 * bytes_per_particle(collisions, rounds), "{collisions} {rounds}");
         }
-        let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
-        let some = 4 * STRETCH;
-        assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * BYTES_PER_BIN);
+        for apart in [false, true] {
+            let bins = |bins: u64| CellBuffers::new(&device, bins, apart).expect("room").bytes();
+            let some = 4 * STRETCH;
+            assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * bytes_per_bin(apart));
+        }
     }
 }

@@ -85,6 +85,11 @@ impl Patches {
 }
 
 impl Features {
+    /// Collisions are within cells.
+    pub fn has_cells(self) -> bool {
+        self.collisions && !self.rounds
+    }
+
     pub fn of(plan: &Plan, patches: Patches, parted: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
@@ -158,6 +163,7 @@ pub fn constants(
         ("FLOWN", if features.collisions && !features.rounds { 0.0 } else { 0.5 }),
         ("WALL_SEED_HIGH", seed_high(PURPOSE_WALL)),
         ("COLLISIONS", flag(features.collisions)),
+        ("COUNTS_APART", flag(features.has_cells())),
         ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
         ("CURVES", flag(features.curves)),

@@ -4,7 +4,9 @@ use crate::gpu::{BoundKernel, Device, Form, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, advect_empties, few_stretches, step_stride};
+use super::buffers::{
+    CHUNK, CellBuffers, EMPTIED_CELLS, HELD_INTERVAL, RECORD, STRETCH, choose_empties, few_stretches, step_stride,
+};
 use super::constants::{Features, MEMBERS, WORKGROUP};
 use super::counters;
 use super::kernels::CollisionKernels;
@@ -64,6 +66,7 @@ impl Subdomain {
         device.write(&self.particle.newborns, 0, list);
         let mut slots = Vec::with_capacity(of_step.len());
         let mut bytes = Vec::new();
+        let flies_to_bins = self.place.is_alone() && self.kernels.sort.is_some();
         for (k, (&born, &tallied)) in (0u32..).zip(of_step.iter().zip(tallied)) {
             let slot = StepSlot {
                 slot: k,
@@ -78,6 +81,8 @@ impl Subdomain {
                 total: self.count + born,
                 tallies_left,
                 near2,
+                next: if flies_to_bins { of_step.get(k as usize + 1).copied() } else { None },
+                binned: flies_to_bins && k > done,
             };
             let slot = newborns.entering(slot, k);
             tallies_left -= u32::from(tallied);
@@ -93,6 +98,8 @@ impl Subdomain {
             slots.push(slot);
         }
         device.write(&self.fixed.step, 0, &bytes);
+        let counted = if flies_to_bins { of_step.len() as u32 } else { 0 };
+        device.write(&self.fixed.held, 4 * HELD_INTERVAL, &[counted]);
         Ok(slots)
     }
 
@@ -201,6 +208,8 @@ impl Subdomain {
                 slot: slot.slot,
                 near2: slot.near2,
                 flight: self.place.flight,
+                next_newborns: slot.next.unwrap_or(0),
+                pad: [0; 3],
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -232,6 +241,8 @@ impl Subdomain {
             total: self.count,
             tallies_left: 0,
             near2: 0,
+            next: None,
+            binned: false,
         };
         self.write_parameters(device, &slot);
         slot
@@ -246,14 +257,13 @@ impl Subdomain {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
-    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
+    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/choose.wgsl`, `shaders/scan_cells.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
     /// which a small step would wait for.
     pub fn reset(&self, rec: &mut Recording<'_>) {
         let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
         let mut cells = CellBuffers::start_bytes(bins) / 4;
-        let left = self.emptied && self.advect_empties();
-        if !few_stretches(bins) && !left {
-            rec.encoder().clear_buffer(&self.cell.cell_start, 0, Some(4 * cells));
+        if !few_stretches(bins) && !self.emptied {
+            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(4 * cells));
             rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
             cells = 1;
         }
@@ -266,8 +276,10 @@ impl Subdomain {
 
     /// The particles that are here, and the newborns, which it puts behind them; those that come from other devices are binned as they arrive.
     pub fn bin(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        let slots = u64::from(step.count) + u64::from(step.newborns);
-        self.bin_slots(rec, step, slots);
+        if !step.binned {
+            let slots = u64::from(step.count) + u64::from(step.newborns);
+            self.bin_slots(rec, step, slots);
+        }
     }
 
     pub(super) fn bin_slots(&self, rec: &mut Recording<'_>, step: &StepSlot, slots: u64) {
@@ -338,11 +350,6 @@ impl Subdomain {
                 moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
             }
         }
-    }
-
-    /// `shaders/shared/emptying.wgsl`.
-    fn advect_empties(&self) -> bool {
-        advect_empties(self.domain.form, self.bins())
     }
 
     fn bins(&self) -> u64 {
@@ -431,7 +438,9 @@ impl Subdomain {
         round: u32,
     ) {
         let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
-        let places = self.places(step.total.into());
+        // At least as many as the first of `choose` has cells to empty for (`shaders/scan_sums.wgsl`).
+        let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
+        let places = self.places(step.total.into()).max(emptying);
         let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
         self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
     }
@@ -442,12 +451,15 @@ impl Subdomain {
             let bytes = 4 * RECORD * u64::from(step.total);
             rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
         }
+        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.form, self.bins());
+        if self.kernels.sort.is_some() && self.place.is_alone() && !empties {
+            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(CellBuffers::start_bytes(self.bins())));
+        }
         let device = rec.device();
         let offset = self.offset(device, step, 0);
-        // As many threads as particles, or more where they empty cells.
-        let empties = self.kernels.sort.is_some() && self.place.is_alone() && self.advect_empties();
-        let emptying = if empties { self.bins().div_ceil(EMPTIED_CELLS) } else { 0 };
-        let groups = threads(device, u64::from(step.total).max(emptying));
+        let entering = u64::from(step.next.unwrap_or(0));
+        let stretches = if self.kernels.sort.is_some() { self.bins() / STRETCH + 1 } else { 0 };
+        let groups = threads(device, (u64::from(step.total) + entering).max(stretches));
         let pass = rec.phase("advect");
         self.kernels.advect.dispatch(pass, offset, groups);
         let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);

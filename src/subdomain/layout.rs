@@ -34,6 +34,8 @@ pub struct GpuStep {
     pub slot: u32,
     pub near2: u32,
     pub flight: u32,
+    pub next_newborns: u32,
+    pub pad: [u32; 3],
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.

@@ -3,7 +3,7 @@
 use crate::plan::Plan;
 use crate::scene::Method;
 
-use super::buffers::{BYTES_PER_BIN, bytes_per_particle};
+use super::buffers::{bytes_per_bin, bytes_per_particle};
 use super::layout::GpuStillGas;
 
 /// Bytes.
@@ -31,7 +31,7 @@ impl Memory {
         }
         let collisions = plan.method != Method::None;
         let per_particle = bytes_per_particle(collisions, plan.method.has_rounds());
-        let sort = if collisions { BYTES_PER_BIN } else { 0.0 };
+        let sort = if collisions { bytes_per_bin(plan.method == Method::Cell) } else { 0.0 };
         let volume = match plan.method {
             Method::Cell if moving => 4.0 + MOVED_OF_A_CELL,
             Method::Cell => 4.0,

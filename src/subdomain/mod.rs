@@ -30,7 +30,7 @@ use crate::plan::Plan;
 
 pub use buffers::{
     BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS,
-    advect_empties, few_stretches, most_particles,
+    choose_empties, few_stretches, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
@@ -138,7 +138,7 @@ impl Subdomain {
         let particle = ParticleBuffers::new(device, capacity, 1024, capacity / FIRST_TAILS, features)?;
         // Without collisions nothing is binned.
         let bins = if features.collisions { bins_of(&place, &domain) } else { 4 };
-        let cell = CellBuffers::new(device, bins)?;
+        let cell = CellBuffers::new(device, bins, domain.features.has_cells())?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
         let buffers =
@@ -225,7 +225,7 @@ impl Subdomain {
         let peers = self.gpu_peers();
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
             let bins = bins_of(&self.place, &self.domain);
-            self.cell = CellBuffers::new(device, bins + bins / 8)?;
+            self.cell = CellBuffers::new(device, bins + bins / 8, self.domain.features.has_cells())?;
             self.rebind(device)?;
         }
         if peers.len() as u64 > self.exchange_room.peers {

@@ -19,6 +19,10 @@ pub struct StepSlot {
     pub(super) total: u32,
     pub(super) tallies_left: u32,
     pub(super) near2: u32,
+    /// Those who enter in the step that follows in the interval, if there is one on a device alone.
+    pub(super) next: Option<u32>,
+    /// The step before has counted the particles of the cells.
+    pub(super) binned: bool,
 }
 
 /// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each

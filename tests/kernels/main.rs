@@ -6,6 +6,7 @@
 mod oracle;
 
 mod asked;
+mod binned;
 mod blocks;
 mod bounce;
 mod ceilings;

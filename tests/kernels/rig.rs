@@ -68,6 +68,7 @@ pub fn is_of_part(form: Form, word: usize) -> bool {
 /// Words of `held`.
 pub const HELD: usize = 0;
 pub const HELD_PARTICLES: usize = 1;
+pub const INTERVAL: usize = 3;
 pub const PRESENT: usize = 2;
 
 pub const NOBODY: u32 = u32::MAX;
@@ -301,7 +302,7 @@ impl Rig {
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
         rig.put("counters", &[0u32; COUNTERS]);
-        rig.put("held", &[0u32; 3]);
+        rig.put("held", &[0u32; 4]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
@@ -318,7 +319,7 @@ impl Rig {
         rig.put("shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        for buffer in ["cell_start", "stretch_sums", "cells", "middles", "neighbour_count"] {
+        for buffer in ["cell_start", "cell_counts", "bins", "stretch_sums", "cells", "middles", "neighbour_count"] {
             rig.put(buffer, &[0u32; 4]);
         }
         rig
@@ -368,6 +369,8 @@ impl Rig {
         let total = if step.total == 0 { step.count + step.newborns + step.arrivals } else { step.total };
         let near2 = if step.near2 == 0 { CELL_NEAR2 } else { step.near2 };
         self.uniform("step", &[GpuStep { total, near2, stride: step.stride.max(1), ..placed }]);
+        // The last of its interval.
+        self.set_held(INTERVAL, if step.peers == 0 { step.slot + 1 } else { 0 });
     }
 
     pub fn gases(&mut self, gases: &[GpuGas]) {
@@ -382,7 +385,7 @@ impl Rig {
     }
 
     pub fn held(&self, word: usize) -> u32 {
-        self.get::<u32>("held", 3)[word]
+        self.get::<u32>("held", 4)[word]
     }
 
     /// Sets one counter, the others as they are.

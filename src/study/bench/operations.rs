@@ -124,7 +124,6 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
     Some(match phase {
-        "bin" => (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n,
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
@@ -163,7 +162,10 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("neighbours", "for (; k < turns")? * turns
                 + counted.turn("neighbours", "for (; p < found")? * (0.5 * candidates)
         }
-        "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
+        "choose" => {
+            let emptied = counted.turn("choose", "for (var four = thread")? * (work.emptied / 4.0);
+            counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions) + emptied
+        }
         "settle" => {
             let [alone, mutual] = counted.of("match_pairs")?.around(MUTUAL)?;
             // Most lists are of one turn.
@@ -199,7 +201,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             if method == Method::None {
                 return Some(flights);
             }
-            flights + counted.turn("advect", "for (var four = thread")? * (work.emptied / 4.0)
+            // The step that follows finds them in their cells.
+            flights + (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n
         }
         "tally" => {
             let particle = counted.of("tally")?.inner("for (var k = 0u; k < CHUNK_LOOPS")?;
@@ -235,8 +238,8 @@ mod tests {
     fn phases(method: Method) -> &'static [&'static str] {
         match method {
             Method::None => &["advect", "tally", "blocks"],
-            Method::Cell => &["bin", "scan", "sort", "collide", "advect", "tally", "blocks"],
-            _ => &["bin", "scan", "sort", "neighbours", "choose", "settle", "lost", "advect", "tally", "blocks"],
+            Method::Cell => &["scan", "sort", "collide", "advect", "tally", "blocks"],
+            _ => &["scan", "sort", "neighbours", "choose", "settle", "lost", "advect", "tally", "blocks"],
         }
     }
 
@@ -292,7 +295,7 @@ mod tests {
             ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
             ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
             ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),
-            ("cells", Work { emptied: 640.0, ..work }, &["advect"]),
+            ("cells", Work { emptied: 640.0, ..work }, &["choose"]),
         ];
         let method = Method::ClosestApproach;
         let counted = lean(method);

@@ -29,10 +29,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let matched = 3.0 * WORD;
     let entered = work.newborns * NEWBORN;
     Some(match phase {
-        // State in, of a newborn from where it waited, and out; cell and place in the cell out; the cells' counters in and out.
-        "bin" => n * (PARTICLE + 2.0 * WORD) + entered + filled * 2.0 * WORD,
-        // Counters in, and the starts out in their place; sums of stretches of cells out.
-        "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
+        // Counters in, and the starts out in their place, or elsewhere and none in their place; sums of stretches of cells out.
+        "scan" => cells * (if rounds { 2.0 } else { 3.0 } + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells, and
         // where threads put these in order their entries.
         "sort" => {
@@ -53,7 +51,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + candidates * WORD
                 + work.first_choosers * 3.0 * WORD
         }
-        "choose" => work.choosers * choice,
+        // The cells that are emptied out.
+        "choose" => work.choosers * choice + work.emptied * WORD,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
             work.choosers * matched
@@ -70,11 +69,14 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + ordered * work.crowded * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
-        // State in and out; with rounds the marks, and the flights of those that may meet a wall; the cells that it empties out. Without collisions newborns as in `bin`.
+        // State in and out; with rounds the marks, and the flights of those that may meet a wall; newborns from where they waited. With collisions cell and
+        // place in it out, and the cells' counters in and out, for the step that follows.
         "advect" => {
+            let binned = if method == Method::None { 0.0 } else { (n + filled) * 2.0 * WORD };
             n * (2.0 * PARTICLE + if rounds { WORD } else { 0.0 })
                 + if rounds { work.near_walls * FLIGHT } else { 0.0 }
-                + if method == Method::None { entered } else { work.emptied * WORD }
+                + binned
+                + entered
         }
         // The states, once for all zones.
         "tally" => present * PARTICLE * work.tallies,
@@ -108,7 +110,7 @@ mod tests {
             ..Work::default()
         };
         let more = Work { candidates: 600.0, ..few };
-        let phases = ["bin", "scan", "sort", "choose", "settle", "lost", "advect", "tally", "blocks"];
+        let phases = ["scan", "sort", "choose", "settle", "lost", "advect", "tally", "blocks"];
         for phase in phases {
             let [a, b] = [&few, &more].map(|work| bytes(phase, Method::ClosestApproach, work).unwrap());
             // One more for each particle.
@@ -131,20 +133,20 @@ mod tests {
             Work { steps: 1.0, particle_steps: 1.0, tallies: 1.0, zones: 3.0, intervals: 1.0, ..Work::default() };
         let floor = |phase, method| bytes(phase, method, &work).unwrap();
         let [rounds, cell] = [Method::ClosestApproach, Method::Cell];
-        assert_eq!([floor("bin", rounds), floor("bin", cell)], [40.0; 2]);
         assert_eq!([floor("sort", rounds), floor("sort", cell)], [88.0, 72.0]);
         assert_eq!(floor("neighbours", rounds), 24.0);
         let capped = Work { capped: true, ..work };
         assert_eq!(["sort", "neighbours"].map(|phase| bytes(phase, rounds, &capped)), [104.0, 24.0].map(Some));
-        assert_eq!([floor("advect", rounds), floor("advect", cell)], [68.0, 64.0]);
+        assert_eq!([rounds, cell, Method::None].map(|method| floor("advect", method)), [76.0, 72.0, 64.0]);
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
-        assert_eq!(bytes("scan", cell, &cells), Some(64.0 * 8.0 + 4.0));
+        let found = [rounds, cell].map(|method| bytes("scan", method, &cells));
+        assert_eq!(found, [64.0 * 8.0 + 4.0, 64.0 * 12.0 + 4.0].map(Some));
         let emptied = Work { emptied: 64.0, ..Work::default() };
-        assert_eq!(bytes("advect", cell, &emptied), Some(64.0 * 4.0));
+        assert_eq!(bytes("choose", rounds, &emptied), Some(64.0 * 4.0));
         let entered = Work { newborns: 2.0, ..Work::default() };
-        let moved = [("bin", rounds), ("advect", cell), ("advect", Method::None)];
-        assert_eq!(moved.map(|(phase, method)| bytes(phase, method, &entered)), [96.0, 0.0, 96.0].map(Some));
+        let moved = [rounds, cell, Method::None];
+        assert_eq!(moved.map(|method| bytes("advect", method, &entered)), [Some(96.0); 3]);
         let chosen = Work { particle_steps: 1.0, choosers: 1.0, lost_choosers: 1.0, ..Work::default() };
         assert_eq!(
             ["choose", "settle", "lost"].map(|phase| bytes(phase, rounds, &chosen)),
