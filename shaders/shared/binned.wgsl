@@ -9,7 +9,6 @@ override FLOWN: f32 = 0.5;
 // Zero before the first of a step: emptied by the first of `choose` or a clear, or where they lie apart from the starts by `scan_cells`.
 @group(0) @binding(66) var<storage, read_write> cell_counts: array<atomic<u32>>;
 
-// Not from a uniform alone: for a branch that asks nothing else lavapipe may compile a kernel anew at each dispatch.
 fn bins_next() -> bool {
     return COLLISIONS && step.slot + 1u < held[INTERVAL];
 }

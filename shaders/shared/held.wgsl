@@ -6,5 +6,6 @@ const HELD: u32 = 0;
 const HELD_PARTICLES: u32 = 1;
 // The particles that are in cells.
 const PRESENT: u32 = 2;
-// On a device alone that sorts its particles how many steps the interval has, else 0; from the host.
+// On a device alone that sorts its particles how many steps the interval has, else 0; from the host. Here, and not in a uniform: where branches
+// ask uniforms alone, Mesa's lavapipe makes a kernel for their values, and for some kernels (`advect` was one) anew at each dispatch.
 const INTERVAL: u32 = 3;

@@ -38,8 +38,24 @@ pub struct Bits {
     pub audit: String,
 }
 
+/// The most mappings of memory of this process. Mesa's lavapipe has one at least for each kernel that it compiles, and keeps it: some hundred
+/// (945 were seen), but tens of thousands where it compiles a kernel anew at each dispatch, and in the end no memory.
+const MOST_MAPPINGS: usize = 3000;
+
+/// Where the system tells (Linux).
+fn assert_kernels_are_compiled_once() {
+    if let Ok(mappings) = std::fs::read_to_string("/proc/self/maps") {
+        let number = mappings.lines().count();
+        assert!(
+            number < MOST_MAPPINGS,
+            "{number} mappings: kernels are compiled anew on the way (shaders/shared/held.wgsl)"
+        );
+    }
+}
+
 impl Bits {
     pub fn of(run: &Run) -> Bits {
+        assert_kernels_are_compiled_once();
         Bits {
             history: run.rows.iter().map(row_bits).collect(),
             state: run
