@@ -205,7 +205,11 @@ impl Account {
             ));
         }
         if counters.tally_overflow > 0 {
-            return Err(format!("{} values were beyond the range of a tally", counters.tally_overflow));
+            let squeezed = if tallies.works.is_empty() { "" } else { ", as of gas that a moving wall leaves no room" };
+            return Err(format!(
+                "{} values were beyond the range of a tally: speeds or energies far above the plan's{squeezed}",
+                counters.tally_overflow
+            ));
         }
         if counters.outside > 0 {
             return Err(format!("particles were found outside the vessel ({} times in these steps)", counters.outside));

@@ -233,7 +233,7 @@ fn a_run_that_cannot_be_trusted_is_4_and_leaves_its_history() {
     fs::write(&path, text).unwrap();
     let out = folder.path().join("out");
     let (code, _, err) = outcome(&["run", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert!(code == 4 && err.contains("beyond the range of a tally"), "{code} {err}");
+    assert!(code == 4 && err.contains("beyond the range of a tally") && err.contains("moving wall"), "{code} {err}");
     assert!(fs::read_to_string(out.join("history.csv")).unwrap().lines().count() > 20);
     assert!(out.join("snapshots/particles_000001.vtu").exists());
 }
