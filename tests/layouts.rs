@@ -7,7 +7,8 @@ use std::mem::offset_of;
 use corpuscle::gpu::{KERNELS, KernelSource};
 use corpuscle::subdomain::{
     CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, LIST_PARTS, MEMBERS, PART_WORDS, PARTS_OF_LISTS,
+    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, HELD_INTERVAL, LIST_PARTS, MEMBERS, PART_WORDS,
+    PARTS_OF_LISTS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -210,7 +211,8 @@ fn constants_of_kernels_are_those_of_the_host() {
     };
     let of_lists = [("LIST_PARTS", LIST_PARTS), ("PART_WORDS", PART_WORDS), ("PARTS_OF_LISTS", PARTS_OF_LISTS)]
         .map(|(name, words)| (name, words as u32));
-    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)].into_iter().chain(of_lists) {
+    let held = [("INTERVAL", HELD_INTERVAL)];
+    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)].into_iter().chain(of_lists).chain(held) {
         let found: Vec<u32> = modules().iter().filter_map(|(_, module)| value(module, name)).collect();
         assert!(
             !found.is_empty() && found.iter().all(|&value| value == of_host),

@@ -7,5 +7,5 @@ const HELD_PARTICLES: u32 = 1;
 // The particles that are in cells.
 const PRESENT: u32 = 2;
 // On a device alone that sorts its particles how many steps the interval has, else 0; from the host. Here, and not in a uniform: where branches
-// ask uniforms alone, Mesa's lavapipe makes a kernel for their values, and for some kernels (`advect` was one) anew at each dispatch.
+// ask uniforms alone, Mesa's lavapipe of 22.3 makes a kernel for their values, and some kernels (`advect` was one) anew at each dispatch.
 const INTERVAL: u32 = 3;

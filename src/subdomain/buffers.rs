@@ -120,7 +120,8 @@ pub struct TallyWords {
 
 /// Whether a device is held, how many particles it has then, how many are in cells, and `INTERVAL`.
 pub const HELD_WORDS: usize = 4;
-pub const HELD_INTERVAL: u64 = 3;
+/// The last of them (`INTERVAL`).
+pub const HELD_INTERVAL: u32 = 3;
 
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {

@@ -29,8 +29,8 @@ use crate::gpu::{BoundKernel, Constants, Device, Form, GpuError, PhaseTimer, Rea
 use crate::plan::Plan;
 
 pub use buffers::{
-    BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS, ZONE_WORDS,
-    choose_empties, few_stretches, most_particles,
+    BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, HELD_INTERVAL, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS,
+    ZONE_WORDS, choose_empties, few_stretches, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants};
