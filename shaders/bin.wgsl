@@ -3,7 +3,7 @@
 // are then), and finds those that other devices need.
 //
 // Reads `particles` and `newborns`; writes `particles[count ..]`, `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
-// owned here nor lies in the halo) and the counts where `scan_cells` puts the starts (`cell_start`, zero before), and appends the
+// owned here nor lies in the halo) and the counts (`cell_start`, the buffer in which `scan_cells` finds them, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
 // within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is held
 // (held.wgsl) nobody is in any cell, and nobody enters.

@@ -98,7 +98,7 @@ impl Subdomain {
             slots.push(slot);
         }
         device.write(&self.fixed.step, 0, &bytes);
-        let counted = if flies_to_bins { of_step.len() as u32 } else { 0 };
+        let counted = if flies_to_bins { done + slots.len() as u32 } else { 0 };
         device.write(&self.fixed.held, 4 * u64::from(HELD_INTERVAL), &[counted]);
         Ok(slots)
     }

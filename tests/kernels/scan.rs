@@ -74,10 +74,11 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
     let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
     let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
     // Fewer chunks than there are lists, and more.
-    let cases = [(4, 0), (90_001, 0), (90_001, 1)];
-    for (form, (cells, peers)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
+    let cases = [(4, 0, 0), (90_001, 0, 0), (90_001, 0, 64), (90_001, 1, 64)];
+    for (form, (cells, peers, few)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
         let mut rig = rig(cells);
         rig.form = form;
+        rig.constant("FEW_STRETCHES", f64::from(few));
         rig.put("cell_start", &with_end(&vec![0; cells]));
         rig.put("chunk_sums", &vec![7u32; cells / CHUNK + 1]);
         rig.put("stretch_sums", &vec![0u32; cells / STRETCH + 1]);
@@ -94,8 +95,9 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
         for buffer in ["dispatches", "rechoose_dispatches"] {
             let sizes: Vec<[u32; 3]> = rig.get(buffer, LISTS);
             for (list, (size, before)) in sizes.iter().zip(noise.as_chunks().0).enumerate() {
-                // On a GPU the first of `choose` has the cells to empty.
-                let emptying = buffer == "rechoose_dispatches" && list == LIST_RECHOOSE && form == Form::Gpu;
+                // On a GPU, and where cells are few, the first of `choose` has them to empty.
+                let emptying =
+                    buffer == "rechoose_dispatches" && list == LIST_RECHOOSE && (form == Form::Gpu || few > 0);
                 let emptied = [if emptying { (cells / STRETCH + 1) as u32 } else { 0 }, 1, 1];
                 assert_eq!(size, if peers == 0 && !kept.contains(&list) { &emptied } else { before }, "{list}");
             }
