@@ -39,7 +39,7 @@ pub struct Bits {
 }
 
 /// The most mappings of compiled code of this process for each of its tests that run together. Mesa's lavapipe has some for each kernel that it
-/// compiles, and keeps them: of all some eighty with two tests. But tens of thousands where that of 22.3 compiles a kernel anew at each dispatch,
+/// compiles, and keeps them: some eighty were seen with two tests together. But tens of thousands where that of 22.3 compiles a kernel anew at each dispatch,
 /// and in the end no memory.
 const MOST_MAPPINGS: usize = 500;
 

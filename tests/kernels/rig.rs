@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
 use corpuscle::gpu::{Device, Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, Walls};
 
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
@@ -68,7 +68,7 @@ pub fn is_of_part(form: Form, word: usize) -> bool {
 /// Words of `held`.
 pub const HELD: usize = 0;
 pub const HELD_PARTICLES: usize = 1;
-pub const INTERVAL: usize = 3;
+pub const INTERVAL: usize = HELD_INTERVAL as usize;
 pub const PRESENT: usize = 2;
 
 pub const NOBODY: u32 = u32::MAX;
@@ -302,7 +302,7 @@ impl Rig {
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
         rig.put("counters", &[0u32; COUNTERS]);
-        rig.put("held", &[0u32; 4]);
+        rig.put("held", &[0u32; INTERVAL + 1]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
@@ -385,7 +385,7 @@ impl Rig {
     }
 
     pub fn held(&self, word: usize) -> u32 {
-        self.get::<u32>("held", 4)[word]
+        self.get::<u32>("held", INTERVAL + 1)[word]
     }
 
     /// Sets one counter, the others as they are.
