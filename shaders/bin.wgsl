@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl held.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl held.wgsl flown.wgsl
 // Puts the newborns behind the particles, counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
 // are then), and finds those that other devices need.
 //
@@ -8,8 +8,6 @@
 // within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is held
 // (held.wgsl) nobody is in any cell, and nobody enters.
 
-// What part of the step's flight is flown to the place that decides the cell.
-override FLOWN: f32 = 0.5;
 override ROUNDS_OF_PAIRS: bool = true;
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -30,11 +28,9 @@ fn bin(thread: Thread) {
         return;
     }
     let place = particles[i].place;
-    let middle = shifted(place.xyz, particles[i].motion.xyz * (FLOWN * step.dt));
-    let cell = nearest_cell(middle);
+    let cell = flown_cell(place.xyz, particles[i].motion.xyz);
     let there = place.w != NOBODY;
-    // The border layer of the box has no bins to fill.
-    if (there && all(cell - step.low - 1u < step.size - 2u)) {
+    if (there && has_bin(cell)) {
         let index = local_index(cell);
         bins[i] = vec2<u32>(index, atomicAdd(&cell_start[index], 1u));
     } else {

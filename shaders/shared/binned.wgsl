@@ -1,9 +1,7 @@
-//! uses: step.wgsl grid.wgsl local.wgsl held.wgsl
+//! uses: step.wgsl local.wgsl held.wgsl flown.wgsl
 // Counting the particles of the cells where they fly, for the step that follows, on a device alone. (`bin` counts those of the first step of an interval.)
 
 override COLLISIONS: bool = true;
-// What part of the step's flight is flown to the place that decides the cell.
-override FLOWN: f32 = 0.5;
 
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
 // Zero before the first of a step: emptied by the first of `choose` or a clear, or where they lie apart from the starts by `scan_cells`.
@@ -17,11 +15,9 @@ fn bin_nobody(i: u32) {
     bins[i] = vec2<u32>(NOBODY, 0u);
 }
 
-// The same cell as in `bin`: one product after the other, and integers.
 fn bin_next(i: u32, place: vec3<u32>, velocity: vec3<f32>) {
-    let cell = nearest_cell(shifted(place, velocity * (FLOWN * step.dt)));
-    // The border layer of the box has no bins to fill.
-    if (all(cell - step.low - 1u < step.size - 2u)) {
+    let cell = flown_cell(place, velocity);
+    if (has_bin(cell)) {
         let index = local_index(cell);
         bins[i] = vec2<u32>(index, atomicAdd(&cell_counts[index], 1u));
     } else {

@@ -202,7 +202,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 return Some(flights);
             }
             // The step that follows finds them in their cells.
-            flights + (counted.straight("bin")? + counted.turn("bin", "if (there && all(")?) * n
+            flights + (counted.straight("bin")? + counted.turn("bin", "if (there && has_bin(")?) * n
         }
         "tally" => {
             let particle = counted.of("tally")?.inner("for (var k = 0u; k < CHUNK_LOOPS")?;
