@@ -1,4 +1,4 @@
-//! uses: parted_lists.wgsl
+//! uses: parted_lists.wgsl merged.wgsl
 // Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
 // those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
@@ -12,5 +12,5 @@ fn chooser(thread: u32) -> u32 {
     if (number_in_part(thread) >= entries_in_part(thread, LIST_RECHOOSE + step.round, step.total)) {
         return NOBODY;
     }
-    return rechoose[thread];
+    return rechoose[first_place_of(step.round) + thread];
 }

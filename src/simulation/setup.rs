@@ -6,7 +6,7 @@ use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, still_point
 use crate::gpu::Device;
 use crate::output::Checkpoint;
 use crate::scene::{Face, Method};
-use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, Patches, Walls, zone_of};
+use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, KernelChoice, Patches, Walls, zone_of};
 
 use super::SimulationError;
 use super::averages::Layout;
@@ -41,7 +41,7 @@ impl Setup {
         shuffle: Option<&Shuffle>,
     ) -> Result<Setup, SimulationError> {
         let Some(shuffle) = shuffle else {
-            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), false);
+            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), KernelChoice::Fitting);
         };
         let mut particles = initial_particles(model)?;
         shuffle(&mut particles);
@@ -53,7 +53,15 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), true)
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::Whole)
+    }
+
+    /// With the kernels of many particles also where these are few: for tests of those.
+    ///
+    /// # Errors
+    /// As [`Setup::new`].
+    pub fn for_many(model: &Model, device: &Device, ranks: usize) -> Result<Setup, SimulationError> {
+        Setup::build(model, device, ranks, Stock::Initial(Initial::default()), KernelChoice::ForMany)
     }
 
     /// For a run that goes on: all particles of that moment instead of the initial ones.
@@ -66,7 +74,7 @@ impl Setup {
         ranks: usize,
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), false)
+        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), KernelChoice::Fitting)
     }
 
     /// For a run that goes on from a checkpoint.
@@ -79,7 +87,7 @@ impl Setup {
         ranks: usize,
         checkpoint: Checkpoint,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), false)
+        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), KernelChoice::Fitting)
     }
 
     fn build(
@@ -87,7 +95,7 @@ impl Setup {
         device: &Device,
         ranks: usize,
         particles: Stock,
-        whole: bool,
+        kernels: KernelChoice,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
         if plan.method == Method::ControlVolume {
@@ -124,7 +132,7 @@ impl Setup {
             patches: tallied,
             vent_entries: model.coats.vent_entries(),
             among_others: ranks > 1,
-            whole,
+            kernels,
         };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),

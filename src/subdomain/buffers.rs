@@ -30,11 +30,11 @@ pub fn choose_empties(form: Form, bins: u64) -> bool {
 pub const EMPTIED_CELLS: u64 = 16;
 /// Words per zone and gas (`shaders/tally.wgsl`).
 pub const ZONE_WORDS: usize = 12;
-/// Words per surface (`shaders/bounce.wgsl`).
+/// Words per surface (`shaders/shared/bounced.wgsl`).
 pub const SURFACE_WORDS: usize = 10;
-/// Copies of the tallies of walls (`shaders/bounce.wgsl`).
+/// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
 pub const SURFACE_COPIES: usize = 16;
-/// Words per coat and per vent (`shaders/bounce.wgsl`).
+/// Words per coat and per vent (`shaders/shared/bounced.wgsl`).
 pub const COAT_WORDS: usize = 4;
 pub const VENT_WORDS: usize = 24;
 /// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
@@ -312,7 +312,7 @@ pub struct ParticleBuffers {
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
+    /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. (Twice, where kernels are merged.)
     pub rare: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub middles: wgpu::Buffer,
@@ -354,7 +354,7 @@ impl ParticleBuffers {
                 "slots",
                 if features.halo { 2 * scratch } else { scratch } + 2 * counters::FREE_ENTRIES,
             )?,
-            rare: device.storage::<u32>("rare", capacity + counters::FREE_ENTRIES)?,
+            rare: device.storage::<u32>("rare", (capacity + counters::FREE_ENTRIES) << u32::from(features.merged))?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
@@ -411,7 +411,7 @@ impl<'a> Buffers<'a> {
         let Buffers { domain, fixed, cell, particle, exchange } = *self;
         Some(match (kernel, name) {
             ("tally", "sums") => &fixed.zone_sums,
-            ("bounce", "sums") => &fixed.surface_sums,
+            ("bounce" | "fly", "sums") => &fixed.surface_sums,
             ("blocks", "sums") => &fixed.block_sums,
             ("weigh", "sums") => &exchange.histogram,
             (_, "step") => &fixed.step,
@@ -430,9 +430,8 @@ impl<'a> Buffers<'a> {
             (_, "triangles") => &domain.triangles,
             (_, "cell_class") => &domain.cell_class,
             (_, "parting") => &domain.parting,
-            ("settle" | "pack" | "order" | "neighbours" | "receive", "dispatches") | (_, "rechoose_dispatches") => {
-                &fixed.rechoose_dispatches
-            }
+            ("settle" | "settle_chosen" | "pack" | "order" | "neighbours" | "receive", "dispatches")
+            | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
             // The pass over those that were asked asks nobody, and may not write what it takes its size from.
             ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
             ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, tally_loops};
+use super::constants::{Features, Patches, block_counts, constants, merges, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
@@ -25,8 +25,18 @@ pub struct DomainInput<'a> {
     pub vent_entries: usize,
     /// Whether other subdomains own particles too.
     pub among_others: bool,
-    /// Kernels are compiled for what the scene lacks too.
-    pub whole: bool,
+    pub kernels: KernelChoice,
+}
+
+/// Which kernels a domain has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KernelChoice {
+    /// For what the scene has, and its number of particles.
+    Fitting,
+    /// As of many particles, also where these are few.
+    ForMany,
+    /// Of many, and for what the scene lacks too.
+    Whole,
 }
 
 pub struct Domain {
@@ -58,7 +68,11 @@ impl Domain {
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
         let needed = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
-        let features = if input.whole { needed.whole() } else { needed };
+        let features = match input.kernels {
+            KernelChoice::Fitting => Features { merged: merges(plan, device.form()), ..needed },
+            KernelChoice::ForMany => needed,
+            KernelChoice::Whole => needed.whole(),
+        };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
             zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,

@@ -9,7 +9,7 @@ use super::buffers::{
 };
 use super::constants::{Features, MEMBERS, WORKGROUP};
 use super::counters;
-use super::kernels::CollisionKernels;
+use super::kernels::Flights;
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::place::Cells;
@@ -24,8 +24,8 @@ const LIST_CROWDS: u32 = 3;
 const LIST_INCOMPLETE: u32 = 10;
 /// Of steps at even and at odd places in their interval.
 const LIST_BOUNCE: [u32; 2] = [11, 27];
-const LIST_RECHOOSE: u32 = 16;
-const LIST_ASKED: u32 = 26;
+pub(super) const LIST_RECHOOSE: u32 = 16;
+pub(super) const LIST_ASKED: u32 = 26;
 
 /// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
 /// the ghosts that were asked.
@@ -253,7 +253,7 @@ impl Subdomain {
     }
 
     /// Of the pass over those that were asked.
-    fn asked_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
+    pub(super) fn asked_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 
@@ -352,7 +352,7 @@ impl Subdomain {
         }
     }
 
-    fn bins(&self) -> u64 {
+    pub(super) fn bins(&self) -> u64 {
         self.cells().all
     }
 
@@ -362,7 +362,7 @@ impl Subdomain {
     }
 
     /// Over the entries of a list, `item` of these arguments, that has them among so many places.
-    fn over_list(
+    pub(super) fn over_list(
         &self,
         kernel: &BoundKernel,
         (device, pass): (&Device, &mut wgpu::ComputePass<'_>),
@@ -370,7 +370,8 @@ impl Subdomain {
         (arguments, item): (&wgpu::Buffer, u32),
         places: u64,
     ) {
-        if places <= self.short_lists {
+        // (A merged kernel may write what it would take its size from.)
+        if places <= self.short_lists || self.domain.features.merged {
             kernel.dispatch(pass, offset, threads(device, places));
         } else {
             kernel.dispatch_indirect(pass, offset, arguments, item);
@@ -378,71 +379,8 @@ impl Subdomain {
     }
 
     /// Of a list that is in parts on a GPU.
-    fn places(&self, most: u64) -> u64 {
+    pub(super) fn places(&self, most: u64) -> u64 {
         if self.domain.form == Form::Gpu { counters::places_in_parts(most) } else { most }
-    }
-
-    pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
-        if let Some(kernels) = &self.kernels.collisions {
-            self.choosing(&kernels.choose, rec, "choose", step, round);
-            self.choose_asked(kernels, rec, "choose", step, round);
-        }
-    }
-
-    pub fn settle(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
-        if let Some(kernels) = &self.kernels.collisions {
-            self.choosing(&kernels.match_pairs, rec, "settle", step, round);
-            let offset = self.offset(rec.device(), step, round);
-            let (device, places) = (rec.device(), self.places(u64::from(step.total / 2)));
-            let pass = rec.phase("settle");
-            self.over_list(&kernels.settle, (device, pass), offset, (&self.fixed.dispatches, round), places);
-        }
-    }
-
-    /// One more choice after the last round: pairs still mutual are collisions that the rounds lost.
-    pub fn count_lost(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(kernels) = &self.kernels.collisions {
-            let rounds = self.domain.plan.rounds;
-            self.choosing(&kernels.choose, rec, "lost", step, rounds);
-            self.choose_asked(kernels, rec, "lost", step, rounds);
-            self.choosing(&kernels.match_pairs, rec, "lost", step, rounds);
-            kernels.lost.dispatch(rec.phase("lost"), 0, [1, 1, 1]);
-        }
-    }
-
-    /// The ghosts that particles farther in have chosen choose.
-    fn choose_asked(
-        &self,
-        kernels: &CollisionKernels<BoundKernel>,
-        rec: &mut Recording<'_>,
-        phase: &'static str,
-        step: &StepSlot,
-        round: u32,
-    ) {
-        if let Some(neighbours_asked) = kernels.neighbours_asked.as_ref().filter(|_| self.place.asks()) {
-            let offset = self.asked_offset(rec.device(), step, round);
-            let pass = rec.phase(phase);
-            for kernel in [neighbours_asked, &kernels.complete_lists, &kernels.choose_asked] {
-                kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
-            }
-        }
-    }
-
-    /// Over those that choose in the round.
-    fn choosing(
-        &self,
-        kernel: &BoundKernel,
-        rec: &mut Recording<'_>,
-        phase: &'static str,
-        step: &StepSlot,
-        round: u32,
-    ) {
-        let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
-        // At least as many as the first of `choose` has cells to empty for (`shaders/scan_sums.wgsl`).
-        let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
-        let places = self.places(step.total.into()).max(emptying);
-        let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
-        self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
     }
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
@@ -461,9 +399,14 @@ impl Subdomain {
         let stretches = if self.kernels.sort.is_some() { self.bins() / STRETCH + 1 } else { 0 };
         let groups = threads(device, (u64::from(step.total) + entering).max(stretches));
         let pass = rec.phase("advect");
-        self.kernels.advect.dispatch(pass, offset, groups);
-        let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);
-        self.over_list(&self.kernels.bounce, (device, pass), offset, arguments, step.total.into());
+        match &self.kernels.flights {
+            Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
+            Flights::Parted { advect, bounce } => {
+                advect.dispatch(pass, offset, groups);
+                let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);
+                self.over_list(bounce, (device, pass), offset, arguments, step.total.into());
+            }
+        }
         self.emptied = self.place.is_alone();
         if !self.emptied {
             self.count = step.total;

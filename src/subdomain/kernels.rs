@@ -12,8 +12,7 @@ pub struct Kernels<K> {
     pub cells: Option<CellKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
     pub reset: K,
-    pub advect: K,
-    pub bounce: K,
+    pub flights: Flights<K>,
     pub tally: K,
     pub blocks: K,
 }
@@ -39,10 +38,22 @@ pub struct CollisionKernels<K> {
     /// The same kernel, for the pass over the ghosts that were asked.
     pub choose_asked: K,
     pub match_pairs: K,
-    pub settle: K,
+    pub settle: Settle<K>,
     pub lost: K,
     /// On a device alone.
     pub recall: Option<K>,
+}
+
+/// To the end of the step.
+pub enum Flights<K> {
+    Merged(K),
+    Parted { advect: K, bounce: K },
+}
+
+/// The collisions of a round: with the match of those that have chosen, or of the list that this has made.
+pub enum Settle<K> {
+    Merged(K),
+    Parted(K),
 }
 
 /// Collisions within cells.
@@ -107,7 +118,11 @@ impl<K> Kernels<K> {
                 choose: make("choose")?,
                 choose_asked: make("choose_asked")?,
                 match_pairs: make("match_pairs")?,
-                settle: make("settle")?,
+                settle: if features.merged {
+                    Settle::Merged(make("settle_chosen")?)
+                } else {
+                    Settle::Parted(make("settle")?)
+                },
                 lost: make("lost")?,
                 recall: if features.halo { None } else { Some(make("recall")?) },
             })
@@ -139,8 +154,11 @@ impl<K> Kernels<K> {
             cells,
             exchange,
             reset: make("reset")?,
-            advect: make("advect")?,
-            bounce: make("bounce")?,
+            flights: if features.merged {
+                Flights::Merged(make("fly")?)
+            } else {
+                Flights::Parted { advect: make("advect")?, bounce: make("bounce")? }
+            },
             tally: make("tally")?,
             blocks: make("blocks")?,
         })

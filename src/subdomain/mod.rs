@@ -16,6 +16,7 @@ mod layout;
 mod memory;
 mod nearness;
 mod place;
+mod rounds;
 mod scales;
 mod state;
 mod step_slot;
@@ -37,7 +38,7 @@ pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, 
 pub use counters::{
     Counters, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS, places_in_parts,
 };
-pub use domain::{Domain, DomainInput};
+pub use domain::{Domain, DomainInput, KernelChoice};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
     GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,

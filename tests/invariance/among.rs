@@ -76,7 +76,8 @@ pub type Wrap = dyn for<'a> Fn(&'a dyn Communicator) -> Box<dyn Communicator + '
 pub struct World<'a> {
     model: &'a Model,
     one: Vec<(Setup, Device)>,
-    several: (Setup, Device),
+    /// Of odd numbers, and of even ones.
+    several: [(Setup, Device); 2],
 }
 
 /// The forms of kernels of one rank, in turn, and of several. What these are compared with has the form that the device takes first. A software device rounds alike in
@@ -92,12 +93,28 @@ fn forms(adapter: &AdapterDescription) -> (Vec<Form>, Form) {
 
 impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> World<'a> {
-        let (of_one, of_several) = forms(Device::open(None).expect("an adapter").adapter());
-        let made = |ranks, form| {
+        let device = Device::open(None).expect("an adapter");
+        let (of_one, of_several) = forms(device.adapter());
+        let fitting = |ranks, form| {
             let device = Device::open_in(None, form).expect("an adapter");
             (Setup::new(model, &device, ranks, None).expect("a set-up"), device)
         };
-        World { model, one: of_one.into_iter().map(|form| made(1, form)).collect(), several: made(2, of_several) }
+        // The scenes are small. A GPU need not round alike in kernels for many particles and in those for few.
+        let for_many = |ranks, form| {
+            if !device.adapter().is_cpu() {
+                return fitting(ranks, form);
+            }
+            let device = Device::open_in(None, form).expect("an adapter");
+            (Setup::for_many(model, &device, ranks).expect("a set-up"), device)
+        };
+        let several = [fitting(2, of_several), for_many(2, of_several)];
+        if device.adapter().is_cpu() {
+            let merged = several.each_ref().map(|(setup, _)| setup.domain.features().merged);
+            assert_eq!(merged, [of_several == Form::Gpu, false]);
+        }
+        let mut one: Vec<_> = of_one.iter().map(|&form| fitting(1, form)).collect();
+        one.extend(of_one.contains(&Form::Gpu).then(|| for_many(1, Form::Gpu)));
+        World { model, one, several }
     }
 
     /// What rank 0 sees; all ranks must see the same rows and counts.
@@ -108,7 +125,7 @@ impl<'a> World<'a> {
 
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
         if way.ranks > 1 {
-            return self.try_run_on(&self.several, way, wrap);
+            return self.try_run_on(&self.several[usize::from(way.ranks.is_multiple_of(2))], way, wrap);
         }
         let mut runs = Vec::new();
         for one in &self.one {

@@ -8,14 +8,14 @@ use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
 use crate::rig::*;
 
-const COUNT: usize = 1500;
+pub const COUNT: usize = 1500;
 const BORN: usize = 40;
 /// Newborns that find no room.
 const LATE: usize = 15;
-const SLOTS: usize = COUNT + BORN;
+pub const SLOTS: usize = COUNT + BORN;
 
 /// A step of a device alone, before `advect`: some meet walls, the last slots are of nobody, and others enter in the step that follows.
-fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
+pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
     let mut stream = Stream::new(61);
     let particles = world.particles(&mut stream, COUNT, 500.0);
     let born: Vec<GpuNewborn> = world

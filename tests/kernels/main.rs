@@ -22,6 +22,7 @@ mod held;
 mod lists;
 mod local;
 mod match_pairs;
+mod merged;
 mod moved;
 mod neighbour_lists;
 mod neighbours;
@@ -57,6 +58,7 @@ fn every_kernel_has_its_test() {
         "complete_lists",
         "fill_outbox",
         "fill_updates",
+        "fly",
         "lost",
         "match_pairs",
         "message_starts",
@@ -72,6 +74,7 @@ fn every_kernel_has_its_test() {
         "scan_stretches",
         "scan_sums",
         "settle",
+        "settle_chosen",
         "start_flights",
         "tally",
         "weigh",

@@ -12,7 +12,7 @@ use crate::oracle::vector::{Vector, along, dot, minus, norm, scaled};
 use crate::oracle::walls::parted;
 use crate::rig::*;
 
-const ROUND: u32 = 1;
+pub const ROUND: u32 = 1;
 const SEED: [u32; 2] = [0x1234_5678, 0x9abc_de04];
 
 /// Two gases of masses 1 and 1/7 with two and three internal degrees of freedom.
@@ -33,7 +33,7 @@ fn table() -> [GpuGas; 2] {
 }
 
 /// Disjoint pairs that may meet within the tank, lower id first, with the f32 time of their closest approach.
-fn meetings(cloud: &Cloud) -> Vec<(usize, usize, f32)> {
+pub fn meetings(cloud: &Cloud) -> Vec<(usize, usize, f32)> {
     let mut taken = BTreeSet::new();
     let mut pairs = Vec::new();
     for (s, list) in cloud.lists.iter().enumerate() {
@@ -90,7 +90,7 @@ fn settle_with(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves:
     rig
 }
 
-fn prepared(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bool) -> Rig {
+pub fn prepared(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves: bool) -> Rig {
     let mut rig = cloud.rig();
     let mut choices = vec![[NOBODY, 0u32]; cloud.particles.len()];
     for &(i, j, time) in pairs {

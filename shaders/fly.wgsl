@@ -1,0 +1,15 @@
+//! uses: step.wgsl lists.wgsl advected.wgsl bounced.wgsl
+// All flights in one, of few particles (merged.wgsl): what `advect` does, and at once, in place of the list between, what `bounce` does.
+//
+// One thread per particle, and for what else `advect` has threads.
+
+@group(0) @binding(0) var<uniform> step: Step;
+
+fn meet_walls(s: u32) {
+    bounce_off(s, s);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn fly(thread: Thread) {
+    advect_slot(linear(thread));
+}

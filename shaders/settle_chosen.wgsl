@@ -1,0 +1,42 @@
+//! uses: step.wgsl local.wgsl counters.wgsl lists.wgsl asked.wgsl held.wgsl together.wgsl mutual.wgsl settled.wgsl
+// Settle in one, of few particles (merged.wgsl): the pairs whose choices are mutual, and their collisions.
+//
+// Does what `match_pairs` and `settle` do one after the other, but for the list between. One thread per particle that has just chosen.
+// Meanwhile others collide, and of what they change the match asks nothing: they let particles choose in the next round, have
+// collided with others, and keep their tags.
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(65) var<storage, read> held: array<u32>;
+
+fn mark_of(s: u32) -> u32 {
+    return atomicLoad(&layers[s]);
+}
+
+fn tag_of(s: u32) -> u32 {
+    return sorted[s].place.w;
+}
+
+// (Known only on the way: the same pipeline on one device as on several.)
+fn among_others() -> bool {
+    return true;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn settle_chosen(thread: Thread) {
+    let k = linear(thread);
+    if (held[HELD] > 0u || number_in_part(k) >= entries_in_part(k, LIST_RECHOOSE + step.round, step.total)) {
+        return;
+    }
+    let mine = mutual(rechoose[first_place_of(step.round) + k]);
+    if (!mine.found) {
+        return;
+    }
+    if (!mine.counted) {
+        atomicAdd(&counters[FOREIGN], 1u);
+    }
+    _ = counted_up(step.round, 1u);
+    if (counted_up(COLLISIONS_LOW, 1u) == 0xffffffffu) {
+        atomicAdd(&counters[COLLISIONS_HIGH], 1u);
+    }
+    settle_pair(mine.pair, k);
+}

@@ -1,0 +1,109 @@
+//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl held.wgsl flying.wgsl binned.wgsl
+// The flight of a particle to the end of the step. (Those that meet walls, or may, are left to `meet_walls` of what uses this.)
+
+@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
+
+// The list that the step before has filled.
+fn empty_bounces() {
+    let list = bounces_of(step.slot + 1u);
+    atomicStore(&counters[list], 0u);
+    atomicStore(&dispatches[3u * list], 0u);
+    atomicStore(&dispatches[3u * list + 1u], 1u);
+}
+
+fn empty_sums(thread: u32) {
+    if (thread < arrayLength(&stretch_sums)) {
+        stretch_sums[thread] = 0u;
+    }
+}
+
+// By thread s.
+fn advect_slot(s: u32) {
+    if (s == 0u) {
+        empty_bounces();
+        atomicStore(&counters[COUNT_DROPPED], 0u);
+    }
+    let alone = held[INTERVAL] > 0u;
+    if (COLLISIONS && alone) {
+        empty_sums(s);
+    }
+    let held_back = ROUNDS_OF_PAIRS && held[HELD] > 0u;
+    if (bins_next() && s < step.total + step.next_newborns && (held_back || s >= step.total)) {
+        // Those who enter in the step that follows; on a device that is held nobody.
+        if (!held_back && enter_among(s, step.newborns + step.next_newborns)) {
+            bin_next(s, particles[s].place.xyz, particles[s].motion.xyz);
+        } else {
+            bin_nobody(s);
+        }
+    }
+    if (s >= step.total || held_back) {
+        return;
+    }
+    var place: vec4<u32>;
+    var motion: vec4<f32>;
+    var mark = 0u;
+    if (COLLISIONS) {
+        if (ROUNDS_OF_PAIRS || !alone) {
+            mark = layers[s];
+        }
+        // A slot behind the last particle, or a ghost.
+        let nobody = select(s >= held[PRESENT], (mark & LAYER) != 0u, !alone);
+        if (nobody) {
+            particles[s].place.w = NOBODY;
+            if (bins_next()) {
+                bin_nobody(s);
+            }
+            return;
+        }
+        place = sorted[s].place;
+        motion = sorted[s].motion;
+    } else {
+        if (!enter(s)) {
+            return;
+        }
+        place = particles[s].place;
+        if (VENTS && place.w == NOBODY) {
+            return;
+        }
+        motion = particles[s].motion;
+    }
+    let position = place.xyz;
+    let velocity = motion.xyz;
+    var meets_wall: bool;
+    if (ROUNDS_OF_PAIRS) {
+        // Its flight, where the particle will be, knows when; of most it is known that they meet none.
+        meets_wall = false;
+        if ((mark & (NEAR | TURNED_TO_WALL)) != 0u) {
+            meets_wall = flight_of(particles[s].place).wall < step.dt;
+        }
+    } else {
+        // (What enters in this step, which is rare, starts at a time of its own.)
+        meets_wall = is_newborn(id_of(place.w)) || may_hit(position, velocity, 0.0, step.dt);
+    }
+    if (meets_wall) {
+        if (COLLISIONS && !ROUNDS_OF_PAIRS) {
+            if (!alone) {
+                layers[s] |= NEAR;
+            }
+            atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
+        }
+        meet_walls(s);
+        return;
+    }
+    let end = shifted(position, velocity * step.dt);
+    if (ROUNDS_OF_PAIRS) {
+        let cell = end >> vec3<u32>(CELL_BITS);
+        if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
+            atomicAdd(&counters[OUTSIDE], 1u);
+        }
+    }
+    if (COLLISIONS) {
+        particles[s] = Packed(vec4<u32>(end, place.w), motion);
+        if (bins_next()) {
+            bin_next(s, end, velocity);
+        }
+    } else {
+        particles[s].place = vec4<u32>(end, place.w);
+    }
+}

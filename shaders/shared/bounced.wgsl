@@ -1,0 +1,231 @@
+//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl counters.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
+// The flight of a particle that meets walls to the end of the step, off every wall on the way: as off a mirror, or
+// as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
+// so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
+//
+// Reads `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions `particles`), the walls,
+// `coats` and `vents`; writes `particles` (NOBODY for one that has left), counts it in its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces,
+// the coats, the vents and the moving walls that the scene has.
+
+override SPIN: bool = true;
+override SURFACES: bool = true;
+override COATS: bool = true;
+// Bounces in one step after which a flight ends at the wall; such flights are counted.
+override MOST_BOUNCES: u32 = 32;
+// Impulse over reference mass to tally units.
+override IMPULSE_SCALE: f32 = 1.0;
+
+// Energy over reference mass to tally units.
+override ENERGY_SCALE: f32 = 1.0;
+// Where the tallies of coats and vents start in `sums`.
+override COATS_AT: u32 = 0;
+override VENTS_AT: u32 = 0;
+// And where those of moving walls do.
+override WORKS_AT: u32 = 0;
+// There are copies of all of these, each of so many words, that workgroups take in turn, and the host adds up: a GPU does atomic operations on
+// one word, or on its neighbours, one after the other.
+override COPIES: u32 = 1;
+override COPY_WORDS: u32 = 0;
+
+// Words of a surface's tally, two each: three impulse components, normal impulse, hits.
+const SURFACE_WORDS: u32 = 10;
+// Of a coat's: energy that it took, and that energy times the tallies of the zones that followed.
+const COAT_WORDS: u32 = 4;
+// Of a moving wall's: the same, of the work that the gas did on it.
+// Of a vent's: energy that left, and times the tallies, as above; hits; hits whose probability was clipped to one;
+// then, one word each, the particles of each gas that left.
+const VENT_WORDS: u32 = 24;
+const ENERGY_RANGE: f32 = 4.29e9;
+
+@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
+@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+
+// Where the copy of this thread's workgroup starts.
+var<private> copy: u32;
+
+fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
+    let scaled = vec4<f32>(impulse, -dot(impulse, normal)) * IMPULSE_SCALE;
+    if (any(abs(scaled) >= vec4<f32>(1073741824.0))) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    let whole = vec4<i32>(round(scaled));
+    for (var axis = 0u; axis < 4u; axis++) {
+        let word = bitcast<u32>(whole[axis]);
+        add64(copy + surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
+    }
+    add64(copy + surface * SURFACE_WORDS + 8u, 1u, 0u);
+}
+
+// Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
+fn tally_energy(slot: u32, energy: f32) {
+    let scaled = round(energy * ENERGY_SCALE);
+    if (!(abs(scaled) < ENERGY_RANGE)) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    let size = u32(abs(scaled));
+    if (size == 0u) {
+        return;
+    }
+    var once = vec2<u32>(size, 0u);
+    var left = vec2<u32>(size * step.tallies_left, multiply_high(size, step.tallies_left));
+    if (scaled < 0.0) {
+        once = negated(once);
+        left = negated(left);
+    }
+    add64(copy + slot, once.x, once.y);
+    if (step.tallies_left > 0u) {
+        add64(copy + slot + 2u, left.x, left.y);
+    }
+}
+
+fn energy_of(particle: Particle, mass: f32) -> f32 {
+    return 0.5 * mass * dot(particle.velocity, particle.velocity) + particle.spin;
+}
+
+// Whether a particle that hits vent `v` leaves through it, which is tallied.
+fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
+    let slot = VENTS_AT + vents[v].index * VENT_WORDS;
+    let probability = vents[v].beta * mass * speed;
+    add64(copy + slot + 4u, 1u, 0u);
+    if (probability > 1.0) {
+        add64(copy + slot + 6u, 1u, 0u);
+    }
+    if (unit_interval(word) >= probability) {
+        return false;
+    }
+    tally_energy(slot, energy_of(particle, mass));
+    atomicAdd(&sums[copy + slot + 8u + gas_of(particle.tag)], 1u);
+    return true;
+}
+
+// By thread `entry`.
+fn bounce_off(s: u32, entry: u32) {
+    copy = (entry / WORKGROUP) % COPIES * COPY_WORDS;
+    var particle: Particle;
+    var time = 0.0;
+    if (COLLISIONS) {
+        particle = particle_of(sorted[s]);
+    } else {
+        particle = particle_of(particles[s]);
+    }
+    if (ROUNDS_OF_PAIRS) {
+        // Where the particle will be.
+        time = bitcast<f32>(particles[s].place.x);
+    } else {
+        time = birth_time(id_of(particle.tag));
+    }
+    let gas = gases[kind_of(particle.tag)];
+    var bounces = 0u;
+    var end = step.dt;
+    // Velocity of the wall that was hit last.
+    var carried = vec3<f32>(0.0);
+    var overshoot = 0.0;
+    var ended = false;
+    loop {
+        let hit = first_hit(particle.position, particle.velocity, time, step.dt);
+        overshoot = max(overshoot, hit.overshoot);
+        if (hit.triangle == NOBODY) {
+            ended = true;
+            break;
+        }
+        if (bounces == MOST_BOUNCES) {
+            atomicAdd(&counters[TRUNCATED], 1u);
+            end = time;
+            ended = true;
+            break;
+        }
+        bounces++;
+        let triangle = triangles[hit.triangle];
+        let old = particle.velocity;
+        if (MOVING) {
+            carried = vec3<f32>(0.0);
+            if (triangle.motion != NOBODY) {
+                carried = motion_of(triangle.motion).velocity;
+            }
+        }
+        // In the frame of the wall.
+        let relative = old - carried;
+        var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
+        var kept = true;
+        if (COATS && triangle.coat != NOBODY) {
+            let coat = coats[triangle.coat];
+            let draw = wall_draw(particle.tag, bounces, 0u);
+            if (VENTS) {
+                let v = vent_at(coat, shifted(particle.position, old * hit.time));
+                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
+                    if (SURFACES && triangle.surface != NOBODY) {
+                        tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
+                    }
+                    particle.tag = NOBODY;
+                    ended = true;
+                    break;
+                }
+            }
+            let chance = unit_interval(draw.y);
+            if (chance < coat.accommodation) {
+                kept = false;
+                let away = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
+                turned = away;
+                var spin = 0.0;
+                if (SPIN && gas.exchange > 0.0) {
+                    let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, coat.thermal, draw.w);
+                    spin = coat.thermal * gamma_variate(shape, particle.tag, bounces);
+                }
+                let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
+                tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));
+                particle.spin = spin;
+            } else if (chance - coat.accommodation < coat.friction * (1.0 - coat.accommodation)) {
+                turned = scattered(triangle.normal, particle.tag, bounces, draw.z);
+            }
+        }
+        if (kept) {
+            // Its speed, in the frame of the wall.
+            turned *= sqrt(dot(relative, relative) / dot(turned, turned));
+        }
+        turned += carried;
+        var work = 0.0;
+        if (MOVING && triangle.motion != NOBODY) {
+            work = gas.mass * dot(carried, turned - old);
+            tally_energy(WORKS_AT + triangle.motion * COAT_WORDS, -work);
+        }
+        if (SPIN && kept && gas.exchange > 0.0) {
+            // What rounding took from the kinetic energy.
+            particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);
+        }
+        if (SURFACES && triangle.surface != NOBODY) {
+            tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
+        }
+        let place = shifted(particle.position, old * hit.time);
+        particle.position = shifted(place, -turned * hit.time);
+        particle.velocity = turned;
+        time = hit.time;
+    }
+    cut_short = cut_short || !ended;
+    atomicAdd(&counters[BOUNCES], bounces);
+    tell_cut_short();
+    if (overshoot > 0.0) {
+        atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
+    }
+    if (VENTS && particle.tag == NOBODY) {
+        particles[s].place.w = NOBODY;
+        if (bins_next()) {
+            bin_nobody(s);
+        }
+        return;
+    }
+    particle.position = shifted(particle.position, particle.velocity * end);
+    if (MOVING && end < step.dt) {
+        // A flight that was cut short ends at its wall, which goes on.
+        particle.position = shifted(particle.position, carried * (step.dt - end));
+    }
+    let cell = particle.position >> vec3<u32>(CELL_BITS);
+    if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
+        atomicAdd(&counters[OUTSIDE], 1u);
+    }
+    particles[s] = packed_of(particle);
+    if (bins_next()) {
+        bin_next(s, particle.position, particle.velocity);
+    }
+}

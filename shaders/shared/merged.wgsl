@@ -1,0 +1,8 @@
+// Kernels that could be one are, in plans of few particles on a GPU, where a dispatch takes as long as what it does.
+
+override MERGED: bool = false;
+
+// Where the list of those that choose in a round begins. `settle_chosen` reads that of one round while it fills that of the next: then they take turns in two halves.
+fn first_place_of(round: u32) -> u32 {
+    return select(0u, (round & 1u) * (arrayLength(&rechoose) / 2u), MERGED);
+}
