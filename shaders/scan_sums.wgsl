@@ -13,10 +13,7 @@
 fn scan_sums(thread: Thread) {
     let chunk = linear(thread);
     if (step.peers == 0u && chunk < LISTS) {
-        if (chunk != LIST_BOUNCE && chunk != LIST_BOUNCE_ODD && chunk != COUNT_DROPPED) {
-            empty_list(chunk);
-        }
-        empty_parts(chunk);
+        empty_done_list(chunk);
         // The first of `choose` has at least so many threads, which empty the cells: 64 of them each.
         if (chunk == LIST_RECHOOSE && choose_empties()) {
             atomicStore(&rechoose_dispatches[3u * chunk], min(step.bins / (CHUNK * WORKGROUP) + 1u, GROUP_LIMIT));

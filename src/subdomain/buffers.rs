@@ -422,7 +422,7 @@ impl<'a> Buffers<'a> {
             (_, "stretch_sums") => &cell.stretch_sums,
             (_, "chunk_sums") => &cell.chunk_sums,
             ("bin" | "scan_sums" | "reset", "cell_start") => cell.counts(),
-            ("scan_cells", "cell_counts") => &cell.cell_counts,
+            ("scan_cells" | "scan_merged", "cell_counts") => &cell.cell_counts,
             (_, "cell_counts") => cell.counts(),
             (_, "cell_start") => &cell.cell_start,
             (_, "wall_start") => &domain.wall_start,

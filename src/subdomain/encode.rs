@@ -27,6 +27,9 @@ const LIST_BOUNCE: [u32; 2] = [11, 27];
 pub(super) const LIST_RECHOOSE: u32 = 16;
 pub(super) const LIST_ASKED: u32 = 26;
 
+/// The most cells that one workgroup scans, where kernels are merged.
+const FEW_CELLS: u64 = 1 << 16;
+
 /// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
 /// the ghosts that were asked.
 pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
@@ -295,6 +298,9 @@ impl Subdomain {
             let chunks = threads(device, self.bins() / CHUNK + 1);
             let offset = self.offset(device, step, 0);
             let pass = rec.phase("scan");
+            if let Some(scan) = kernels.scan_merged.as_ref().filter(|_| self.bins() <= FEW_CELLS) {
+                return scan.dispatch(pass, offset, [1, 1, 1]);
+            }
             kernels.scan_sums.dispatch(pass, offset, chunks);
             if !few_stretches(self.bins()) {
                 kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);

@@ -71,6 +71,7 @@ fn every_kernel_has_its_test() {
         "receive",
         "reset",
         "scan_cells",
+        "scan_merged",
         "scan_stretches",
         "scan_sums",
         "settle",

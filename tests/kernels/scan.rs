@@ -105,6 +105,52 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
     }
 }
 
+/// All in one, with counts in the place of the starts and apart from them: starts, PRESENT, and on a device alone the lists of the step before.
+#[test]
+fn scan_merged_does_all_of_the_scan() {
+    let mut stream = Stream::new(8);
+    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
+    let cases: Vec<(usize, bool)> = CELLS.into_iter().flat_map(|cells| [(cells, false), (cells, true)]).collect();
+    for (form, (cells, apart)) in forms().into_iter().flat_map(|form| cases.iter().map(move |&case| (form, case))) {
+        let peers = u32::from(cells == 63);
+        let mut rig = rig(cells);
+        rig.form = form;
+        rig.constant("COUNTS_APART", f64::from(u8::from(apart)));
+        let mut counts = counts(&mut stream, cells);
+        counts[cells - 1] = 3;
+        let all = with_end(&counts);
+        let (name, noise_of_cells) = (if apart { "cell_counts" } else { "cell_start" }, vec![9u32; all.len() + 4]);
+        rig.put("cell_start", &noise_of_cells);
+        rig.put(name, &[&all[..], &[9; 4]].concat());
+        rig.put("counters", &noise);
+        for buffer in ["dispatches", "rechoose_dispatches"] {
+            rig.put(buffer, &[7u32; 3 * LISTS]);
+        }
+        rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, peers, ..Default::default() });
+        rig.run_groups("scan_merged", [1, 1, 1]);
+        let starts = prefix(&counts);
+        let found: Vec<u32> = rig.get("cell_start", all.len() + 4);
+        assert_eq!(found[..=cells], starts, "{form:?} {cells} {apart}");
+        assert!(found[cells..all.len()].iter().all(|&start| start == starts[cells]));
+        assert_eq!(found[all.len()..], [9; 4], "nothing behind them");
+        assert_eq!(rig.held(PRESENT), starts[cells]);
+        if apart {
+            assert_eq!(rig.get::<u32>("cell_counts", all.len()), vec![0; all.len()]);
+        }
+        let counters: Vec<u32> = rig.get("counters", COUNTERS);
+        for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
+            let emptied = is_of_part(form, word) || word < LISTS && !kept.contains(&word);
+            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{form:?} {word}");
+        }
+        for (list, size) in rig.get::<[u32; 3]>("dispatches", LISTS).iter().enumerate() {
+            assert_eq!(*size, if peers == 0 && !kept.contains(&list) { [0, 1, 1] } else { [7; 3] }, "{list}");
+        }
+        // The check can fail: the last count matters.
+        assert_ne!(starts[cells], starts[cells - 1]);
+    }
+}
+
 #[test]
 fn scan_stretches_is_an_exclusive_prefix_sum() {
     let mut stream = Stream::new(5);
