@@ -1,9 +1,10 @@
-//! uses: step.wgsl local.wgsl counters.wgsl lists.wgsl asked.wgsl held.wgsl together.wgsl mutual.wgsl settled.wgsl
+//! uses: step.wgsl local.wgsl counters.wgsl lists.wgsl held.wgsl together.wgsl mutual.wgsl settled.wgsl
 // Settle in one, of few particles (merged.wgsl): the pairs whose choices are mutual, and their collisions.
 //
-// Does what `match_pairs` and `settle` do one after the other, but for the list between. One thread per particle that has just chosen.
+// Does what `match_pairs` and `settle` do one after the other, but for the list between. Reads `rechoose`, `choices`, and what a collision wants; writes what that changes,
+// and in `rechoose` the list of the next round. One thread per particle that has just chosen. Pairs are disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 // Meanwhile others collide, and of what they change the match asks nothing: they let particles choose in the next round, have
-// collided with others, and keep their tags.
+// collided with others, and keep their tags, which are written again as they were.
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(65) var<storage, read> held: array<u32>;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl counters.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
+//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
 // The flight of a particle that meets walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.

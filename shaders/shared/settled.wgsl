@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
 // The collision of a pair that has chosen each other.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with

@@ -344,6 +344,7 @@ impl ParticleBuffers {
         let exchange = if features.halo { capacity } else { 4 };
         let tails = if features.rounds { tails.next_multiple_of(8) } else { 0 };
         let late = if features.rounds { exchange } else { 4 };
+        let rare = (capacity + counters::FREE_ENTRIES) << u32::from(features.merged && features.rounds);
         Ok(ParticleBuffers {
             capacity,
             tails,
@@ -354,7 +355,7 @@ impl ParticleBuffers {
                 "slots",
                 if features.halo { 2 * scratch } else { scratch } + 2 * counters::FREE_ENTRIES,
             )?,
-            rare: device.storage::<u32>("rare", (capacity + counters::FREE_ENTRIES) << u32::from(features.merged))?,
+            rare: device.storage::<u32>("rare", rare)?,
             sorted: device.storage::<GpuParticle>("sorted", scratch)?,
             middles: device.storage::<u32>("middles", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
@@ -406,7 +407,7 @@ pub struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// The buffer that a shader calls `name`. Four kernels call their own tally `sums`.
+    /// The buffer that a shader calls `name`. Five kernels call their own tally `sums`.
     pub fn by_name(&self, kernel: &str, name: &str) -> Option<&'a wgpu::Buffer> {
         let Buffers { domain, fixed, cell, particle, exchange } = *self;
         Some(match (kernel, name) {

@@ -362,7 +362,8 @@ impl Subdomain {
         self.cells().all
     }
 
-    /// Kernels over lists are dispatched over the entries that these have, as on any device, also where it is a GPU and the lists are short.
+    /// Kernels over lists are dispatched over the entries that these have, as on any device, also where it is a GPU and the lists are short. (Not so
+    /// where kernels are merged.)
     pub fn dispatch_by_lengths(&mut self) {
         self.short_lists = 0;
     }

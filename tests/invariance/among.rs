@@ -78,6 +78,8 @@ pub struct World<'a> {
     one: Vec<(Setup, Device)>,
     /// Of odd numbers, and of even ones.
     several: [(Setup, Device); 2],
+    /// On a GPU, which need not round alike in the kernels for many particles: one rank with these, and several.
+    many: Option<[(Setup, Device); 2]>,
 }
 
 /// The forms of kernels of one rank, in turn, and of several. What these are compared with has the form that the device takes first. A software device rounds alike in
@@ -99,22 +101,21 @@ impl<'a> World<'a> {
             let device = Device::open_in(None, form).expect("an adapter");
             (Setup::new(model, &device, ranks, None).expect("a set-up"), device)
         };
-        // The scenes are small. A GPU need not round alike in kernels for many particles and in those for few.
+        // The scenes are small.
         let for_many = |ranks, form| {
-            if !device.adapter().is_cpu() {
-                return fitting(ranks, form);
-            }
             let device = Device::open_in(None, form).expect("an adapter");
             (Setup::for_many(model, &device, ranks).expect("a set-up"), device)
         };
-        let several = [fitting(2, of_several), for_many(2, of_several)];
-        if device.adapter().is_cpu() {
-            let merged = several.each_ref().map(|(setup, _)| setup.domain.features().merged);
-            assert_eq!(merged, [of_several == Form::Gpu, false]);
-        }
         let mut one: Vec<_> = of_one.iter().map(|&form| fitting(1, form)).collect();
+        if !device.adapter().is_cpu() {
+            let many = [for_many(1, of_several), for_many(2, of_several)];
+            return World { model, one, several: [(); 2].map(|()| fitting(2, of_several)), many: Some(many) };
+        }
+        let several = [fitting(2, of_several), for_many(2, of_several)];
+        let merged = several.each_ref().map(|(setup, _)| setup.domain.features().merged);
+        assert_eq!(merged, [of_several == Form::Gpu, false]);
         one.extend(of_one.contains(&Form::Gpu).then(|| for_many(1, Form::Gpu)));
-        World { model, one, several }
+        World { model, one, several, many: None }
     }
 
     /// What rank 0 sees; all ranks must see the same rows and counts.
@@ -125,6 +126,11 @@ impl<'a> World<'a> {
 
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
         if way.ranks > 1 {
+            if let Some([one, several]) = self.many.as_ref().filter(|_| way.ranks.is_multiple_of(2)) {
+                let runs =
+                    [self.try_run_on(one, &Way { ranks: 1, ..*way }, wrap)?, self.try_run_on(several, way, wrap)?];
+                assert_same("kernels for many", &Bits::of(&runs[0]), &Bits::of(&runs[1]));
+            }
             return self.try_run_on(&self.several[usize::from(way.ranks.is_multiple_of(2))], way, wrap);
         }
         let mut runs = Vec::new();

@@ -12,6 +12,9 @@ override FACTOR: f32 = 2.0;
 fn twice(x: f32) -> f32 {
 return x + x;
 }
+fn fast() -> bool {
+return FAST;
+}
 @compute @workgroup_size(1)
 fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 let k = id.x + 1u;
@@ -29,7 +32,7 @@ for (var i = 0u; i < k; i++) {
     }
     sum -= dot(v, v);
 }
-if (FAST) {
+if (fast()) {
     values[k] = v / twice(sum);
 } else {
     values[k] = normalize(v) * f32(k);

@@ -26,17 +26,28 @@ struct Walk<'a> {
     info: &'a FunctionInfo,
     /// Values of its variables, as far as they are known.
     known: HashMap<Handle<LocalVariable>, f64>,
+    /// And of calls.
+    results: HashMap<Handle<Expression>, f64>,
 }
 
 impl<'a> Whole<'a> {
     pub fn function(&'a self, function: &'a Function, info: &'a FunctionInfo) -> Stretch {
-        let mut walk = Walk { whole: self, function, info, known: HashMap::new() };
+        let mut walk = Walk { whole: self, function, info, known: HashMap::new(), results: HashMap::new() };
         for (variable, declared) in function.local_variables.iter() {
             if let Some(value) = declared.init.and_then(|init| walk.value(init)) {
                 walk.known.insert(variable, value);
             }
         }
         walk.block(&function.body).0
+    }
+
+    /// What a function returns, whatever it is called with, if that is all that it does.
+    fn always(&'a self, function: &'a Function, info: &'a FunctionInfo) -> Option<f64> {
+        let walk = Walk { whole: self, function, info, known: HashMap::new(), results: HashMap::new() };
+        match function.body.last() {
+            Some(Statement::Return { value: Some(value) }) if function.body.len() == 1 => walk.value(*value),
+            _ => None,
+        }
     }
 
     fn literal(literal: Literal) -> Option<f64> {
@@ -132,8 +143,13 @@ impl Walk<'_> {
                         all.0.push(Item::Inner("case".into(), inner));
                     }
                 }
-                Statement::Call { function, .. } => {
+                Statement::Call { function, result, .. } => {
                     let called = &self.whole.module.functions[*function];
+                    if let (Some(result), Some(value)) =
+                        (result, self.whole.always(called, &self.whole.info[*function]))
+                    {
+                        self.results.insert(*result, value);
+                    }
                     all.append(self.whole.function(called, &self.whole.info[*function]));
                     self.forget_of(statement);
                 }
@@ -231,6 +247,7 @@ impl Walk<'_> {
             Expression::Literal(literal) => Whole::literal(literal),
             Expression::Constant(constant) => self.whole.constant(constant),
             Expression::Override(constant) => self.whole.overridden(constant),
+            Expression::CallResult(_) => self.results.get(&expression).copied(),
             Expression::Load { pointer } => match self.function.expressions[pointer] {
                 Expression::LocalVariable(variable) => self.known.get(&variable).copied(),
                 _ => None,

@@ -55,8 +55,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "choose" => work.choosers * choice + work.emptied * WORD,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
-            work.choosers * matched
-                + collisions * (2.0 * WORD + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD)
+            let pairs = if work.merged { 0.0 } else { 2.0 * WORD };
+            work.choosers * matched + collisions * (pairs + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD)
         }
         "lost" => work.lost_choosers * (choice + matched),
         // Where the cells start; of cells with two or more their volume and their states in; those that collide out; of crowded ones
@@ -154,6 +154,7 @@ mod tests {
         );
         let collided = Work { particle_steps: 1.0, collisions: 1.0, ..Work::default() };
         assert_eq!(bytes("settle", rounds, &collided), Some(8.0 + 192.0 + 16.0));
+        assert_eq!(bytes("settle", rounds, &Work { merged: true, ..collided }), Some(192.0 + 16.0));
         let crowded = Work { crowded: 1.0, ..Work::default() };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
         assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));

@@ -3,7 +3,7 @@
 use crate::geometry::Grid;
 use crate::gpu::Form;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS, choose_empties, few_stretches};
+use crate::subdomain::{GpuParticle, MEMBERS, choose_empties, few_stretches, merges};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -30,6 +30,8 @@ pub struct Work {
     /// Particles in cells of more; whether a thread for each puts them in order (`shaders/shared/crowds.gpu.wgsl`).
     pub crowded: f64,
     pub by_threads: bool,
+    /// Pairs collide where they are matched (`shaders/settle_chosen.wgsl`).
+    pub merged: bool,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
     pub listed: f64,
@@ -77,6 +79,7 @@ impl Work {
             few: few * steps,
             crowded: crowded * steps,
             by_threads: form == Form::Gpu,
+            merged: merges(plan, form),
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,
