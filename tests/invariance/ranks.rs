@@ -1,5 +1,6 @@
 //! Among ranks.
 
+use corpuscle::gpu::{Device, Form};
 use corpuscle::partition::By;
 use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
@@ -18,10 +19,13 @@ use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
 fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
+    same_in(&World::new(model), model, ways)
+}
+
+fn same_in(world: &World<'_>, model: &Model, ways: &[Way]) -> Vec<Run> {
     let first = run(model, Options::default());
     assert!(first.rows.len() > 3, "a history to compare");
     let bits = Bits::of(&first);
-    let world = World::new(model);
     let mut runs = vec![first];
     for way in ways {
         let among = world.run(way);
@@ -66,6 +70,10 @@ fn all_ways() -> Vec<Way> {
     ways
 }
 
+fn forms_of_the_device() -> Vec<Form> {
+    Device::open(None).expect("an adapter").adapter().forms()
+}
+
 fn rebalanced(run: &Run) -> usize {
     run.outcome.rebalances
 }
@@ -83,6 +91,20 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
     assert!(coarsest > 1.5 * finest, "the step does not change");
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
     assert!(runs[0].outcome.collisions > 1000);
+}
+
+/// By the kernels that a GPU has for few particles: with inflow, at vents and warm walls, and in cells.
+#[test]
+fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
+    if !forms_of_the_device().contains(&Form::Gpu) {
+        return;
+    }
+    let asked = Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) };
+    for model in [burst(), venting(), by(Method::Cell, gas_box())] {
+        let depth = if model.plan.method == Method::Cell { 1 } else { 2 };
+        let ways = [Way::new(1, Dynamic, depth), Way { halo_rounds: Some(depth), ..asked }];
+        same_in(&World::of_few(&model), &model, &ways);
+    }
 }
 
 /// Where walls are is a function of the time alone.

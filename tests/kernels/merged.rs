@@ -3,14 +3,13 @@
 use std::collections::BTreeSet;
 
 use bytemuck::bytes_of;
-use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{GpuParticle, GpuStep};
 
 use crate::binned::{SLOTS, flying};
 use crate::choose::Cloud;
 use crate::oracle::random::Stream;
 use crate::rig::*;
-use crate::settle::{ROUND, meetings, prepared};
+use crate::settle::{ROUND, meetings, parted_tank, prepared};
 
 /// The same particles. (A GPU may round otherwise in another kernel, which counts where a pair hardly meets.)
 fn assert_alike(name: &str, found: &[GpuParticle], expected: &[GpuParticle]) {
@@ -31,18 +30,9 @@ fn assert_alike(name: &str, found: &[GpuParticle], expected: &[GpuParticle]) {
 /// `settle_chosen` collides those pairs that `match_pairs` would list, and does with them what `settle` does: also where a wall parts them, and among others.
 #[test]
 fn settling_those_that_chose_is_matching_and_settling() {
-    let plate = Shape::Plane {
-        center: [0.03, 0.035, 0.04],
-        normal: [1.0, 0.0, 0.0],
-        u: [0.0, 1.0, 0.0],
-        size: [0.06, 0.07],
-        thickness: 0.001,
-        holes: vec![],
-    };
-    let world = || World::new(&[tank([0.06, 0.07, 0.08]), wall(plate.clone(), GasSide::Both)], 0.01);
     for (form, reach) in forms().into_iter().flat_map(|form| [(form, 0), (form, 1)]) {
         let mut stream = Stream::new(71);
-        let cloud = Cloud::new(&mut stream, world(), 1600, 0.9);
+        let cloud = Cloud::new(&mut stream, parted_tank(), 1600, 0.9);
         let count = cloud.particles.len();
         let mutual = meetings(&cloud);
         // Of each pair one or both have just chosen, the others in the round before; and some of no pair.

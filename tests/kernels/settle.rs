@@ -308,11 +308,8 @@ fn those_near_a_collision_choose_again() {
     assert!((0..cloud.particles.len()).all(|s| unchanged(s) != collided.contains(&s)));
 }
 
-/// A pair that a wall parts where it would meet does not collide; the two and all their neighbours choose again. (Whom
-/// one of the two met before may meet it again. Choices must follow from the state alone: on several devices others
-/// are asked to choose too. Runs on 3 subdomains had parted from those on one by eight particles near a vent.)
-#[test]
-fn a_wall_between_a_pair_stops_the_collision() {
+/// The tank with a plate across its middle.
+pub fn parted_tank() -> World {
     let plate = Shape::Plane {
         center: [0.03, 0.035, 0.04],
         normal: [1.0, 0.0, 0.0],
@@ -321,7 +318,15 @@ fn a_wall_between_a_pair_stops_the_collision() {
         thickness: 0.001,
         holes: vec![],
     };
-    let world = World::new(&[tank([0.06, 0.07, 0.08]), wall(plate, GasSide::Both)], 0.01);
+    World::new(&[tank([0.06, 0.07, 0.08]), wall(plate, GasSide::Both)], 0.01)
+}
+
+/// A pair that a wall parts where it would meet does not collide; the two and all their neighbours choose again. (Whom
+/// one of the two met before may meet it again. Choices must follow from the state alone: on several devices others
+/// are asked to choose too. Runs on 3 subdomains had parted from those on one by eight particles near a vent.)
+#[test]
+fn a_wall_between_a_pair_stops_the_collision() {
+    let world = parted_tank();
     let mut stream = Stream::new(34);
     let cloud = Cloud::new(&mut stream, world, 1600, 0.9);
     let pairs = meetings(&cloud);
