@@ -19,13 +19,10 @@ use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
 fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
-    same_in(&World::new(model), model, ways)
-}
-
-fn same_in(world: &World<'_>, model: &Model, ways: &[Way]) -> Vec<Run> {
     let first = run(model, Options::default());
     assert!(first.rows.len() > 3, "a history to compare");
     let bits = Bits::of(&first);
+    let world = World::new(model);
     let mut runs = vec![first];
     for way in ways {
         let among = world.run(way);
@@ -99,11 +96,16 @@ fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
     if !forms_of_the_device().contains(&Form::Gpu) {
         return;
     }
-    let asked = Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) };
+    // Two intervals.
+    let stop = Some(64);
     for model in [burst(), venting(), by(Method::Cell, gas_box())] {
+        let alone = Bits::of(&run(&model, Options { stop_after_steps: stop, ..Options::default() }));
+        let world = World::of_few(&model);
         let depth = if model.plan.method == Method::Cell { 1 } else { 2 };
-        let ways = [Way::new(1, Dynamic, depth), Way { halo_rounds: Some(depth), ..asked }];
-        same_in(&World::of_few(&model), &model, &ways);
+        let asked = Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, depth) };
+        for way in [Way::new(1, Dynamic, depth), asked] {
+            assert_same(&way.name(), &alone, &Bits::of(&world.run(&Way { stop, ..way })));
+        }
     }
 }
 
