@@ -9,53 +9,27 @@
 @group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
 @group(0) @binding(66) var<storage, read_write> cell_counts: array<vec4<u32>>;
 
-// Of a four at `four`, none from `end` on.
-fn counts_before(four: u32, end: u32) -> vec4<u32> {
-    return select(vec4<u32>(0u), counts_of(min(four, end - 1u)), four < end);
-}
-
 @compute @workgroup_size(SCAN_THREADS)
 fn scan_merged(@builtin(local_invocation_index) thread: u32) {
     if (step.peers == 0u && thread < LISTS) {
         empty_done_list(thread);
     }
-    // A whole chunk has the cell behind the last.
-    let fours = (step.bins / CHUNK + 1u) * (CHUNK / 4u);
-    let share = (fours + SCAN_THREADS - 1u) / SCAN_THREADS;
-    let begin = min(thread * share, fours);
-    let end = min(begin + share, fours);
+    // A whole chunk has the cell behind the last, and chunks are whole eights of fours.
+    let eights = (step.bins / CHUNK + 1u) * (CHUNK / 32u);
+    let share = (eights + SCAN_THREADS - 1u) / SCAN_THREADS;
+    let begin = 8u * min(thread * share, eights);
+    let end = 8u * min((thread + 1u) * share, eights);
     // Eight reads a turn: a GPU waits for each turn's.
     var sum = vec4<u32>(0u);
     for (var four = begin; four < end; four += 8u) {
-        sum += counts_before(four, end) + counts_before(four + 1u, end) + counts_before(four + 2u, end) + counts_before(four + 3u, end);
-        sum += counts_before(four + 4u, end) + counts_before(four + 5u, end) + counts_before(four + 6u, end) + counts_before(four + 7u, end);
+        sum += counts_of(four) + counts_of(four + 1u) + counts_of(four + 2u) + counts_of(four + 3u);
+        sum += counts_of(four + 4u) + counts_of(four + 5u) + counts_of(four + 6u) + counts_of(four + 7u);
     }
     shares[thread] = sum.x + sum.y + sum.z + sum.w;
     workgroupBarrier();
-    var before = shares_before(thread);
+    let before = shares_before(thread);
     if (thread == SCAN_THREADS - 1u) {
         held[PRESENT] = before + shares[thread];
     }
-    for (var four = begin; four < end; four += 4u) {
-        // (All are read before any is written.)
-        let counts0 = counts_before(four, end);
-        let counts1 = counts_before(four + 1u, end);
-        let counts2 = counts_before(four + 2u, end);
-        let counts3 = counts_before(four + 3u, end);
-        let starts0 = starts_of(counts0, before);
-        let starts1 = starts_of(counts1, starts0.next);
-        let starts2 = starts_of(counts2, starts1.next);
-        let starts3 = starts_of(counts3, starts2.next);
-        put_starts(four, starts0.starts);
-        if (four + 1u < end) {
-            put_starts(four + 1u, starts1.starts);
-        }
-        if (four + 2u < end) {
-            put_starts(four + 2u, starts2.starts);
-        }
-        if (four + 3u < end) {
-            put_starts(four + 3u, starts3.starts);
-        }
-        before = starts3.next;
-    }
+    write_starts_of_fours(begin, end, before);
 }

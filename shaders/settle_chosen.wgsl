@@ -25,10 +25,11 @@ fn among_others() -> bool {
 @compute @workgroup_size(WORKGROUP)
 fn settle_chosen(thread: Thread) {
     let k = linear(thread);
-    if (held[HELD] > 0u || number_in_part(k) >= entries_in_part(k, LIST_RECHOOSE + step.round, step.total)) {
+    let s = listed_chooser(k);
+    if (s == NOBODY || held[HELD] > 0u) {
         return;
     }
-    let mine = mutual(rechoose[first_place_of(step.round) + k]);
+    let mine = mutual(s);
     if (!mine.found) {
         return;
     }

@@ -9,8 +9,5 @@ fn chooser(thread: u32) -> u32 {
     if (step.ghosts == GHOSTS_ASKED) {
         return asked_of(thread);
     }
-    if (number_in_part(thread) >= entries_in_part(thread, LIST_RECHOOSE + step.round, step.total)) {
-        return NOBODY;
-    }
-    return rechoose[first_place_of(step.round) + thread];
+    return listed_chooser(thread);
 }

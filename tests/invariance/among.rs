@@ -109,7 +109,7 @@ impl<'a> World<'a> {
     pub fn of_few(model: &'a Model) -> World<'a> {
         let world = World::by(model, |device, ranks| Setup::new(model, device, ranks, None));
         let one: Vec<_> = world.one.into_iter().filter(|(_, device)| device.form() == Form::Gpu).collect();
-        assert!(one.iter().all(|(setup, _)| setup.domain.features().merged));
+        assert!(!one.is_empty() && one.iter().chain([&world.several]).all(|(setup, _)| setup.domain.features().merged));
         World { one, ..world }
     }
 

@@ -25,13 +25,14 @@ use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count, and
 /// `arrange_crowded` where it has all of the crowded cells.
-const COUNTED: [&str; 20] = [
+const COUNTED: [&str; 21] = [
     "bin",
     "arrange",
     "arrange_crowded",
     "scan_sums",
     "scan_stretches",
     "scan_cells",
+    "scan_merged",
     "order",
     "start_flights",
     "neighbours",
@@ -124,6 +125,11 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
     Some(match phase {
+        "scan" if work.merged => {
+            let turn =
+                |step| counted.turn("scan_merged", &format!("for (var four = begin; four < end; four += {step}u"));
+            turn(8)? * (cells / 32.0) + turn(4)? * (cells / 16.0)
+        }
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
@@ -268,6 +274,10 @@ mod tests {
                 assert!(own.all() > 0.0 && own.floating >= 0.0, "{method:?} {phase}: {own:?}");
             }
             assert_eq!(operations("exchange", method, &work, &counted), None);
+            // One kernel adds each count up once, where several come back to sums.
+            let scan = |work: &Work| operations("scan", method, work, &counted).unwrap().all();
+            let merged = scan(&Work { merged: true, ..work });
+            assert!(merged > 0.0 && merged < scan(&work), "{method:?}: {merged}");
         }
     }
 

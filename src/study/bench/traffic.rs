@@ -30,7 +30,10 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let entered = work.newborns * NEWBORN;
     Some(match phase {
         // Counters in, and the starts out in their place, or elsewhere and none in their place; sums of stretches of cells out.
-        "scan" => cells * (if rounds { 2.0 } else { 3.0 } + 1.0 / CHUNK as f64) * WORD,
+        "scan" => {
+            let sums = if work.merged { 0.0 } else { 1.0 / CHUNK as f64 };
+            cells * (if rounds { 2.0 } else { 3.0 } + sums) * WORD
+        }
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells, and
         // where threads put these in order their entries.
         "sort" => {
@@ -155,6 +158,9 @@ mod tests {
         let collided = Work { particle_steps: 1.0, collisions: 1.0, ..Work::default() };
         assert_eq!(bytes("settle", rounds, &collided), Some(8.0 + 192.0 + 16.0));
         assert_eq!(bytes("settle", rounds, &Work { merged: true, ..collided }), Some(192.0 + 16.0));
+        let scanned = Work { cell_steps: 64.0, ..Work::default() };
+        let merged = Work { merged: true, ..scanned };
+        assert_eq!([&scanned, &merged].map(|work| bytes("scan", rounds, work)), [516.0, 512.0].map(Some));
         let crowded = Work { crowded: 1.0, ..Work::default() };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
         assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));

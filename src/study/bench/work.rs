@@ -30,7 +30,7 @@ pub struct Work {
     /// Particles in cells of more; whether a thread for each puts them in order (`shaders/shared/crowds.gpu.wgsl`).
     pub crowded: f64,
     pub by_threads: bool,
-    /// Pairs collide where they are matched (`shaders/settle_chosen.wgsl`).
+    /// Pairs collide where they are matched, and few cells are scanned in one (`shaders/shared/merged.wgsl`).
     pub merged: bool,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
