@@ -27,6 +27,9 @@ pub struct Way {
     /// Where the run stops before its end.
     pub stop: Option<u64>,
     pub by: By,
+    /// Kernels over short lists are dispatched over all the places that these have, as on a GPU, where all odd numbers of ranks have it. On a
+    /// software device few ways do: several ranks with few particles take up to ten times as long.
+    pub over_places: bool,
 }
 
 impl Way {
@@ -39,19 +42,35 @@ impl Way {
             Pace::OneAtATime
         };
         let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::Asked } else { Ghosts::All });
-        Way { ranks, mode, halo_rounds, ghosts, pace, batch: None, order: None, stop: None, by: By::Cost }
+        Way {
+            ranks,
+            mode,
+            halo_rounds,
+            ghosts,
+            pace,
+            batch: None,
+            order: None,
+            stop: None,
+            by: By::Cost,
+            over_places: false,
+        }
+    }
+
+    pub fn over_places(self) -> Way {
+        Way { over_places: true, ..self }
     }
 
     pub fn name(&self) -> String {
-        let Way { ranks, mode, halo_rounds, ghosts, pace, batch, order, .. } = self;
+        let Way { ranks, mode, halo_rounds, ghosts, pace, batch, order, over_places, .. } = self;
+        let over = if *over_places { ", over places" } else { "" };
         let order = if order.is_some() { ", another order" } else { "" };
         format!(
             "{ranks} ranks, {mode:?}, halo for {halo_rounds:?} rounds, ghosts {ghosts:?}, {pace:?}, \
-             batches of {batch:?}{order}"
+             batches of {batch:?}{order}{over}"
         )
     }
 
-    fn options(&self) -> Options<'static> {
+    fn options(&self, device: &Device) -> Options<'static> {
         // Looks at the balance after every interval, and acts on the least imbalance that pays.
         let balance = BalanceOptions { mode: self.mode, by: self.by, every: 1, threshold: 1.0 };
         let halo = HaloOptions { rounds: self.halo_rounds, ghosts: self.ghosts };
@@ -63,7 +82,11 @@ impl Way {
             balance,
             stop_after_steps: self.stop,
             lists_start_short,
-            dispatch_by_lengths: self.ranks.is_multiple_of(2),
+            dispatch_by_lengths: if device.adapter().is_cpu() {
+                !self.over_places
+            } else {
+                self.ranks.is_multiple_of(2)
+            },
             ..Options::default()
         }
     }
@@ -169,7 +192,7 @@ impl<'a> World<'a> {
             let wrapped = wrap.map(|wrap| wrap(comm));
             let comm = wrapped.as_deref().unwrap_or(comm);
             let mut witness = Witness::default();
-            let run = Simulation::among(self.model, device, &setup, comm, way.options())
+            let run = Simulation::among(self.model, device, &setup, comm, way.options(device))
                 .and_then(|simulation| simulation.run(&mut witness));
             if let Err(error) = &run {
                 comm.fail(&error.to_string(), 1);

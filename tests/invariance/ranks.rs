@@ -41,7 +41,7 @@ fn some_ways() -> Vec<Way> {
         Way::new(2, Dynamic, 1),
         Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
         Way { order: Some(&shuffled::<3>), ..Way::new(4, Initial, 4) },
-        Way::new(7, Off, 8),
+        Way::new(7, Off, 8).over_places(),
         Way { batch: Some(3), ..Way::new(8, Forced { seed: 2 }, 2) },
     ]
 }
@@ -59,6 +59,7 @@ fn all_ways() -> Vec<Way> {
                     batch: [None, Some(1), Some(5)][turn % 3],
                     order: if turn % 5 < 2 { Some(&shuffled::<4>) } else { None },
                     ghosts: [Some(Ghosts::Asked), Some(Ghosts::All), Some(Ghosts::Asked), None][turn % 4],
+                    over_places: turn % 7 == 3,
                     ..Way::new(ranks, mode, halo_rounds)
                 });
             }
@@ -79,7 +80,7 @@ fn rebalanced(run: &Run) -> usize {
 #[test]
 fn tank_has_the_same_bits_on_any_number_of_ranks() {
     let ways = [
-        Way::new(2, Dynamic, 1),
+        Way::new(2, Dynamic, 1).over_places(),
         Way { batch: Some(3), ..Way::new(4, Forced { seed: 2 }, 2) },
         Way { order: Some(&shuffled::<3>), ..Way::new(7, Initial, None) },
     ];
@@ -119,7 +120,7 @@ fn pistons_have_the_same_bits_on_any_number_of_ranks() {
     ];
     let runs = same(&pistons(), &ways);
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
-    same(&by(Method::None, pistons()), &[Way::new(3, Off, 1)]);
+    same(&by(Method::None, pistons()), &[Way::new(3, Off, 1).over_places()]);
 }
 
 /// So is the room that they leave in a cell.
@@ -127,7 +128,7 @@ fn pistons_have_the_same_bits_on_any_number_of_ranks() {
 fn pistons_in_cells_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
-        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 1) },
+        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 1) }.over_places(),
         Way { order: Some(&shuffled::<3>), ..Way::new(4, Forced { seed: 2 }, None) },
     ];
     let runs = same(&by(Method::Cell, pistons()), &ways);
@@ -150,8 +151,11 @@ fn a_run_that_switches_has_the_same_bits_on_any_number_of_ranks() {
 /// With the impulse on its walls.
 #[test]
 fn box_has_the_same_bits_on_any_number_of_ranks() {
-    let ways =
-        [Way::new(2, Off, 1), Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(8, Dynamic, 8)];
+    let ways = [
+        Way::new(2, Off, 1),
+        Way { batch: Some(1), ..Way::new(3, Forced { seed: 1 }, 2) }.over_places(),
+        Way::new(8, Dynamic, 8),
+    ];
     let runs = same(&gas_box(), &ways);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.surfaces[0].hits > 0)));
     // Ghosts were told of their collisions.
@@ -163,7 +167,7 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
     let model = thin();
     let cells = model.plan.grid.cell_count() as u64;
     assert!(!few_stretches(cells) && few_stretches(cells / 2), "{cells}");
-    let runs = same(&model, &[Way::new(1, Off, 2), Way::new(3, Off, 2), Way::new(4, Dynamic, 8)]);
+    let runs = same(&model, &[Way::new(1, Off, 2), Way::new(3, Off, 2).over_places(), Way::new(4, Dynamic, 8)]);
     assert!(runs[0].outcome.collisions > 0);
 }
 
@@ -178,8 +182,8 @@ fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
 fn vents_have_the_same_bits_on_any_number_of_ranks() {
     let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)]);
     assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
-    same(&venting_freely(), &[Way::new(3, Off, 1)]);
-    same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1)]);
+    same(&venting_freely(), &[Way::new(3, Off, 1).over_places()]);
+    same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1).over_places()]);
 }
 
 /// Heat capacities that depend on the temperature, and mixtures at rest and flowing in.
@@ -188,8 +192,10 @@ fn mixtures_with_modes_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(5, Dynamic, 1)];
     let runs = same(&curves(), &ways);
     assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
-    let in_cells =
-        same(&by(Method::Cell, curves()), &[Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, None) }]);
+    let in_cells = same(
+        &by(Method::Cell, curves()),
+        &[Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, None) }.over_places()],
+    );
     assert!(in_cells[0].outcome.collisions > 1000);
 }
 
@@ -229,7 +235,7 @@ fn collisions_within_cells_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
         Way { order: Some(&shuffled::<6>), ..Way::new(4, Initial, None) },
-        Way { batch: Some(3), ..Way::new(7, Forced { seed: 7 }, 2) },
+        Way { batch: Some(3), ..Way::new(7, Forced { seed: 7 }, 2) }.over_places(),
     ];
     let runs = same(&by(Method::Cell, tank(0)), &ways);
     assert!(runs[0].outcome.collisions > 1000 && rebalanced(&runs[3]) > 1);
@@ -246,7 +252,7 @@ fn collisions_within_cells_have_the_same_bits_on_any_number_of_ranks() {
 
 #[test]
 fn rigid_spheres_have_the_same_bits_on_any_number_of_ranks() {
-    let ways = [Way::new(2, Dynamic, 1), Way { batch: Some(3), ..Way::new(5, Forced { seed: 9 }, 2) }];
+    let ways = [Way::new(2, Dynamic, 1).over_places(), Way { batch: Some(3), ..Way::new(5, Forced { seed: 9 }, 2) }];
     let runs = same(&by(Method::HardSphere, tank(0)), &ways);
     assert!(runs[0].outcome.collisions > 100);
     same(&by(Method::HardSphere, plate()), &ways);
@@ -255,7 +261,7 @@ fn rigid_spheres_have_the_same_bits_on_any_number_of_ranks() {
 /// Intervals are run again with longer lists, after the cuts have moved.
 #[test]
 fn lists_that_grow_among_ranks_change_no_bit() {
-    let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1)];
+    let ways = [Way::new(2, Off, 4), Way::new(5, Forced { seed: 4 }, 1).over_places()];
     let model = dense(1);
     let runs = same(&model, &ways);
     assert!(runs[1..].iter().all(|run| run.outcome.repeated > 0), "the lists did not grow");
@@ -306,7 +312,7 @@ fn particles_that_stray_beyond_the_peers_change_no_bit() {
     assert!(alone.outcome.steps == 7 && model.plan.tally_every > 7, "speeds are tallied");
     assert_eq!(alone.outcome.repeated, 0);
     let world = World::new(&model);
-    for way in [Way::new(12, Off, 1), Way::new(12, Initial, 2), Way::new(2, Off, 1)] {
+    for way in [Way::new(12, Off, 1).over_places(), Way::new(12, Initial, 2), Way::new(2, Off, 1)] {
         let way = Way { order: Some(&with_fast_ones), stop, ..way };
         let among = world.run(&way);
         assert_same(&way.name(), &Bits::of(&alone), &Bits::of(&among));

@@ -80,7 +80,7 @@ pub fn plate() -> Model {
 /// Two hot gases between a cold box, a warmer plate with a heat-transfer coefficient, and a mirror.
 pub fn cold_walls() -> Model {
     model(
-        "end_time = 4e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+        "end_time = 2e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
          [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.08]\ngas = \"inside\"\n\
          temperature = 250.0\naccommodation = 0.5\n\
