@@ -174,7 +174,7 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
 /// What walls have taken is one sum, and the next intervals follow it on every rank.
 #[test]
 fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2), Way::new(7, Dynamic, 8)]);
+    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(7, Dynamic, 8)]);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
@@ -225,7 +225,10 @@ fn crowded_cells_that_walls_part_have_the_same_bits_in_any_order() {
 fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
     same(
         &plate(),
-        &[Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) }, Way::new(7, Forced { seed: 3 }, 1)],
+        &[
+            Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) },
+            Way::new(7, Forced { seed: 3 }, 1).over_places(),
+        ],
     );
 }
 
@@ -272,7 +275,7 @@ fn lists_that_grow_among_ranks_change_no_bit() {
 /// Buffers of particles, newborns, messages and updates grow on the way.
 #[test]
 fn a_burst_near_a_cut_changes_no_bit() {
-    let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 5 }, 2)];
+    let ways = [Way::new(3, Initial, 1).over_places(), Way::new(8, Forced { seed: 5 }, 2)];
     same(&burst(), &ways);
 }
 
