@@ -48,7 +48,7 @@ fn snapshots_change_no_bit() {
     assert_same("snapshots", &Bits::of(&alone), &watched);
 }
 
-/// Six times as much gas flows in as was there, so the buffers of particles and newborns grow.
+/// Three times as much gas flows in as was there, so the buffers of particles and newborns grow.
 #[test]
 fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
     let model = burst();

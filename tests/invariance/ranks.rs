@@ -116,7 +116,7 @@ fn pistons_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
         Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
-        Way { order: Some(&shuffled::<3>), ..Way::new(7, Forced { seed: 2 }, None) },
+        Way { order: Some(&shuffled::<3>), ..Way::new(5, Forced { seed: 2 }, None) },
     ];
     let runs = same(&pistons(), &ways);
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
@@ -174,13 +174,13 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
 /// What walls have taken is one sum, and the next intervals follow it on every rank.
 #[test]
 fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(7, Dynamic, 8)]);
+    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(4, Dynamic, 8)]);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
 #[test]
 fn vents_have_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(7, Off, 8)]);
+    let runs = same(&venting(), &[Way::new(4, Forced { seed: 8 }, 2), Way::new(5, Off, 8)]);
     assert!(runs.iter().all(|run| run.outcome.audit.particles_vented > 20));
     same(&venting_freely(), &[Way::new(3, Off, 1).over_places()]);
     same(&by(Method::Cell, venting()), &[Way::new(3, Forced { seed: 9 }, 1).over_places()]);
@@ -189,7 +189,7 @@ fn vents_have_the_same_bits_on_any_number_of_ranks() {
 /// Heat capacities that depend on the temperature, and mixtures at rest and flowing in.
 #[test]
 fn mixtures_with_modes_have_the_same_bits_on_any_number_of_ranks() {
-    let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(5, Dynamic, 1)];
+    let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(4, Dynamic, 1)];
     let runs = same(&curves(), &ways);
     assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
     let in_cells = same(
@@ -227,7 +227,7 @@ fn a_plate_with_a_hole_has_the_same_bits_on_any_number_of_ranks() {
         &plate(),
         &[
             Way { order: Some(&shuffled::<5>), ..Way::new(4, Initial, 2) },
-            Way::new(7, Forced { seed: 3 }, 1).over_places(),
+            Way::new(3, Forced { seed: 3 }, 1).over_places(),
         ],
     );
 }
@@ -258,7 +258,7 @@ fn rigid_spheres_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way::new(2, Dynamic, 1).over_places(), Way { batch: Some(3), ..Way::new(5, Forced { seed: 9 }, 2) }];
     let runs = same(&by(Method::HardSphere, tank(0)), &ways);
     assert!(runs[0].outcome.collisions > 100);
-    same(&by(Method::HardSphere, plate()), &ways);
+    same(&by(Method::HardSphere, plate()), &ways[1..]);
 }
 
 /// Intervals are run again with longer lists, after the cuts have moved.

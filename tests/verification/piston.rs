@@ -73,7 +73,7 @@ fn crowded(method: &str) -> String {
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.03, 0.03]\ndirection = [1.0, 0.0, 0.0]\narea = 0.001\n\
          gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.3], [2e-3, 0.3]]\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n[[surface]]\nname = \"plate\"\nwall = \"plate\"\n\
-         [model]\nmethod = \"{method}\"\nparticles = 3000\n[output]\nrows = 10\nsnapshots = 0\n"
+         [model]\nmethod = \"{method}\"\nparticles = 2000\n[output]\nrows = 10\nsnapshots = 0\n"
     )
 }
 

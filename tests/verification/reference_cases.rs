@@ -75,19 +75,23 @@ fn a_standing_wave_has_the_speed_of_sound() {
 fn vortices_decay_with_the_viscosity_of_the_method() {
     passes("viscosity");
     // At f = .2 it is .54 (specification, section 2), where .65 is allowed a tenth of it.
-    fails(&shear::at_occupancy(&device(), 0.2, 8000, 8).expect("a run"));
+    fails(&shear::at_occupancy(&device(), 0.2, 8000, 3).expect("a run"));
 }
 
 #[test]
 fn a_chamber_empties_between_isentropically_and_by_effusion() {
     passes("blow-down");
-    let emptied = |change: &dyn Fn(&mut Scene)| holes::emptied(&device(), 6000, change).expect("a run").checks;
-    // A gas of gamma 5/3 has 1/3 in free flight and 2/3 as a continuum.
-    let monatomic = |scene: &mut Scene| scene.gases[0].heat = HeatCapacity::Constant(1.5 * GAS_CONSTANT);
-    fails(&emptied(&monatomic)[0]);
     // Free flight leaves more slowly, Cd .58. (Its .2 so few particles do not know well enough.)
     let free = |scene: &mut Scene| {
         (scene.model.diameter, scene.model.diameter_cap, scene.model.method) = (None, None, Some(Method::None));
     };
-    fails(&emptied(&free)[1]);
+    fails(&holes::emptied(&device(), 6000, free).expect("a run").checks[1]);
+}
+
+/// A gas of gamma 5/3 has 1/3 in free flight and 2/3 as a continuum.
+#[test]
+#[ignore = "a minute: scripts/test.sh --long"]
+fn a_chamber_of_another_gas_does_not_empty_like_this_one() {
+    let monatomic = |scene: &mut Scene| scene.gases[0].heat = HeatCapacity::Constant(1.5 * GAS_CONSTANT);
+    fails(&holes::emptied(&device(), 6000, monatomic).expect("a run").checks[0]);
 }

@@ -50,7 +50,7 @@ fn parted(pressures: [f64; 2], method: &str, occupancy: f64) -> Model {
         r#"
         end_time = 4e-4
         gas = [{{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }}]
-        model = {{ method = "{method}", particles = 40000, occupancy = {occupancy} }}
+        model = {{ method = "{method}", particles = 12000, occupancy = {occupancy} }}
         output = {{ rows = 1, snapshots = 0 }}
         [[wall]]
         name = "box"
