@@ -263,12 +263,14 @@ fn uniform_gas_takes_the_steps_of_its_plan() {
 }
 
 #[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
 fn two_chambers_and_a_hole() {
     let planned = check("two chambers", TWO, "closest-approach", 0.05, 12, 8);
     assert!(planned.plan.openings[0].knudsen < 1.0, "{}", planned.plan.openings[0].knudsen);
 }
 
 #[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
 fn effusion() {
     // The published scene, in half its time: a litre within 26 others.
     let text = include_str!("../../scenes/effusion.toml");
