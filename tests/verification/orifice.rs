@@ -18,7 +18,7 @@ fn discharge(knudsen: f64) -> (f64, f64) {
 }
 
 #[test]
-#[ignore = "a minute: scripts/test.sh --long"]
+#[ignore = "a minute: scripts/test.sh --long; `corpuscle verify orifice` runs the case too"]
 fn gas_leaves_a_hole_at_the_discharge_coefficient_of_its_knudsen_number() {
     let model = holes::emptying(12_000, 0.1).expect("a model");
     assert!((model.plan.openings[0].length - holes::RADIUS).abs() < 1e-9, "the Knudsen number is of the hole's radius");

@@ -43,7 +43,7 @@ fn shock_tubes_are_those_of_the_exact_solution() {
 }
 
 #[test]
-#[ignore = "half a minute: scripts/test.sh --long"]
+#[ignore = "half a minute: scripts/test.sh --long; `corpuscle verify sod-monatomic` runs the case too"]
 fn monatomic_shock_tubes_are_those_of_the_exact_solution() {
     passes("sod-monatomic");
     // Of free flight, as with gamma 7/5.
