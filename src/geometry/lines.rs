@@ -121,17 +121,6 @@ impl LineIndex {
     }
 }
 
-/// The nearest number, as `value as f64`, of which a processor knows nothing: of its top 62 bits, the lowest of which stands for all
-/// that follow.
-fn rounded(value: i128) -> f64 {
-    let size = value.unsigned_abs();
-    let shift = 66u32.saturating_sub(size.leading_zeros());
-    let rest = size & ((1 << shift) - 1);
-    let top = (size >> shift) as i64 | i64::from(rest != 0);
-    let scaled = top as f64 * f64::from_bits((1023 + u64::from(shift)) << 52);
-    if value < 0 { -scaled } else { scaled }
-}
-
 /// Not a number becomes a place outside.
 fn quanta(value: f64, origin: f64, scale: f64) -> i64 {
     let quanta = ((value - origin) * scale).round();
@@ -144,13 +133,6 @@ fn cross_product(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i128 {
 
 impl Projected {
     fn cross(&self, q: [i64; 2]) -> Option<Crossing> {
-        let beside = |axis: usize| {
-            let [a, b, c] = self.corners.map(|corner| corner[axis]);
-            q[axis] < a.min(b).min(c) || q[axis] > a.max(b).max(c)
-        };
-        if beside(0) || beside(1) {
-            return None;
-        }
         let mut weights = [0i128; 3];
         for (k, own) in weights.iter_mut().enumerate() {
             let (a, b) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
@@ -167,8 +149,8 @@ impl Projected {
             *own = weight;
         }
         // From one corner, so that a triangle across x has its x exactly.
-        let area = rounded(self.area);
-        let (u, v) = (rounded(weights[1]) / area, rounded(weights[2]) / area);
+        let area = self.area as f64;
+        let (u, v) = (weights[1] as f64 / area, weights[2] as f64 / area);
         let x = self.x[0] + (u * (self.x[1] - self.x[0]) + v * (self.x[2] - self.x[0]));
         Some(Crossing { x, sign: self.area.signum() as i32, wall: self.wall })
     }
@@ -237,15 +219,6 @@ mod tests {
             let index = pyramid(&rim, apex);
             let found = crossings(&index, f64::from(line.0) / 8.0, f64::from(line.1) / 8.0);
             prop_assert_eq!(found.iter().map(|c| c.sign).sum::<i32>(), 0);
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn whole_numbers_are_rounded_to_the_nearest(value in any::<i128>(), shift in 0u32..128, near in -2i128..=2) {
-            for value in [value >> shift, (value >> shift).saturating_add(near), ((value >> shift) & !0xffff_ffff) | near & 3] {
-                prop_assert_eq!(rounded(value).to_bits(), (value as f64).to_bits(), "{}", value);
-            }
         }
     }
 

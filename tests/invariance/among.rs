@@ -1,6 +1,5 @@
 //! Runs of a scene by several ranks of one process on one device.
 
-use std::cell::OnceCell;
 use std::sync::Arc;
 
 use corpuscle::gpu::{AdapterDescription, Device, Form};
@@ -96,21 +95,13 @@ impl Way {
 /// A communicator put around another.
 pub type Wrap = dyn for<'a> Fn(&'a dyn Communicator) -> Box<dyn Communicator + 'a> + Sync;
 
-/// A scene on a device.
-type Place = (Setup, Device);
-
-/// A device of this form, and the scene on it for so many ranks.
-type Prepare<'a> = dyn Fn(Form, usize) -> Place + 'a;
-
 /// A scene on a device, for any number of ranks.
 pub struct World<'a> {
     model: &'a Model,
-    prepare: Box<Prepare<'a>>,
-    /// Compiled where a way wants them.
-    one: Vec<(Form, OnceCell<Place>)>,
-    several: Place,
+    one: Vec<(Setup, Device)>,
+    several: (Setup, Device),
     /// On a GPU, which need not round alike in the kernels for many particles: one rank with these, and several.
-    many: Option<[Place; 2]>,
+    many: Option<[(Setup, Device); 2]>,
 }
 
 /// The forms of kernels of one rank, in turn, and of several. What these are compared with has the form that the device takes first. A software device rounds alike in
@@ -139,34 +130,28 @@ impl<'a> World<'a> {
     /// With those that a GPU has for few particles, also on a software device, in the form for GPUs alone. (Mesa's lavapipe of 22.3 does with all particles what is
     /// for the few that meet walls there.)
     pub fn of_few(model: &'a Model) -> World<'a> {
-        let mut world = World::by(model, |device, ranks| {
-            let setup = Setup::new(model, device, ranks, None)?;
-            assert!(setup.domain.features().merged);
-            Ok(setup)
-        });
-        world.one.retain(|&(form, _)| form == Form::Gpu);
-        assert!(!world.one.is_empty());
-        world
+        let world = World::by(model, |device, ranks| Setup::new(model, device, ranks, None));
+        let one: Vec<_> = world.one.into_iter().filter(|(_, device)| device.form() == Form::Gpu).collect();
+        assert!(!one.is_empty() && one.iter().chain([&world.several]).all(|(setup, _)| setup.domain.features().merged));
+        World { one, ..world }
     }
 
-    fn by(model: &'a Model, setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError> + 'a) -> World<'a> {
+    fn by(model: &'a Model, setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError>) -> World<'a> {
         let first = Device::open(None).expect("an adapter");
         let (of_one, of_several) = forms(first.adapter());
-        let opened = |form| Device::open_in(None, form).expect("an adapter");
-        let prepare = move |form, ranks| {
-            let device = opened(form);
+        let made = |ranks, form| {
+            let device = Device::open_in(None, form).expect("an adapter");
             (setup(&device, ranks).expect("a set-up"), device)
         };
         let for_many = |ranks| {
-            let device = opened(of_several);
+            let device = Device::open_in(None, of_several).expect("an adapter");
             (Setup::for_many(model, &device, ranks).expect("a set-up"), device)
         };
         World {
             model,
-            one: of_one.into_iter().map(|form| (form, OnceCell::new())).collect(),
-            several: prepare(of_several, 2),
+            one: of_one.into_iter().map(|form| made(1, form)).collect(),
+            several: made(2, of_several),
             many: (!first.adapter().is_cpu()).then(|| [for_many(1), for_many(2)]),
-            prepare: Box::new(prepare),
         }
     }
 
@@ -186,8 +171,8 @@ impl<'a> World<'a> {
             return self.try_run_on(&self.several, way, wrap);
         }
         let mut runs = Vec::new();
-        for (form, one) in &self.one {
-            runs.push(self.try_run_on(one.get_or_init(|| (self.prepare)(*form, 1)), way, wrap)?);
+        for one in &self.one {
+            runs.push(self.try_run_on(one, way, wrap)?);
         }
         for other in runs.iter().skip(1) {
             assert_same("another form of the kernels", &Bits::of(&runs[0]), &Bits::of(other));
@@ -195,7 +180,7 @@ impl<'a> World<'a> {
         Ok(runs.swap_remove(0))
     }
 
-    fn try_run_on(&self, on: &Place, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
+    fn try_run_on(&self, on: &(Setup, Device), way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
         let (setup, device) = on;
         let mut setup = setup.clone();
         if let Some(order) = way.order {
