@@ -43,9 +43,9 @@ fn lengthen(s: u32) -> bool {
 fn first_place(s: u32) -> vec3<u32> {
     if (step.ghosts == GHOSTS_ASKED) {
         let particle = firsts[s];
-        return shifted(particle.position, particle.velocity * birth_time(id_of(particle.tag)));
+        return shifted(particle.position, particle.velocity, birth_time(id_of(particle.tag)));
     }
-    return shifted(sorted[s].position, sorted[s].velocity * bitcast<f32>(neighbours[2u * s].x));
+    return shifted(sorted[s].position, sorted[s].velocity, bitcast<f32>(neighbours[2u * s].x));
 }
 
 // Where an entry is of a list with so many and this tail.

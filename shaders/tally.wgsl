@@ -68,7 +68,7 @@ fn sides_moved(carried: u32) -> vec3<u32> {
         let m = (carried >> (4u * axis)) & 15u;
         if (m > 0u) {
             let motion = motion_of(m - 1u);
-            by[axis] = shifted(bitcast<vec3<u32>>(motion.moved), motion.velocity * step.dt)[axis];
+            by[axis] = shifted(bitcast<vec3<u32>>(motion.moved), motion.velocity, step.dt)[axis];
         }
     }
     return by;

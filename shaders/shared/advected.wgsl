@@ -91,7 +91,7 @@ fn advect_slot(s: u32) {
         meet_walls(s);
         return;
     }
-    let end = shifted(position, velocity * step.dt);
+    let end = shifted(position, velocity, step.dt);
     if (ROUNDS_OF_PAIRS) {
         let cell = end >> vec3<u32>(CELL_BITS);
         if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {

@@ -153,7 +153,7 @@ fn bounce_off(s: u32, entry: u32) {
             let coat = coats[triangle.coat];
             let draw = wall_draw(particle.tag, bounces, 0u);
             if (VENTS) {
-                let v = vent_at(coat, shifted(particle.position, old * hit.time));
+                let v = vent_at(coat, shifted(particle.position, old, hit.time));
                 if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
                     if (SURFACES && triangle.surface != NOBODY) {
                         tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
@@ -197,8 +197,8 @@ fn bounce_off(s: u32, entry: u32) {
         if (SURFACES && triangle.surface != NOBODY) {
             tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
         }
-        let place = shifted(particle.position, old * hit.time);
-        particle.position = shifted(place, -turned * hit.time);
+        let place = shifted(particle.position, old, hit.time);
+        particle.position = shifted(place, -turned, hit.time);
         particle.velocity = turned;
         time = hit.time;
     }
@@ -215,10 +215,10 @@ fn bounce_off(s: u32, entry: u32) {
         }
         return;
     }
-    particle.position = shifted(particle.position, particle.velocity * end);
+    particle.position = shifted(particle.position, particle.velocity, end);
     if (MOVING && end < step.dt) {
         // A flight that was cut short ends at its wall, which goes on.
-        particle.position = shifted(particle.position, carried * (step.dt - end));
+        particle.position = shifted(particle.position, carried, step.dt - end);
     }
     let cell = particle.position >> vec3<u32>(CELL_BITS);
     if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {

@@ -5,7 +5,7 @@
 override FLOWN: f32 = 0.5;
 
 fn flown_cell(place: vec3<u32>, velocity: vec3<f32>) -> vec3<u32> {
-    return nearest_cell(shifted(place, velocity * (FLOWN * step.dt)));
+    return nearest_cell(shifted(place, velocity, FLOWN * step.dt));
 }
 
 // The border layer of the box has no bins to fill.

@@ -22,10 +22,10 @@ fn in_grid(c: vec3<u32>) -> bool {
     return c.x < CELLS_X && c.y < CELLS_Y && c.z < CELLS_Z;
 }
 
-// A position moved by d metres, rounded to the nearest quantum. Below the origin it wraps to a huge
+// A position moved at v m/s for some seconds, rounded to the nearest quantum. Below the origin it wraps to a huge
 // number, which no cell of the grid has.
-fn shifted(p: vec3<u32>, d: vec3<f32>) -> vec3<u32> {
-    return p + bitcast<vec3<u32>>(rounded(d * QUANTA));
+fn shifted(p: vec3<u32>, v: vec3<f32>, time: f32) -> vec3<u32> {
+    return p + bitcast<vec3<u32>>(rounded((v * QUANTA) * time));
 }
 
 // b - a in metres; the difference of integers is exact.

@@ -87,9 +87,9 @@ fn settle_pair(pair: vec2<u32>, k: u32) {
     let miss = between(i.position, j.position) + g * time;
     // Neighbours are screened where the step starts; here, where the pair would meet. A pair that a wall
     // parts passes on as if it had collided, so that its particles choose others in the next round.
-    let place_i = shifted(i.position, i.velocity * time);
+    let place_i = shifted(i.position, i.velocity, time);
     let apart = may_part(nearest_cell(place_i))
-        && blocked(place_i, shifted(j.position, j.velocity * time), time);
+        && blocked(place_i, shifted(j.position, j.velocity, time), time);
     tell(pair.x);
     tell(pair.y);
     if (apart) {
@@ -132,8 +132,8 @@ fn settle_pair(pair: vec2<u32>, k: u32) {
     let after = deflected(i, j, mu, relative - g, exchange);
     i = after.i;
     j = after.j;
-    i.position = shifted(i.position, (old_i - i.velocity) * time);
-    j.position = shifted(j.position, (old_j - j.velocity) * time);
+    i.position = shifted(i.position, old_i - i.velocity, time);
+    j.position = shifted(j.position, old_j - j.velocity, time);
     sorted[pair.x] = packed_of(i);
     sorted[pair.y] = packed_of(j);
     let wall_i = wall_time(i.position, i.velocity, time, step.dt);

@@ -32,7 +32,7 @@ struct Triangle {
 
 // The place of a point at a time of the step in the frame of a moving wall, in which the wall is as it is drawn.
 fn in_frame(p: vec3<u32>, motion: Motion, time: f32) -> vec3<u32> {
-    return shifted(p - bitcast<vec3<u32>>(motion.moved), -motion.velocity * time);
+    return shifted(p - bitcast<vec3<u32>>(motion.moved), -motion.velocity, time);
 }
 
 // Whether a moving wall is in one of the 27 cells around in this step.
@@ -200,8 +200,8 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
 // The first wall that the flight x0 + v t meets in start <= t < end.
 fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     var hit = Hit(NEVER, NOBODY, 0.0);
-    let from_point = shifted(x0, v * start);
-    let to_point = shifted(x0, v * end);
+    let from_point = shifted(x0, v, start);
+    let to_point = shifted(x0, v, end);
     let cells = cells_of(from_point, to_point);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
@@ -238,7 +238,7 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
 // Whether a flight may meet a wall. One that does not leave its cell's neighbours meets none if the cell is clear, or if it stays
 // before all walls of these.
 fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
-    let from_point = shifted(x0, v * start);
+    let from_point = shifted(x0, v, start);
     let c = nearest_cell(from_point);
     let reach = max(max(abs(v.x), abs(v.y)), abs(v.z)) * (dt - start) * QUANTA;
     if (reach >= f32(1u << CELL_BITS)) {
@@ -248,11 +248,11 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
     let classes = cell_class[cell >> 4u];
     let around = class_among(classes, cell);
     if (around == CLASS_SOLID
-        || (around != CLASS_CLEAR && !before_walls(c, near_among(classes, cell), from_point, shifted(x0, v * dt)))) {
+        || (around != CLASS_CLEAR && !before_walls(c, near_among(classes, cell), from_point, shifted(x0, v, dt)))) {
         return true;
     }
     if (MOVING) {
-        return near_moving(c) && passes_moving(from_point, start, shifted(x0, v * dt), dt);
+        return near_moving(c) && passes_moving(from_point, start, shifted(x0, v, dt), dt);
     }
     return false;
 }

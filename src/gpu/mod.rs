@@ -3,6 +3,7 @@
 mod buffer;
 mod device;
 mod kernel;
+mod numbers;
 mod operations;
 mod timer;
 

@@ -48,6 +48,14 @@ impl Setup {
         Setup::with_particles(model, device, ranks, particles)
     }
 
+    /// For one device, with kernels that read no number of the scene: to see that those that do give the same.
+    ///
+    /// # Errors
+    /// As [`Setup::new`].
+    pub fn fixed(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::Fixed)
+    }
+
     /// For one device, with kernels as if the scene had all that a scene may have: to see what it saves that they have not.
     ///
     /// # Errors

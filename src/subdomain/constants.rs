@@ -67,6 +67,48 @@ pub fn merges(plan: &Plan, form: Form) -> bool {
     form == Form::Gpu && plan.particles <= MOST_MERGED
 }
 
+/// The most particle-steps of a run on a software device whose kernels read [`NUMBERS`]: up to here they save more in compilation than they cost in steps
+/// (`docs/performance.md`).
+pub const MOST_READ: f64 = 1e8;
+
+/// Constants that are numbers of a scene, which kernels can read. (What branches ask of constants alone is compiled in.)
+const NUMBERS: [&str; 29] = [
+    "BLOCKS",
+    "BLOCKS_X",
+    "BLOCKS_Y",
+    "BLOCK_BITS",
+    "BLOCK_ENERGY_SCALE",
+    "CELLS_X",
+    "CELLS_Y",
+    "CELLS_Z",
+    "CELL_BITS",
+    "CELL_SEED_HIGH",
+    "COATS_AT",
+    "COPY_WORDS",
+    "CROSS_SECTION",
+    "DIAMETER",
+    "DIAMETER2_PACKED",
+    "ENERGY_SCALE",
+    "FASTEST2",
+    "IMPULSE_SCALE",
+    "INVERSE_THERMAL",
+    "QUANTA",
+    "QUANTUM",
+    "SEED_HIGH",
+    "SEED_LOW",
+    "TIME_STEP",
+    "TOLERANCE",
+    "VELOCITY_SCALE",
+    "VENTS_AT",
+    "WALL_SEED_HIGH",
+    "WORKS_AT",
+];
+
+/// The constants that the kernels of a plan read. A GPU's compile all: it may round otherwise where it knows a number.
+pub fn numbers_read(device: &Device, plan: &Plan) -> &'static [&'static str] {
+    if device.adapter().is_cpu() && plan.particles as f64 * plan.estimated_steps <= MOST_READ { &NUMBERS } else { &[] }
+}
+
 /// What walls have tallies for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Patches {

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, merges, tally_loops};
+use super::constants::{Features, Patches, block_counts, constants, merges, numbers_read, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::scales::Scales;
@@ -33,6 +33,8 @@ pub struct DomainInput<'a> {
 pub enum KernelChoice {
     /// For what the scene has, and its number of particles.
     Fitting,
+    /// The same with all numbers of the scene compiled in.
+    Fixed,
     /// As of many particles, also where these are few.
     ForMany,
     /// Of many, and for what the scene lacks too.
@@ -43,6 +45,7 @@ pub struct Domain {
     pub(super) plan: Plan,
     pub(super) features: Features,
     pub(super) constants: Vec<(&'static str, f64)>,
+    reads_numbers: bool,
     pub(super) compiled: Compiled,
     /// Of the kernels.
     pub(super) form: Form,
@@ -69,7 +72,7 @@ impl Domain {
         let plan = input.plan;
         let needed = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
         let features = match input.kernels {
-            KernelChoice::Fitting => Features { merged: merges(plan, device.form()), ..needed },
+            KernelChoice::Fitting | KernelChoice::Fixed => Features { merged: merges(plan, device.form()), ..needed },
             KernelChoice::ForMany => needed,
             KernelChoice::Whole => needed.whole(),
         };
@@ -81,10 +84,12 @@ impl Domain {
         };
         let tally_loops = tally_loops(device, plan);
         let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);
+        let numbers = if input.kernels == KernelChoice::Fixed { &[] } else { numbers_read(device, plan) };
         Ok(Domain {
             plan: plan.clone(),
             features,
-            compiled: Compiled::new(device, features, &constants)?,
+            reads_numbers: !numbers.is_empty(),
+            compiled: Compiled::new(device, features, &constants, numbers)?,
             form: device.form(),
             tally_loops,
             constants,
@@ -109,5 +114,10 @@ impl Domain {
 
     pub fn features(&self) -> Features {
         self.features
+    }
+
+    /// Whether its kernels read the numbers of the scene.
+    pub fn reads_numbers(&self) -> bool {
+        self.reads_numbers
     }
 }

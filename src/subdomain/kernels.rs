@@ -177,11 +177,17 @@ fn source(name: &str) -> &str {
 pub struct Compiled(Vec<(&'static str, Kernel)>);
 
 impl Compiled {
-    pub fn new(device: &Device, features: Features, constants: &Constants) -> Result<Compiled, GpuError> {
+    /// `numbers` are the constants that are read.
+    pub fn new(
+        device: &Device,
+        features: Features,
+        constants: &Constants,
+        numbers: &[&str],
+    ) -> Result<Compiled, GpuError> {
         let mut compiled = Vec::new();
         Kernels::build(features, |name| {
             if source(name) == name {
-                compiled.push((name, Kernel::new(device, name, constants)?));
+                compiled.push((name, Kernel::reading(device, name, constants, numbers)?));
             }
             Ok::<(), GpuError>(())
         })?;

@@ -2,8 +2,9 @@
 
 use corpuscle::gpu::{Device, Recording};
 use corpuscle::output::AuditLimits;
+use corpuscle::ranks::Solo;
 use corpuscle::scene::{DiameterCap, Method, Scene};
-use corpuscle::simulation::{Model, Options, Setup, Shuffle, initial_particles};
+use corpuscle::simulation::{Model, Options, Setup, Shuffle, Simulation, initial_particles};
 use corpuscle::subdomain::{GpuParticle, Newborns, Place, Steps, Subdomain, Tables};
 
 use crate::bits::{Bits, assert_same, difference};
@@ -11,7 +12,7 @@ use crate::orders::{reversed, shuffled};
 use crate::scenes::{
     burst, by, cold_walls, crowding, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely,
 };
-use crate::whole_run::{Run, published, run};
+use crate::whole_run::{Run, Witness, published, run};
 
 /// The scene again, in every way that must not matter.
 fn every_way(model: &Model) -> Bits {
@@ -182,6 +183,27 @@ fn collisions_within_cells_have_the_same_bits_in_every_way() {
 #[test]
 fn rigid_spheres_have_the_same_bits_in_every_way() {
     every_way(&by(Method::HardSphere, plate()));
+}
+
+/// A software device reads the numbers of a scene in short runs; where all are compiled in it rounds alike.
+#[test]
+fn numbers_read_and_compiled_in_give_the_same_bits() {
+    let device = Device::open(None).expect("a device");
+    let scenes = [tank(0), plate(), pistons(), cold_walls(), venting(), venting_freely(), effusion()];
+    let more = [by(Method::Cell, tank(0)), by(Method::Cell, pistons()), by(Method::HardSphere, plate())];
+    for model in scenes.into_iter().chain(more) {
+        let [read, fixed] = [Setup::new(&model, &device, 1, None), Setup::fixed(&model, &device)].map(|setup| {
+            let setup = setup.expect("a set-up");
+            let mut witness = Witness::default();
+            let alone = Solo::new();
+            let simulation = Simulation::among(&model, &device, &setup, &alone, Options::default());
+            let outcome = simulation.and_then(|simulation| simulation.run(&mut witness)).expect("a run");
+            let run = Run { rows: witness.rows, snapshots: witness.snapshots, outcome };
+            (setup.domain.reads_numbers(), Bits::of(&run))
+        });
+        assert_eq!((read.0, fixed.0), (device.adapter().is_cpu(), false), "{} particles", model.plan.particles);
+        assert_same("numbers compiled in", &read.1, &fixed.1);
+    }
 }
 
 /// Free flight does not sort its particles: not even its memory is in order.

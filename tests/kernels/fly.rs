@@ -173,7 +173,7 @@ fn advect_flies_the_free_and_lists_the_others() {
                 assert_eq!(new[k], old[k]);
                 continue;
             }
-            let end = cells.shifted(before.position, before.velocity.map(|v| v * DT));
+            let end = cells.shifted(before.position, before.velocity, DT);
             // A driver may multiply v, dt and the quanta per metre in another order: up to two roundings each.
             let off = (0..3).map(|a| end[a].wrapping_sub(found[k].position[a]).cast_signed().unsigned_abs()).max();
             let flown = before.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs())) * DT * cells.quanta_per_metre;

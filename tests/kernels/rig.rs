@@ -174,7 +174,7 @@ impl World {
     /// Whether a flight may meet a wall: it leaves the cells around its own, or these have walls and it does not stay before their plane.
     pub fn may_hit(&self, particle: &GpuParticle, start: f32, dt: f32) -> bool {
         let cells = self.cells();
-        let ends = [start, dt].map(|t| cells.shifted(particle.position, particle.velocity.map(|v| v * t)));
+        let ends = [start, dt].map(|t| cells.shifted(particle.position, particle.velocity, t));
         let fastest = particle.velocity.iter().fold(0.0f32, |most, v| most.max(v.abs()));
         if fastest * (dt - start) * cells.quanta_per_metre >= (1u32 << cells.bits) as f32 {
             return true;

@@ -38,7 +38,7 @@ fn lists_lose_exactly_those_behind_a_wall() {
         .into_iter()
         .map(|flight| GpuFlight { start: if stream.below(3) == 0 { 0.1 * DT } else { 0.0 }, ..flight })
         .collect();
-    let place = |s: usize| cells.shifted(particles[s].position, particles[s].velocity.map(|v| v * flights[s].start));
+    let place = |s: usize| cells.shifted(particles[s].position, particles[s].velocity, flights[s].start);
     let near = |i: usize, j: usize| {
         let (p, q) = (place(i), place(j));
         i != j && cells.nearer_than_a_cell(p, q)

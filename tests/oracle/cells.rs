@@ -10,17 +10,17 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// p moved by d metres, to the nearest quantum (ties to even), modulo 2^32.
-    pub fn shifted(&self, p: [u32; 3], d: [f32; 3]) -> [u32; 3] {
+    /// p moved at v m/s for so many seconds, to the nearest quantum (ties to even), modulo 2^32.
+    pub fn shifted(&self, p: [u32; 3], v: [f32; 3], time: f32) -> [u32; 3] {
         std::array::from_fn(|k| {
-            let quanta = (d[k] * self.quanta_per_metre).round_ties_even();
+            let quanta = ((v[k] * self.quanta_per_metre) * time).round_ties_even();
             p[k].wrapping_add(quanta as i32 as u32)
         })
     }
 
     /// The mid-step position.
     pub fn middle(&self, p: [u32; 3], v: [f32; 3], dt: f32) -> [u32; 3] {
-        self.shifted(p, v.map(|v| v * (0.5 * dt)))
+        self.shifted(p, v, 0.5 * dt)
     }
 
     /// A coordinate with its sign: from -2^30 on, up to 3 2^30.
