@@ -4,6 +4,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use super::kernel::Kept;
 use super::{Form, GpuError};
 
 /// How long a submission may take before a GPU counts as hung, and before a CPU adapter does, which is slow
@@ -96,6 +97,7 @@ pub struct Device {
     timestamps: bool,
     form: Form,
     trouble: Arc<Mutex<Option<String>>>,
+    kept: Kept,
 }
 
 impl Device {
@@ -156,7 +158,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, form, trouble })
+        Ok(Device { device, queue, adapter, timestamps, form, trouble, kept: Kept::default() })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -184,6 +186,10 @@ impl Device {
 
     pub(crate) fn raw(&self) -> &wgpu::Device {
         &self.device
+    }
+
+    pub(super) fn kept(&self) -> &Kept {
+        &self.kept
     }
 
     pub fn queue(&self) -> &wgpu::Queue {

@@ -72,7 +72,7 @@ pub fn merges(plan: &Plan, form: Form) -> bool {
 pub const MOST_READ: f64 = 1e8;
 
 /// Constants that are numbers of a scene, which kernels can read. (What branches ask of constants alone is compiled in.)
-const NUMBERS: [&str; 29] = [
+pub const NUMBERS: [&str; 29] = [
     "BLOCKS",
     "BLOCKS_X",
     "BLOCKS_Y",

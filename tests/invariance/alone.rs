@@ -1,6 +1,6 @@
 //! On one device.
 
-use corpuscle::gpu::{Device, Recording};
+use corpuscle::gpu::Recording;
 use corpuscle::output::AuditLimits;
 use corpuscle::ranks::Solo;
 use corpuscle::scene::{DiameterCap, Method, Scene};
@@ -12,7 +12,7 @@ use crate::orders::{reversed, shuffled};
 use crate::scenes::{
     burst, by, cold_walls, crowding, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely,
 };
-use crate::whole_run::{Run, Witness, published, run};
+use crate::whole_run::{Run, Witness, device, published, run};
 
 /// The scene again, in every way that must not matter.
 fn every_way(model: &Model) -> Bits {
@@ -63,7 +63,7 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 /// they are after it.
 #[test]
 fn room_made_between_recorded_steps_loses_none() {
-    let device = Device::open(None).expect("a device");
+    let device = device();
     for method in [Method::ClosestApproach, Method::Cell] {
         let model = by(method, gas_box());
         let setup = Setup::new(&model, &device, 1, None).expect("a set-up");
@@ -188,7 +188,7 @@ fn rigid_spheres_have_the_same_bits_in_every_way() {
 /// A software device reads the numbers of a scene in short runs; where all are compiled in it rounds alike.
 #[test]
 fn numbers_read_and_compiled_in_give_the_same_bits() {
-    let device = Device::open(None).expect("a device");
+    let device = device();
     let scenes = [tank(0), plate(), pistons(), cold_walls(), venting(), venting_freely(), effusion()];
     let more = [by(Method::Cell, tank(0)), by(Method::Cell, pistons()), by(Method::HardSphere, plate())];
     for model in scenes.into_iter().chain(more) {

@@ -1,6 +1,6 @@
 //! Among ranks.
 
-use corpuscle::gpu::{Device, Form};
+use corpuscle::gpu::Form;
 use corpuscle::partition::By;
 use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
@@ -15,7 +15,7 @@ use crate::scenes::{
     burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, switching, tank, thin, tube, venting,
     venting_freely,
 };
-use crate::whole_run::{Run, run};
+use crate::whole_run::{Run, device, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
 fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
@@ -69,7 +69,7 @@ fn all_ways() -> Vec<Way> {
 }
 
 fn forms_of_the_device() -> Vec<Form> {
-    Device::open(None).expect("an adapter").adapter().forms()
+    device().adapter().forms()
 }
 
 fn rebalanced(run: &Run) -> usize {

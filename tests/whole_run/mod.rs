@@ -1,6 +1,8 @@
 //! Whole runs for tests: the text of a scene becomes a model, a run and all that an observer sees of it.
 
+use std::ops::Deref;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use corpuscle::gpu::Device;
 use corpuscle::scene;
@@ -9,8 +11,32 @@ use corpuscle::study::verify;
 #[allow(unused_imports, reason = "not every test needs both")]
 pub use corpuscle::study::verify::{Run, Witness};
 
-pub fn device() -> Device {
-    Device::open(None).expect("an adapter")
+/// Those that no test has at the moment, with the kernels that they have compiled.
+static IDLE: Mutex<Vec<Device>> = Mutex::new(Vec::new());
+
+/// A device that no other test has; one is opened where none is idle.
+pub struct Lent(Option<Device>);
+
+impl Deref for Lent {
+    type Target = Device;
+
+    fn deref(&self) -> &Device {
+        self.0.as_ref().expect("a device until it is given back")
+    }
+}
+
+impl Drop for Lent {
+    fn drop(&mut self) {
+        // That of a test that failed may be lost.
+        if !std::thread::panicking() {
+            IDLE.lock().unwrap_or_else(PoisonError::into_inner).extend(self.0.take());
+        }
+    }
+}
+
+pub fn device() -> Lent {
+    let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    Lent(Some(idle.unwrap_or_else(|| Device::open(None).expect("an adapter"))))
 }
 
 /// The model of a scene; mesh files are looked for from `folder`.
