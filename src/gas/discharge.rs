@@ -22,6 +22,8 @@
 //!
 //! Assumptions: all were measured at gamma 1.4 and give the same w at any gamma; the continuum limit stays .84 at every Q.
 
+use std::sync::LazyLock;
+
 use super::{Species, kinetics, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture};
 
@@ -149,24 +151,39 @@ fn kinetic_coefficient(gamma: f64, ratio: f64) -> f64 {
     (1.0 - ratio) / ((2.0 * std::f64::consts::PI).sqrt() * isentropic(gamma, 0.0))
 }
 
-/// Share w of the continuum flow, in 0..=1.
-fn continuum_share(knudsen: f64, ratio: f64) -> f64 {
-    let vacuum = share_in_table(&VACUUM, 0.0, knudsen);
-    let moderate = share_in_table(&MODERATE, MODERATE_RATIO, knudsen);
-    vacuum + (moderate - vacuum) * (ratio / MODERATE_RATIO).min(1.0)
+/// A figure of a table as a share of the continuum.
+struct Point {
+    knudsen: f64,
+    /// ln Kn.
+    log: f64,
+    share: f64,
 }
 
-fn share_in_table(table: &[[f64; 2]], ratio: f64, knudsen: f64) -> f64 {
+/// The tables [`VACUUM`] and [`MODERATE`].
+static POINTS: LazyLock<[Vec<Point>; 2]> = LazyLock::new(|| [points(&VACUUM, 0.0), points(&MODERATE, MODERATE_RATIO)]);
+
+fn points(table: &[[f64; 2]], ratio: f64) -> Vec<Point> {
     // Over the isentropic flow at this ratio.
     let kinetic = kinetic_coefficient(MEASURED_GAMMA, ratio) * isentropic(MEASURED_GAMMA, 0.0)
         / isentropic(MEASURED_GAMMA, ratio);
-    let continuum = CONTINUUM_COEFFICIENT;
-    let point = |[kn, cd]: [f64; 2]| [libm::log(kn), (cd - kinetic) / (continuum - kinetic)];
+    let share = |cd: f64| (cd - kinetic) / (CONTINUUM_COEFFICIENT - kinetic);
+    table.iter().map(|&[knudsen, cd]| Point { knudsen, log: libm::log(knudsen), share: share(cd) }).collect()
+}
+
+/// Share w of the continuum flow, in 0..=1.
+fn continuum_share(knudsen: f64, ratio: f64) -> f64 {
+    let log = libm::log(knudsen);
+    let [vacuum, moderate] = POINTS.each_ref().map(|points| share_between(points, knudsen, log));
+    vacuum + (moderate - vacuum) * (ratio / MODERATE_RATIO).min(1.0)
+}
+
+fn share_between(points: &[Point], knudsen: f64, log: f64) -> f64 {
     // Knudsen numbers fall along the table; the end pieces serve beyond it.
-    let after = table.iter().position(|row| row[0] <= knudsen).unwrap_or(table.len());
-    let piece = after.clamp(1, table.len() - 1);
-    let ([x0, w0], [x1, w1]) = (point(table[piece - 1]), point(table[piece]));
-    (w0 + (w1 - w0) * (libm::log(knudsen) - x0) / (x1 - x0)).clamp(0.0, 1.0)
+    let after = points.iter().position(|point| point.knudsen <= knudsen).unwrap_or(points.len());
+    let piece = after.clamp(1, points.len() - 1);
+    let [before, after] = [&points[piece - 1], &points[piece]];
+    let risen = (after.share - before.share) * (log - before.log) / (after.log - before.log);
+    (before.share + risen).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
