@@ -12,8 +12,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, gas_box, pistons, plate, switching, tank, thin, tube, venting,
-    venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, switching, tank, thin, tube,
+    venting, venting_freely,
 };
 use crate::whole_run::{Run, device, run};
 
@@ -174,7 +174,8 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
 /// What walls have taken is one sum, and the next intervals follow it on every rank.
 #[test]
 fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
-    let runs = same(&cold_walls(), &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(4, Dynamic, 8)]);
+    let model = first(0.5, cold_walls());
+    let runs = same(&model, &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(4, Dynamic, 8)]);
     assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
@@ -190,10 +191,10 @@ fn vents_have_the_same_bits_on_any_number_of_ranks() {
 #[test]
 fn mixtures_with_modes_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, 2) }, Way::new(4, Dynamic, 1)];
-    let runs = same(&curves(), &ways);
-    assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
+    let runs = same(&first(0.4, curves()), &ways);
+    assert!(runs[0].outcome.audit.particles_injected > 250 && runs[0].outcome.collisions > 5000);
     let in_cells = same(
-        &by(Method::Cell, curves()),
+        &by(Method::Cell, first(0.4, curves())),
         &[Way { batch: Some(3), ..Way::new(3, Forced { seed: 1 }, None) }.over_places()],
     );
     assert!(in_cells[0].outcome.collisions > 1000);
@@ -209,14 +210,12 @@ fn effusion_has_the_same_bits_on_any_number_of_ranks() {
 /// loop than Mesa's lavapipe of 22.3 grants a thread, so that too few collided, by the order of the cells.)
 #[test]
 fn crowded_cells_that_walls_part_have_the_same_bits_in_any_order() {
-    let mut scene = by(Method::Cell, effusion()).scene;
-    scene.end_time *= 0.25;
     let ways = [
         Way { order: Some(&shuffled::<3>), ..Way::new(1, Off, None) },
         Way::new(2, Dynamic, 1),
         Way::new(3, Initial, 1),
     ];
-    let runs = same(&Model::new(scene).expect("a model"), &ways);
+    let runs = same(&first(0.25, by(Method::Cell, effusion())), &ways);
     assert!(runs[0].outcome.collisions > 50_000);
 }
 
@@ -355,6 +354,14 @@ fn a_plate_with_a_hole_has_the_same_bits_in_all_ways() {
 fn dense_gas_and_a_burst_have_the_same_bits_in_all_ways() {
     same(&dense(1), &all_ways());
     same(&burst(), &all_ways());
+}
+
+#[test]
+#[ignore = "all ways take many minutes; ./scripts/test.sh --long runs them"]
+fn cold_walls_and_mixtures_with_modes_have_the_same_bits_in_all_ways() {
+    same(&cold_walls(), &all_ways());
+    let runs = same(&curves(), &all_ways());
+    assert!(runs[0].outcome.audit.particles_injected > 500 && runs[0].outcome.collisions > 5000);
 }
 
 #[test]

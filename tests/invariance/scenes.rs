@@ -13,6 +13,13 @@ pub fn by(method: Method, model: Model) -> Model {
     Model::new(scene).expect("a model")
 }
 
+/// The first part of a scene, with as many rows.
+pub fn first(part: f64, model: Model) -> Model {
+    let mut scene = model.scene;
+    scene.end_time *= part;
+    Model::new(scene).expect("a model")
+}
+
 /// The first 4 ms of the tank with steps so long that the inner box's rise makes them finer.
 pub fn tank(snapshots: u32) -> Model {
     let mut scene = published("tank.toml", 1500, 0.004).scene;
