@@ -91,23 +91,34 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
     assert!(runs[0].outcome.collisions > 1000);
 }
 
-/// By the kernels that a GPU has for few particles: with inflow, at vents and warm walls, and in cells.
-#[test]
-fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
+/// By the kernels that a GPU has for few particles.
+fn same_by_merged_kernels(models: &[Model]) {
     if !forms_of_the_device().contains(&Form::Gpu) {
         return;
     }
     // Two intervals.
     let stop = Some(64);
-    for model in [burst(), venting(), by(Method::Cell, gas_box())] {
-        let alone = Bits::of(&run(&model, Options { stop_after_steps: stop, ..Options::default() }));
-        let world = World::of_few(&model);
+    for model in models {
+        let alone = Bits::of(&run(model, Options { stop_after_steps: stop, ..Options::default() }));
+        let world = World::of_few(model);
         let depth = if model.plan.method == Method::Cell { 1 } else { 2 };
         let asked = Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, depth) };
         for way in [Way::new(1, Dynamic, depth), asked] {
             assert_same(&way.name(), &alone, &Bits::of(&world.run(&Way { stop, ..way })));
         }
     }
+}
+
+/// With inflow, at vents and warm walls, and in cells.
+#[test]
+fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
+    same_by_merged_kernels(&[venting(), by(Method::Cell, gas_box())]);
+}
+
+#[test]
+#[ignore = "half a minute: scripts/test.sh --long"]
+fn a_burst_on_a_gpu_has_the_same_bits_on_any_number_of_ranks() {
+    same_by_merged_kernels(&[burst()]);
 }
 
 /// Where walls are is a function of the time alone.
