@@ -337,7 +337,35 @@ pub fn fold(items: u64, workgroup: u32, limit: u32) -> [u32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::fold;
+    use super::*;
+
+    static PROBE: KernelSource = KernelSource {
+        name: "probe",
+        entry_point: "probe",
+        bindings: &[],
+        overrides: &[("EDGE", true), ("LOOPS", false)],
+        source: "override EDGE: f32;\noverride LOOPS: u32 = 1;\nvar<workgroup> product: f32;\n\
+                 @compute @workgroup_size(1)\nfn probe() {\n    product = EDGE * f32(LOOPS);\n}\n",
+        forms: [None; 2],
+    };
+
+    /// One that reads serves all values of what it reads, and no other of what is compiled in.
+    #[test]
+    fn kernels_that_read_are_kept() {
+        let device = Device::open(None).expect("a device");
+        let after = |edge: f64, loops: f64, numbers: &[&str]| {
+            let constants = [("EDGE", edge), ("LOOPS", loops)];
+            Kernel::in_form(&device, Form::Plain, &PROBE, &constants, numbers).expect("a kernel");
+            device.kept().0.lock().expect("the kernels").len()
+        };
+        assert_eq!(after(0.1, 1.0, &[]), 0, "what is made for one scene serves no other");
+        assert_eq!(after(0.1, 1.0, &["EDGE"]), 1);
+        assert_eq!(after(0.2, 1.0, &["EDGE"]), 1);
+        assert_eq!(after(0.2, 2.0, &["EDGE"]), 2);
+        assert_eq!(after(0.3, 3.0, &["EDGE", "LOOPS"]), 3);
+        assert_eq!(after(0.3, 3.0, &["DIAMETER"]), 4, "it has nothing to read");
+        assert_eq!(after(0.4, 2.0, &["EDGE"]), 4);
+    }
 
     /// Every item has a thread, and no dimension is over the limit.
     #[test]
