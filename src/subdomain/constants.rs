@@ -72,7 +72,7 @@ pub fn merges(plan: &Plan, form: Form) -> bool {
 pub const MOST_READ: f64 = 1e8;
 
 /// Constants that are numbers of a scene, which kernels can read. (What branches ask of constants alone is compiled in.)
-pub const NUMBERS: [&str; 29] = [
+const NUMBERS: [&str; 29] = [
     "BLOCKS",
     "BLOCKS_X",
     "BLOCKS_Y",
@@ -104,9 +104,15 @@ pub const NUMBERS: [&str; 29] = [
     "WORKS_AT",
 ];
 
-/// The constants that the kernels of a plan read. A GPU's compile all: it may round otherwise where it knows a number.
+/// The constants that the kernels of a plan read.
 pub fn numbers_read(device: &Device, plan: &Plan) -> &'static [&'static str] {
-    if device.adapter().is_cpu() && plan.particles as f64 * plan.estimated_steps <= MOST_READ { &NUMBERS } else { &[] }
+    let is_short = plan.particles as f64 * plan.estimated_steps <= MOST_READ;
+    if is_short { readable_numbers(device) } else { &[] }
+}
+
+/// Those that the kernels of short runs read. A GPU's compile all: it may round otherwise where it knows a number.
+pub fn readable_numbers(device: &Device) -> &'static [&'static str] {
+    if device.adapter().is_cpu() { &NUMBERS } else { &[] }
 }
 
 /// What walls have tallies for.

@@ -34,7 +34,7 @@ pub use buffers::{
     ZONE_WORDS, choose_empties, few_stretches, most_particles,
 };
 pub use cell_table::{CellTable, TooManyParts};
-pub use constants::{CROWD, Features, MEMBERS, NUMBERS, Patches, WORKGROUP, block_counts, constants, merges};
+pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants, merges, readable_numbers};
 pub use counters::{
     Counters, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS, places_in_parts,
 };

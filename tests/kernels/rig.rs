@@ -7,7 +7,7 @@ use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
 use corpuscle::gpu::{Device, Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, NUMBERS, Walls,
+    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, Walls, readable_numbers,
 };
 
 use crate::oracle::cells::Cells;
@@ -100,11 +100,6 @@ pub const U: f64 = 1.0 / 16_777_216.0;
 pub fn device() -> &'static Device {
     static DEVICE: OnceLock<Device> = OnceLock::new();
     DEVICE.get_or_init(|| Device::open(None).expect("a device (install Mesa's lavapipe where there is no GPU)"))
-}
-
-/// As in a run of so few particles: most tests then have the same kernels, each compiled once.
-fn numbers_read() -> &'static [&'static str] {
-    if device().adapter().is_cpu() { &NUMBERS } else { &[] }
 }
 
 /// Walls on a grid. Positions in f64 are in metres from the grid's corner.
@@ -414,7 +409,9 @@ impl Rig {
     /// Runs a kernel over workgroups.
     pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
         let source = KERNELS.iter().find(|source| source.name == kernel).expect("a shader of this name");
-        let compiled = Kernel::in_form(device(), self.form, source, &self.constants, numbers_read()).expect("a kernel");
+        // As in a run of so few particles: most tests then have the same kernels, each compiled once.
+        let numbers = readable_numbers(device());
+        let compiled = Kernel::in_form(device(), self.form, source, &self.constants, numbers).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
         let mut recording = Recording::new(device());
         bound.dispatch(recording.phase("test"), 0, groups);
