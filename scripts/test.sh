@@ -34,7 +34,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1
 # The release profile, compiled sooner: without lines of backtraces, and without optimization across the parts of a crate.
 export CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_LTO=off
-cargo fmt --check
+cargo fmt --all --check
 # Without MPI: all code is looked at, and what behaves differently is run, compiled quickly.
 cargo clippy --release --locked --all-targets -- -D warnings
 cargo test --release --locked --config 'profile.release.package.corpuscle.opt-level = 0' --test ranks
@@ -53,3 +53,7 @@ if [ "$(cd tests && echo [ik]*)" != 'invariance kernels' ]; then
 fi
 run --lib --bins --test '[!ik]*' ${tests[@]+-- "${tests[@]}"}
 run --doc ${tests[@]+-- "${tests[@]}"}
+if [ ${#tests[@]} -gt 0 ]; then
+  cargo clippy --release --locked --package comparisons --all-targets --features corpuscle/mpi -- -D warnings
+  cargo test --release --locked --package comparisons --features corpuscle/mpi
+fi

@@ -1,4 +1,4 @@
-//! The laws of `corpuscle::partition`: boxes, trees and cuts; quality beside crate coupe; cost model; trigger.
+//! The laws of `corpuscle::partition`: boxes, trees and cuts; how even the parts are; cost model; trigger.
 
 mod bisection;
 mod clouds;

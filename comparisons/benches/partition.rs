@@ -1,4 +1,4 @@
-//! What a bisection costs on this host, beside crate coupe's: `cargo bench --bench partition`.
+//! What a bisection costs on this host, beside crate coupe's: `cargo bench -p comparisons --bench partition`.
 //!
 //! Nanoseconds of wall time per point, medians of a few runs, ours and coupe's in turn, both on all threads
 //! (`RAYON_NUM_THREADS` limits coupe's, `taskset` both). Ours starts from cells of a 1024^3 grid; `histograms` is what
