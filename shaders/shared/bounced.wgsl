@@ -75,7 +75,7 @@ fn tally_energy(slot: u32, energy: f32) {
         left = negated(left);
     }
     add64(copy + slot, once.x, once.y);
-    if (step.tallies_left > 0u) {
+    if ((left.x | left.y) != 0u) {
         add64(copy + slot + 2u, left.x, left.y);
     }
 }
