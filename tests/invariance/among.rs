@@ -118,25 +118,34 @@ fn forms(adapter: &AdapterDescription) -> (Vec<Form>, Form) {
 impl<'a> World<'a> {
     /// On a software device with the kernels for many particles, on a GPU with both.
     pub fn new(model: &'a Model) -> World<'a> {
-        World::by(model, |device, ranks| {
-            if device.adapter().is_cpu() {
-                Setup::for_many(model, device, ranks)
-            } else {
-                Setup::new(model, device, ranks, None)
-            }
-        })
+        World::by(
+            model,
+            |_| true,
+            |device, ranks| {
+                if device.adapter().is_cpu() {
+                    Setup::for_many(model, device, ranks)
+                } else {
+                    Setup::new(model, device, ranks, None)
+                }
+            },
+        )
     }
 
     /// With those that a GPU has for few particles, also on a software device, in the form for GPUs alone. (Mesa's lavapipe of 22.3 does with all particles what is
     /// for the few that meet walls there.)
     pub fn of_few(model: &'a Model) -> World<'a> {
-        let world = World::by(model, |device, ranks| Setup::new(model, device, ranks, None));
-        let one: Vec<_> = world.one.into_iter().filter(|(_, device)| device.form() == Form::Gpu).collect();
-        assert!(!one.is_empty() && one.iter().chain([&world.several]).all(|(setup, _)| setup.domain.features().merged));
-        World { one, ..world }
+        let world = World::by(model, |form| form == Form::Gpu, |device, ranks| Setup::new(model, device, ranks, None));
+        let World { one, several, .. } = &world;
+        assert!(!one.is_empty() && one.iter().chain([several]).all(|(setup, _)| setup.domain.features().merged));
+        world
     }
 
-    fn by(model: &'a Model, setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError>) -> World<'a> {
+    /// One rank has those of its forms that are `wanted`.
+    fn by(
+        model: &'a Model,
+        wanted: impl Fn(Form) -> bool,
+        setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError>,
+    ) -> World<'a> {
         let first = Device::open(None).expect("an adapter");
         let (of_one, of_several) = forms(first.adapter());
         let made = |ranks, form| {
@@ -149,7 +158,7 @@ impl<'a> World<'a> {
         };
         World {
             model,
-            one: of_one.into_iter().map(|form| made(1, form)).collect(),
+            one: of_one.into_iter().filter(|&form| wanted(form)).map(|form| made(1, form)).collect(),
             several: made(2, of_several),
             many: (!first.adapter().is_cpu()).then(|| [for_many(1), for_many(2)]),
         }

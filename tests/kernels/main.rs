@@ -14,6 +14,7 @@ mod choose;
 mod closed;
 mod coats;
 mod collide;
+mod devices;
 mod exchange;
 mod fly;
 mod forms;

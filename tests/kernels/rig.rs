@@ -1,15 +1,15 @@
 //! What a kernel needs to run alone: a device, a world of walls on a grid, and buffers that the test owns.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
-use corpuscle::gpu::{Device, Form, KERNELS, Kernel, Recording};
+use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{
     GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, Walls, readable_numbers,
 };
 
+pub use crate::devices::device;
 use crate::oracle::cells::Cells;
 use crate::oracle::random::Stream;
 use crate::oracle::vector::Vector;
@@ -96,11 +96,6 @@ const MOST_PARTICLES: usize = 8192;
 
 /// Unit roundoff of f32.
 pub const U: f64 = 1.0 / 16_777_216.0;
-
-pub fn device() -> &'static Device {
-    static DEVICE: OnceLock<Device> = OnceLock::new();
-    DEVICE.get_or_init(|| Device::open(None).expect("a device (install Mesa's lavapipe where there is no GPU)"))
-}
 
 /// Walls on a grid. Positions in f64 are in metres from the grid's corner.
 pub struct World {

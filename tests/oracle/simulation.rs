@@ -152,16 +152,20 @@ impl Simulation {
         let middles: Vec<Vector> = self.bodies.iter().map(|b| along(b.x0, b.v, 0.5 * self.dt)).collect();
         let mut pairs = Vec::new();
         for j in 0..middles.len() {
-            for i in 0..j {
+            'pairs: for i in 0..j {
                 let d = minus(middles[j], middles[i]);
-                let image: Vector = match self.boundary {
-                    Boundary::Specular => [0.0; 3],
-                    Boundary::Periodic => std::array::from_fn(|k| -self.size[k] * (d[k] / self.size[k]).round()),
-                };
-                let nearest = along(d, image, 1.0);
-                if dot(nearest, nearest) < reach2 {
-                    pairs.push((i, j, image));
+                let (mut image, mut distance2) = ([0.0; 3], 0.0);
+                // Most are too far apart along the first axis.
+                for k in 0..3 {
+                    if self.boundary == Boundary::Periodic {
+                        image[k] = -self.size[k] * (d[k] / self.size[k]).round();
+                    }
+                    distance2 += (d[k] + image[k]).powi(2);
+                    if distance2 >= reach2 {
+                        continue 'pairs;
+                    }
                 }
+                pairs.push((i, j, image));
             }
         }
         pairs

@@ -9,6 +9,7 @@ mod launched;
 use corpuscle::ranks::conformance::CHECKS;
 use corpuscle::ranks::{Communicator, RankError, agree, from_environment};
 use std::process::{Command, ExitCode};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Says which of [`ROLES`] a rank plays.
 const ROLE: &str = "CORPUSCLE_TEST_ROLE";
@@ -33,12 +34,20 @@ fn main() -> ExitCode {
     let launched = launched::TESTS;
     #[cfg(not(feature = "mpi"))]
     let launched = &[];
-    for (name, test) in
-        TESTS.iter().chain(launched).filter(|(name, _)| words.iter().all(|word| name.contains(word.as_str())))
-    {
-        test();
-        println!("test {name} ... ok");
-    }
+    let mut chosen = TESTS.iter().chain(launched).collect::<Vec<_>>();
+    chosen.retain(|(name, _)| words.iter().all(|word| name.contains(word.as_str())));
+    let next = AtomicUsize::new(0);
+    // Two together, since launches wait most of the time. A test that fails is a panic here once the others have ended.
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some((name, test)) = chosen.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    test();
+                    println!("test {name} ... ok");
+                }
+            });
+        }
+    });
     ExitCode::SUCCESS
 }
 
