@@ -9,6 +9,7 @@ mod asked;
 mod binned;
 mod blocks;
 mod bounce;
+mod branches;
 mod ceilings;
 mod choose;
 mod closed;
