@@ -109,16 +109,10 @@ fn same_by_merged_kernels(models: &[Model]) {
     }
 }
 
-/// With inflow, at vents and warm walls, and in cells.
+/// With inflow, at vents and warm walls, in a burst and in cells.
 #[test]
 fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
-    same_by_merged_kernels(&[venting(), by(Method::Cell, gas_box())]);
-}
-
-#[test]
-#[ignore = "half a minute: scripts/test.sh --long"]
-fn a_burst_on_a_gpu_has_the_same_bits_on_any_number_of_ranks() {
-    same_by_merged_kernels(&[burst()]);
+    same_by_merged_kernels(&[venting(), burst(), by(Method::Cell, gas_box())]);
 }
 
 /// Where walls are is a function of the time alone.
@@ -183,20 +177,11 @@ fn many_cells_have_the_same_bits_on_any_number_of_ranks() {
 }
 
 /// What walls have taken is one sum, and the next intervals follow it on every rank.
-fn same_along_cold_walls(model: &Model) {
-    let runs = same(model, &[Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(4, Dynamic, 8)]);
-    assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
-}
-
 #[test]
 fn cold_walls_have_the_same_bits_on_any_number_of_ranks() {
-    same_along_cold_walls(&first(0.5, cold_walls()));
-}
-
-#[test]
-#[ignore = "half a minute: scripts/test.sh --long"]
-fn cold_walls_have_the_same_bits_to_the_end_of_their_scene() {
-    same_along_cold_walls(&cold_walls());
+    let ways = [Way::new(3, Forced { seed: 7 }, 2).over_places(), Way::new(4, Dynamic, 8)];
+    let runs = same(&cold_walls(), &ways);
+    assert!(runs.iter().all(|run| run.rows.iter().any(|row| row.walls[1].heat != 0.0)));
 }
 
 #[test]
