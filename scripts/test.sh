@@ -34,7 +34,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1
 # The release profile, compiled sooner: without lines of backtraces, and without optimization across the parts of a crate; zstd, which is C, is
 # optimized less.
-export CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_LTO=off CFLAGS=-O1
+export CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_LTO=off CFLAGS="${CFLAGS:-} -O1"
 cargo fmt --all --check
 # Without MPI: all code is looked at, and what behaves differently is run, compiled quickly.
 cargo clippy --release --locked --all-targets -- -D warnings

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use corpuscle::gpu::KERNELS;
 use naga::{AddressSpace, Block, Expression, Function, Handle, Module, Statement, TypeInner};
 
-/// Members of the uniform `step` that differ from step to step of an interval.
+/// Members of the uniform `step` that differ from step to step of an interval. (`round` and what goes with it take as many values as a plan has rounds.)
 const CHANGING: [&str; 12] = [
     "count",
     "newborns",
@@ -22,7 +22,8 @@ const CHANGING: [&str; 12] = [
     "next_newborns",
 ];
 
-/// Whether a value is known from uniforms and constants alone; `members` are those of uniforms that it is of.
+/// Whether a value is known from uniforms and constants alone; `members` are those of uniforms that it is of. What comes through arguments and
+/// variables is taken for another's.
 fn is_uniform(module: &Module, function: &Function, value: Handle<Expression>, members: &mut BTreeSet<String>) -> bool {
     let mut all = |values: &[Handle<Expression>]| {
         // All of them are looked at.
