@@ -7,10 +7,6 @@ use clouds::*;
 use corpuscle::partition::bisect;
 use coupe::{Partition as _, Point3D};
 
-fn imbalance(weights: &[u64]) -> f64 {
-    *weights.iter().max().unwrap() as f64 * weights.len() as f64 / weights.iter().sum::<u64>() as f64
-}
-
 /// The imbalance of our parts is no worse than that of coupe's, which has the points where we have them: in cells, between which it
 /// must cut as we do (to a tolerance of 0.1 % per cut).
 #[test]

@@ -83,3 +83,8 @@ pub fn weights(tree: &corpuscle::partition::Tree, points: &Points) -> Vec<u64> {
     points.iter().for_each(|(cell, weight)| weights[tree.part_of(*cell)] += weight);
     weights
 }
+
+/// The fullest part over the mean.
+pub fn imbalance(weights: &[u64]) -> f64 {
+    *weights.iter().max().unwrap() as f64 * weights.len() as f64 / weights.iter().sum::<u64>() as f64
+}

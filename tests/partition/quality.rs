@@ -35,10 +35,6 @@ pub fn granularity(tree: &Tree, shares: &[f64], points: &Points) -> Vec<f64> {
     bounds
 }
 
-fn imbalance(weights: &[u64]) -> f64 {
-    *weights.iter().max().unwrap() as f64 * weights.len() as f64 / weights.iter().sum::<u64>() as f64
-}
-
 /// No part exceeds its share by more than the best planes can keep.
 #[test]
 fn parts_are_as_even_as_planes_allow() {
