@@ -1,0 +1,1 @@
+//! Meshes of STL and OBJ: what is read, and what is refused with its line.
