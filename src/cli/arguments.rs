@@ -305,6 +305,9 @@ pub struct CheckArguments {
     /// The scenes, TOML files
     #[arg(required = true, value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub scenes: Vec<PathBuf>,
+    /// Warnings are errors
+    #[arg(long)]
+    pub strict: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,4 +1,4 @@
-//! `corpuscle check`: whether scenes can be run, a line for each.
+//! `corpuscle check`: whether scenes can be run: of each a line, what it holds, and its warnings.
 
 use std::path::Path;
 
@@ -13,11 +13,11 @@ use super::arguments::CheckArguments;
 use super::settings::model_of;
 use super::terminal::{complain, say};
 
-pub fn check(raw: CheckArguments) -> Result<(), CliError> {
+pub fn check(raw: CheckArguments, quiet: bool) -> Result<(), CliError> {
     let mut failed = 0;
     for path in &raw.scenes {
-        match verdict(path) {
-            Ok(line) => say(&line)?,
+        match checked(path, raw.strict, quiet) {
+            Ok(()) => {}
             // The last word of a single scene is its own error.
             Err(error) if raw.scenes.len() == 1 => return Err(error),
             Err(error) => {
@@ -29,11 +29,12 @@ pub fn check(raw: CheckArguments) -> Result<(), CliError> {
     if failed == 0 { Ok(()) } else { Err(CliError::Check { failed, checked: raw.scenes.len() }) }
 }
 
-fn verdict(path: &Path) -> Result<String, CliError> {
+fn checked(path: &Path, strict: bool, quiet: bool) -> Result<(), CliError> {
     let Model { vessel, plan, .. } = model_of(path, load(path)?)?;
     // The last that a run asks of the walls: that they survive the rounding to the grid of its positions.
     TriangleGrid::build(&vessel, &plan.grid, Walls::tolerance(&plan.grid))
         .map_err(|error| CliError::model(path, error.into()))?;
+    let warnings = plan.told();
     let mut line = format!(
         "ok {}: {} particles ({} injected), {} cells, {} steps",
         path.display(),
@@ -42,10 +43,23 @@ fn verdict(path: &Path) -> Result<String, CliError> {
         grouped(plan.grid.cell_count() as u64),
         grouped(plan.estimated_steps as u64),
     );
-    match plan.warnings.len() {
+    match warnings.len() {
         0 => {}
         1 => line += ", 1 warning",
         several => line += &format!(", {several} warnings"),
     }
-    Ok(line + "\n")
+    say(&(line + "\n"))?;
+    if !quiet {
+        let indented = plan
+            .inventory
+            .render()
+            .lines()
+            .map(|line| format!("  {line}").trim_end().to_owned() + "\n")
+            .collect::<String>();
+        say(&indented)?;
+    }
+    if strict && !warnings.is_empty() {
+        return Err(CliError::PlanWarnings { scene: path.to_path_buf(), warnings });
+    }
+    say(&warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>())
 }

@@ -142,6 +142,18 @@ impl CliError {
         CliError::Model { path: path.to_path_buf(), error, help }
     }
 
+    /// The same with what no vessel has beside the help.
+    pub fn doubting(self, doubts: &[String]) -> CliError {
+        match self {
+            CliError::Model { path, error, help } if !doubts.is_empty() => {
+                let told = format!("the cause may be a value that no vessel has:{}", list(doubts));
+                let help = Some(help.map_or(told.clone(), |help| format!("{help}\n{told}")));
+                CliError::Model { path, error, help }
+            }
+            other => other,
+        }
+    }
+
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Study(error) => study_code(error),

@@ -70,7 +70,7 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Verify(raw) => verify::verify(raw),
         Verb::Pareto(raw) => pareto::pareto(raw),
         Verb::Stability(raw) => stability::stability(raw),
-        Verb::Check(raw) => check::check(raw),
+        Verb::Check(raw) => check::check(raw, quiet),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),
         Verb::Completions(raw) => completions::completions(raw),

@@ -73,12 +73,13 @@ pub fn launch(
         return Err(CliError::SubdomainsOfRanks { asked: subdomains, ranks: comm.size() });
     }
     let model = &settings.model;
-    if execution.strict && !model.plan.warnings.is_empty() {
-        let (scene, warnings) = (settings.scene.clone(), model.plan.warnings.clone());
+    let told = model.plan.told();
+    if execution.strict && !told.is_empty() {
+        let (scene, warnings) = (settings.scene.clone(), told);
         return Err(CliError::PlanWarnings { scene, warnings });
     }
     if comm.rank() == 0 {
-        for warning in &model.plan.warnings {
+        for warning in &told {
             tracing::warn!("{warning}");
         }
         if let Some(choice) = &model.choice {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::partition::By;
+use crate::plan::doubts_of;
 use crate::scene::{Scene, load};
 use crate::simulation::{BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model};
 
@@ -25,9 +26,10 @@ pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
     Ok(scene)
 }
 
-/// The scene, its walls and its plan. `path` stands in the message if they are not sound.
+/// The scene, its walls and its plan. `path` stands in the message if they are not sound, with what no vessel has: it may be why.
 pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
-    Model::new(scene).map_err(|error| CliError::model(path, error))
+    let doubts = doubts_of(&scene);
+    Model::new(scene).map_err(|error| CliError::model(path, error).doubting(&doubts))
 }
 
 /// The same where the command line may wish an accuracy or set budgets. A wish sets aside how many particles the file asks

@@ -56,6 +56,11 @@ impl Amounts {
         self.initial_total() + self.injected.iter().sum::<f64>()
     }
 
+    /// kg, all gas at the end of a closed run.
+    pub fn mass(&self, scene: &Scene) -> f64 {
+        scene.gases.iter().enumerate().map(|(index, gas)| self.of_gas(index) * gas.molar_mass).sum()
+    }
+
     /// Moles of one gas in all.
     fn of_gas(&self, gas: usize) -> f64 {
         self.injected[gas] + self.initial.iter().map(|chamber| chamber[gas]).sum::<f64>()

@@ -3,7 +3,7 @@
 use super::amounts::{Amounts, highest_temperature};
 use super::decide::{LADDER_LEVELS, STEPS_PER_INTERVAL, TALLY_EVERY};
 use super::population::{openings, silent_orifices};
-use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
+use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::Species;
 use crate::geometry::Grid;
 use crate::scene::{Method, Scene};
@@ -63,6 +63,7 @@ pub fn plan(
         particles: vec![0; scene.gases.len()],
     });
     Ok(Plan {
+        inventory: Inventory::of(scene, measured, amounts),
         method: Method::ControlVolume,
         particles: 0,
         initial_particles: 0,

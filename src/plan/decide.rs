@@ -12,7 +12,7 @@ use super::render::significant;
 use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
 use super::vents;
 use super::warnings::{Decided, warnings};
-use super::{ChamberPlan, GasPlan, Measured, OpeningPlan, Plan, PlanError, Reason};
+use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, plausible};
 use crate::gas::{Species, jet_mach, kinetics};
 use crate::geometry::Grid;
 use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
@@ -96,7 +96,10 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, method, &vents, measured));
     warnings.extend(motion::warnings(scene, &species, method, measured));
+    let mut inventory = Inventory::of(scene, measured, &amounts);
+    inventory.doubts.extend(plausible::many_steps(scene, resolution.steps as f64));
     Ok(Plan {
+        inventory,
         method,
         particles,
         initial_particles,

@@ -21,9 +21,11 @@ mod decide;
 mod error;
 mod forecast;
 mod heat;
+mod inventory;
 mod limits;
 mod longest;
 mod motion;
+mod plausible;
 mod population;
 mod render;
 mod resolution;
@@ -40,7 +42,9 @@ pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
 pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};
 pub use forecast::{Cause, ColumnForecast, Modelled, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst};
+pub use inventory::Inventory;
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
+pub use plausible::of_scene as doubts_of;
 pub use render::significant;
 pub use resolution::{FASTEST_PAIR, LADDER_TAIL, PER_CELL};
 
@@ -68,6 +72,8 @@ pub struct Measured {
     pub heated: Vec<(usize, usize)>,
     /// Where walls move.
     pub motion: Option<MeasuredMotion>,
+    /// Of each wall of the scene.
+    pub walls: Vec<MeasuredWall>,
 }
 
 /// The part of the gas space that may be in no chamber, as the inside of holes is.
@@ -96,6 +102,19 @@ pub struct MeasuredMotion {
     pub least_share: f64,
     /// m/s, of the fastest wall.
     pub fastest: f64,
+}
+
+/// A wall as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredWall {
+    /// m, the corners of the box around it.
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+    /// m2.
+    pub area: f64,
+    /// m3, what it encloses: gas in a cavity, else solid.
+    pub volume: f64,
+    pub cavity: bool,
 }
 
 /// Where a vent is.
@@ -160,6 +179,9 @@ pub struct Plan {
     /// What the scene lacks, and kernels are therefore compiled without.
     #[serde(skip)]
     pub left_out: Vec<&'static str>,
+    /// What the scene holds, and what of it no vessel has; in its units, so no part of what checkpoints are compared by.
+    #[serde(skip)]
+    pub inventory: Inventory,
     /// Of a scene that wishes an accuracy or has a budget.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub forecast: Option<Forecast>,
@@ -190,6 +212,11 @@ pub struct GasPlan {
 }
 
 impl Plan {
+    /// All warnings: what no vessel has first.
+    pub fn told(&self) -> Vec<String> {
+        [self.inventory.doubts.as_slice(), &self.warnings].concat()
+    }
+
     /// The gases as they are modelled, by index.
     pub fn species(&self) -> Vec<Species> {
         self.gases.iter().map(|gas| gas.species.clone()).collect()

@@ -1,18 +1,18 @@
 //! The plan as text: the table of `corpuscle plan`, and TOML.
 
-use super::{Plan, Reason};
+use super::{ChamberPlan, Plan, Reason};
 use crate::scene::Method;
 use std::fmt::Write;
 
 impl Plan {
     /// Aligned tables: each decision with its reason, then chambers, gases, openings, warnings.
     pub fn render(&self) -> String {
-        let mut rows: Vec<[String; 3]> = self
+        let mut rows: Vec<Vec<String>> = self
             .reasons
             .iter()
-            .map(|Reason { quantity, value, why }| [quantity, value, why].map(String::clone))
+            .map(|Reason { quantity, value, why }| vec![quantity.clone(), value.clone(), why.clone()])
             .collect();
-        let mut row = |quantity: &str, value: String, why: &str| rows.push([quantity.into(), value, why.into()]);
+        let mut row = |quantity: &str, value: String, why: &str| rows.push(vec![quantity.into(), value, why.into()]);
         if self.method != Method::ControlVolume {
             self.render_particles(&mut row);
         }
@@ -25,35 +25,40 @@ impl Plan {
         let mut text = table(&rows);
 
         let counted = |count: u64| if self.method == Method::ControlVolume { String::new() } else { grouped(count) };
-        let mut chambers = vec![["chamber".to_string(), "volume".into(), "particles".into()]];
-        chambers.extend(self.chambers.iter().map(|chamber| {
-            let count = counted(chamber.particles.iter().sum());
-            [chamber.name.clone(), format!("{} L", significant(1e3 * chamber.volume)), count]
-        }));
-        let mut gases = vec![["gas".to_string(), "particles".into(), "spin dof, exchange probability".into()]];
+        let mut chambers = vec![row_of(["chamber", "particles", ""])];
+        if self.method != Method::ControlVolume {
+            let particles = |chamber: &ChamberPlan| counted(chamber.particles.iter().sum());
+            chambers.extend(self.chambers.iter().map(|chamber| row_of([&chamber.name, &particles(chamber), ""])));
+        }
+        let mut gases = vec![row_of(["gas", "particles", "spin dof, exchange probability"])];
         gases.extend(self.gases.iter().map(|gas| {
             let spin = format!("{}, {}", significant(gas.spin_dof), significant(gas.exchange_probability));
-            [gas.name.clone(), counted(gas.particles), spin]
+            row_of([&gas.name, &counted(gas.particles), &spin])
         }));
-        let mut openings = vec![["opening".to_string(), "area".into(), "Knudsen number".into()]];
+        let mut openings = vec![row_of(["opening", "area", "Knudsen number"])];
         openings.extend(self.openings.iter().map(|opening| {
             let area = format!("{} cm2", significant(1e4 * opening.area));
-            [opening.name.clone(), area, significant(opening.knudsen)]
+            row_of([&opening.name, &area, &significant(opening.knudsen)])
         }));
-        let mut vents = vec![["vent".to_string(), "area, place".into(), "mass flow at the start".into()]];
+        let mut vents = vec![row_of(["vent", "area, place", "mass flow at the start"])];
         vents.extend(self.vents.iter().map(|vent| {
             let areas = format!("{} of {} cm2", significant(1e4 * vent.area), significant(1e4 * vent.place));
-            [vent.name.clone(), areas, format!("{} g/s", significant(1e3 * vent.initial_mass_flow))]
+            row_of([&vent.name, &areas, &format!("{} g/s", significant(1e3 * vent.initial_mass_flow))])
         }));
+        let inventory = self.inventory.render();
+        if !inventory.is_empty() {
+            text.push('\n');
+            text.push_str(&inventory);
+        }
         for part in [chambers, gases, openings, vents].iter().filter(|part| part.len() > 1) {
             text.push('\n');
             text.push_str(&table(part));
         }
-        for warning in &self.warnings {
+        for warning in &self.told() {
             // Writing to a string cannot fail.
             let _ = write!(text, "\nwarning: {warning}");
         }
-        if !self.warnings.is_empty() {
+        if !self.told().is_empty() {
             text.push('\n');
         }
         text
@@ -84,14 +89,19 @@ impl Plan {
     }
 }
 
-/// Columns padded to their widest entry; a line per row.
-fn table(rows: &[[String; 3]]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let (first, second) = (width(0), width(1));
+fn row_of(cells: [&str; 3]) -> Vec<String> {
+    cells.map(String::from).to_vec()
+}
+
+/// Columns padded to their widest entry; a line per row, all of the same length.
+pub(super) fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let widths: Vec<usize> =
+        (0..columns).map(|c| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0)).collect();
     let mut text = String::new();
-    for [a, b, c] in rows {
-        let line = format!("{a:first$}  {b:second$}  {c}");
-        text.push_str(line.trim_end());
+    for row in rows {
+        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
+        text.push_str(cells.join("  ").trim_end());
         text.push('\n');
     }
     text
@@ -137,7 +147,6 @@ mod tests {
 
     #[test]
     fn columns_align() {
-        let rows = [["a", "bb", "c"], ["aaa", "b", ""]].map(|row| row.map(String::from));
-        assert_eq!(table(&rows), "a    bb  c\naaa  b\n");
+        assert_eq!(table(&[["a", "bb", "c"], ["aaa", "b", ""]].map(row_of)), "a    bb  c\naaa  b\n");
     }
 }

@@ -54,6 +54,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         vents: vec![],
         heated: vec![],
         motion: None,
+        walls: vec![],
     };
     (scene, measured)
 }

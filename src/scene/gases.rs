@@ -80,7 +80,10 @@ fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
             (None, Some(_)) => least_heat_capacity("3/2 R", MONATOMIC, units),
             _ => least_heat_capacity("5/2 R", MONATOMIC + GAS_CONSTANT, units),
         };
-        return Err(Problem::value(span, show(found), allowed));
+        let problem = Problem::value(span, show(found), allowed);
+        let hinted =
+            raw.value.gamma.is_none().then(|| another_unit(found, raw.value.molar_mass.value, units)).flatten();
+        return Err(if let Some(hint) = hinted { problem.hint(&hint) } else { problem });
     }
     // A ratio next to 1 asks for more internal energy than numbers can hold.
     if cv > 1e6 * GAS_CONSTANT {
@@ -94,6 +97,25 @@ const GAMMA_ALLOWED: &str = "a number above 1 and at most 5/3";
 fn least_heat_capacity(name: &str, si: f64, units: UnitSystem) -> String {
     let least = si / units.factor(Quantity::MolarHeat);
     described(&format!("at least {name} = {least:.4}"), Quantity::MolarHeat, units)
+}
+
+/// No gas of an inflator has more, J/(mol K); hexane has 17 R.
+pub(super) const MOST_MOLAR_HEAT: f64 = 20.0 * GAS_CONSTANT;
+
+/// What a heat capacity per kilogram, or one in R, would be in the unit that is asked for, if a gas can have that.
+fn another_unit(found: f64, molar_mass: f64, units: UnitSystem) -> Option<String> {
+    let own = units.factor(Quantity::MolarHeat);
+    let molar_mass = molar_mass * units.factor(Quantity::MolarMass);
+    let meant = [
+        ("kJ/(kg K)", 1e3 * found * molar_mass),
+        ("J/(mol K)", found),
+        ("J/(kg K)", found * molar_mass),
+        ("cal/(mol K)", 4.184 * found),
+    ];
+    let possible =
+        |si: f64| (0.99 * MONATOMIC..=MOST_MOLAR_HEAT).contains(&si) && (si / (found * own) - 1.0).abs() > 1e-9;
+    let (unit, si) = meant.into_iter().find(|(_, si)| possible(*si))?;
+    Some(format!("is it in {unit}? Then it is {:.4} {}", si / own, units.symbol(Quantity::MolarHeat)))
 }
 
 /// The number, or the first coefficient: those of higher powers are zero here.

@@ -34,6 +34,7 @@ pub use gases::shown_collision_number;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use types::*;
+pub use units::Quantity as Dimension;
 pub use write::to_toml;
 
 /// A scene file is a text that people write.

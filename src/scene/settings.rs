@@ -1,7 +1,7 @@
 //! What the scene asks of the plan and of the output.
 
 use super::errors::Problem;
-use super::gases::{least_collision_number, shown_collision_number};
+use super::gases::{MOST_MOLAR_HEAT, least_collision_number, shown_collision_number};
 use super::numbers::{bounded, positive, show, small_count};
 use super::raw::{RawCap, RawGas, RawModel, RawOutput, RawSwitch, When};
 use super::raw_values::At;
@@ -167,7 +167,12 @@ pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<Ra
             }
             None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
-                return Err(Problem::value(&raw_gas.span, found, allowed).hint("give `collision_number` in `[model]`"));
+                let hint = if cv + GAS_CONSTANT > MOST_MOLAR_HEAT && raw_gas.value.gamma.is_none() {
+                    "its heat capacity is more than 20 R: is it per kilogram? Multiply it by the molar mass"
+                } else {
+                    "give `collision_number` in `[model]`"
+                };
+                return Err(Problem::value(&raw_gas.span, found, allowed).hint(hint));
             }
             _ => {}
         }

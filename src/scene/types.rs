@@ -72,6 +72,13 @@ impl HeatCapacity {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixture(pub Vec<(usize, f64)>);
 
+impl Mixture {
+    /// kg/mol.
+    pub fn molar_mass(&self, gases: &[Gas]) -> f64 {
+        self.0.iter().map(|&(gas, fraction)| fraction * gases[gas].molar_mass).sum()
+    }
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
     pub name: String,

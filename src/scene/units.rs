@@ -8,11 +8,13 @@ use super::types::UnitSystem;
 
 /// What a number of the file measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub enum Quantity {
     /// A ratio or a direction.
     Pure,
     Length,
     Area,
+    Volume,
+    Mass,
     Time,
     Velocity,
     Temperature,
@@ -27,13 +29,16 @@ pub(super) enum Quantity {
 
 impl UnitSystem {
     /// SI units per unit of this system.
-    pub(super) fn factor(self, quantity: Quantity) -> f64 {
+    pub fn factor(self, quantity: Quantity) -> f64 {
         use Quantity::*;
         use UnitSystem::*;
         match (self, quantity) {
             (Si, _) | (_, Pure | Temperature) => 1.0,
             (KgMmMs | TMmS, Length) => 1e-3,
             (KgMmMs | TMmS, Area) => 1e-6,
+            (KgMmMs | TMmS, Volume) => 1e-9,
+            (KgMmMs, Mass) => 1.0,
+            (TMmS, Mass) => 1e3,
             (KgMmMs, Time) => 1e-3,
             (KgMmMs, Velocity) => 1.0,
             (TMmS, Velocity) => 1e-3,
@@ -50,7 +55,7 @@ impl UnitSystem {
     }
 
     /// What messages call the unit.
-    pub(super) fn symbol(self, quantity: Quantity) -> &'static str {
+    pub fn symbol(self, quantity: Quantity) -> &'static str {
         use Quantity::*;
         use UnitSystem::*;
         match (self, quantity) {
@@ -58,6 +63,10 @@ impl UnitSystem {
             (_, Temperature) => "K",
             (Si, Length) => "m",
             (Si, Area) => "m2",
+            (Si, Volume) => "m3",
+            (KgMmMs | TMmS, Volume) => "mm3",
+            (Si | KgMmMs, Mass) => "kg",
+            (TMmS, Mass) => "t",
             (Si | TMmS, Time) => "s",
             (Si, Velocity) => "m/s",
             (KgMmMs, Velocity) => "mm/ms",
@@ -98,6 +107,8 @@ mod tests {
             };
             near(Quantity::Length, length);
             near(Quantity::Area, length * length);
+            near(Quantity::Volume, length.powi(3));
+            near(Quantity::Mass, mass);
             near(Quantity::Time, time);
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use crate::geometry::{GeometryError, Vessel, region_contains};
+use crate::geometry::{GeometryError, Vessel, WallInfo, region_contains};
 use crate::plan::{
-    Choice, Limit, Measured, MeasuredVent, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
-    plan, significant,
+    Choice, Limit, Measured, MeasuredVent, MeasuredWall, Outlook, Plan, PlanError, Quantity, Reason, choose, limit,
+    modelling_errors, plan, significant,
 };
-use crate::scene::{Method, Opening, Orifice, Scene};
+use crate::scene::{Dimension, Method, Opening, Orifice, Scene};
 use crate::subdomain::Memory;
 
 use super::coats::Coats;
 use super::flow_only::{self, Part};
-use super::moving::Moving;
+use super::moving::{Moving, extent};
 use super::outlook::outlook;
 use super::uniform::{Known, NoChamber};
 
@@ -37,11 +37,14 @@ pub enum ModelError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Plan(#[from] PlanError),
-    #[error("orifice \"{orifice}\": its disc is not in the gas: ({:.4}, {:.4}, {:.4}) m lies in or behind a wall", point[0], point[1], point[2])]
+    #[error(
+        "orifice \"{orifice}\": its disc, of a radius of {radius}, is not in the gas: {point} lies in or behind a wall"
+    )]
     #[diagnostic(help(
-        "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller"
+        "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller (it is in the \
+         unit of the scene, length times length)"
     ))]
-    OrificeInWall { orifice: String, point: [f64; 3] },
+    OrificeInWall { orifice: String, radius: String, point: String },
     #[error(
         "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
     )]
@@ -104,6 +107,8 @@ impl Model {
     /// and checkpoints go by.
     pub fn explained(&self) -> Plan {
         let mut plan = self.plan.clone();
+        plan.warnings = plan.told();
+        plan.inventory.doubts.clear();
         if let Some(choice) = &self.choice {
             choice.explain(&mut plan);
         } else if plan.method != Method::ControlVolume {
@@ -247,7 +252,13 @@ pub(super) fn measured(
         probe_volumes: probe_volumes.to_vec(),
         vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
         heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
+        walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
+}
+
+fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {
+    let (min, max) = extent(vessel, |of, _| of == index);
+    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity }
 }
 
 /// The chamber that a point of the gas belongs to.
@@ -281,6 +292,16 @@ fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
         .collect()
 }
 
+fn orifice_in_wall(scene: &Scene, orifice: &Orifice, point: DVec3) -> ModelError {
+    let (factor, unit) = (scene.units.factor(Dimension::Length), scene.units.symbol(Dimension::Length));
+    let [x, y, z] = point.to_array().map(|m| significant(m / factor));
+    ModelError::OrificeInWall {
+        orifice: orifice.name.clone(),
+        radius: format!("{} {unit}", significant((orifice.area / std::f64::consts::PI).sqrt() / factor)),
+        point: format!("({x}, {y}, {z}) {unit}"),
+    }
+}
+
 /// The middle of an orifice's disc, lifted a little off its wall, the disc's normal, and its radius, a little less, m.
 fn disc_of(orifice: &Orifice) -> (DVec3, DVec3, f64) {
     let radius = (orifice.area / std::f64::consts::PI).sqrt();
@@ -298,7 +319,7 @@ fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
             let arm = if k == 8 { 0.0 } else { radius };
             let point = center + arm * (libm::cos(angle) * u + libm::sin(angle) * v);
             if !vessel.is_gas(point.into()) {
-                return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() });
+                return Err(orifice_in_wall(scene, orifice, point));
             }
         }
     }
@@ -312,7 +333,7 @@ fn check_discs(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
         let corners = vessel.triangles.iter().map(|triangle| triangle.vertices.map(|v| vessel.vertices[v as usize]));
         let crossed = corners.filter_map(|corners| nearest_crossing(corners.map(DVec3::from), center, normal));
         if let Some(point) = crossed.into_iter().find(|point| point.distance(center) < radius) {
-            return Err(ModelError::OrificeInWall { orifice: orifice.name.clone(), point: point.into() });
+            return Err(orifice_in_wall(scene, orifice, point));
         }
     }
     Ok(())
@@ -362,7 +383,10 @@ mod tests {
             refusal(&format!("{BOX}{plate}{orifice}"))
         };
         let refused = with(0.06).expect("a plate crosses the disc");
-        assert!(refused.contains("orifice \"inlet\": its disc is not in the gas: (0.0000, 0.0500, 0.0"), "{refused}");
+        assert!(
+            refused.contains("orifice \"inlet\": its disc, of a radius of 0.02523 m, is not in the gas: ("),
+            "{refused}"
+        );
         // The disc's radius is 25.2 mm.
         assert_eq!(with(0.0765), None);
     }

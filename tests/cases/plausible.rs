@@ -1,1 +1,227 @@
 //! Inputs that can be read but cannot be meant: each is told with quantity, value and the likely unit.
+//!
+//! Each row changes one line of a scene that is as it should be, which has no such warning.
+
+use std::path::Path;
+
+use corpuscle::plan::doubts_of;
+use corpuscle::scene::parse;
+use corpuscle::simulation::Model;
+
+use super::{input, outcome};
+
+/// In SI, and in kg, mm, ms.
+const TANK: &str = include_str!("inputs/plausible/tank.toml");
+const CAN: &str = include_str!("inputs/plausible/can.toml");
+/// A heat capacity per kilogram, with the collision number that it asks for.
+const PER_KILOGRAM: &str = include_str!("inputs/plausible/per_kilogram.toml");
+
+/// What a plan warns of that no vessel has, or the error in place of a plan.
+fn doubts(text: &str, folder: &Path) -> Vec<String> {
+    let scene = match parse(text, "scene.toml", folder) {
+        Ok(scene) => scene,
+        Err(error) => return vec![format!("{:?}", miette::Report::new(error))],
+    };
+    let known = doubts_of(&scene);
+    match Model::new(scene) {
+        Ok(model) => model.plan.inventory.doubts,
+        Err(error) => [known, vec![format!("{:?}", miette::Report::new(error))]].concat(),
+    }
+}
+
+struct Slip {
+    scene: &'static str,
+    /// What stands in the scene, and what the user wrote.
+    line: [&'static str; 2],
+    /// All of them in one warning.
+    words: &'static [&'static str],
+}
+
+const fn slip(scene: &'static str, line: [&'static str; 2], words: &'static [&'static str]) -> Slip {
+    Slip { scene, line, words }
+}
+
+const PRESSURE: &str = "pressure = 101325.0\n";
+const AIR: &str = "molar_mass = 0.02897\ngamma = 1.4";
+const FLOW: &str = "[[0.0, 0.0], [0.002, 1.0], [0.004, 0.5]]";
+const CAN_FLOW: &str = "[[0, 0], [5, 3e-3], [20, 1.5e-3], [50, 0]]";
+const VENT: &str = "opening_pressure = 150000.0";
+
+const SLIPS: &[Slip] = &[
+    slip(
+        TANK,
+        [PRESSURE, "pressure = 101.325\n"],
+        &["chamber `tank`: pressure 101.325 Pa", "1000 to 1e8 Pa", "in kPa?"],
+    ),
+    slip(TANK, [PRESSURE, "pressure = 1013.25\n"], &["1013.25 Pa", "digits of an atmosphere", "in hPa (mbar)?"]),
+    slip(TANK, [PRESSURE, "pressure = 1.013\n"], &["1.013 Pa", "in bar?"]),
+    slip(TANK, [PRESSURE, "pressure = 0.1013\n"], &["0.1013 Pa", "in MPa?"]),
+    slip(TANK, [PRESSURE, "pressure = 98.0\n"], &["98 Pa", "1000 to 1e8 Pa", "in kPa?"]),
+    slip(TANK, [PRESSURE, "pressure = 1e29\n"], &["pressure 1e29 Pa", "1000 to 1e8 Pa"]),
+    slip(TANK, ["temperature = 300.0\ngas", "temperature = 20.0\ngas"], &["20 K", "150 to 4000 K", "293.15 K"]),
+    slip(
+        TANK,
+        ["temperature = 300.0\n[[ch", "temperature = 27.0\n[[ch"],
+        &["wall `tank`: temperature 27 K", "Celsius"],
+    ),
+    slip(TANK, ["temperature = 700.0", "temperature = 7e5"], &["orifice `inflator`: temperature 700000 K", "4000 K"]),
+    slip(
+        TANK,
+        [FLOW, "[[0.0, 0.0], [0.002, 1e3], [0.004, 500]]"],
+        &["mass_flow up to 1000 kg/s", "100 kg/s", "in g/s?"],
+    ),
+    slip(
+        TANK,
+        ["area = 2e-4", "area = 2e-7"],
+        &["mass_flow up to 1 kg/s through an area of 2.000e-7 m2", "to drive it"],
+    ),
+    slip(TANK, ["area = 2e-4", "area = 200.0"], &["radius of 7.979 m", "make `area` smaller"]),
+    slip(TANK, [FLOW, "[[0.0, 0.0], [2.0, 1.0], [4.0, 0.5]]"], &["goes on until 4 s, 1000 times `end_time` 0.004 s"]),
+    slip(
+        TANK,
+        ["particles = 2000", "particles = 2000\ntime_step = 1e-18"],
+        &["4,000,000,000,000,000 steps", "1e8", "1e-18 s"],
+    ),
+    slip(TANK, ["end_time = 0.004", "end_time = 4000.0"], &["end_time 4000 s", "1e-6 to 100 s", "in us?"]),
+    slip(TANK, [AIR, "molar_mass = 28.97\ngamma = 1.4"], &["gas `air`: molar_mass 28.97 kg/mol", "in g/mol?"]),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = 1004.5"],
+        &["236.627 internal degrees", "more than 20 R", "per kilogram?"],
+    ),
+    slip(TANK, [AIR, "molar_mass = 0.02897\ncv = 717.5"], &["more than 20 R", "per kilogram?"]),
+    slip(TANK, [AIR, "molar_mass = 0.02897\ncp = 1.0045"], &["1.0045", "in kJ/(kg K)?", "29.1004 J/(mol K)"]),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = [26.9, 5.9, 0.0]"],
+        &["gas `air`: molar cp 1796.9", "at 300 K (20 R)"],
+    ),
+    slip(TANK, ["max = [0.4, 0.3, 0.25]", "max = [400, 300, 250]"], &["longest side 400 m", "0.001 to 10 m", "in mm?"]),
+    slip(TANK, ["discharge = 0.7", "discharge = 70"], &["vent `vent`: discharge 70", "at most 1", "per cent?"]),
+    slip(TANK, [VENT, "opening_pressure = 150.0"], &["opening_pressure 150 Pa", "1000 to 1e8 Pa", "in kPa?"]),
+    slip(TANK, [VENT, "external_pressure = 1.01325"], &["external_pressure 1.01325 Pa", "in bar?"]),
+    slip(TANK, ["area = 1e-3", "area = 1.131e-2"], &["four times", "diameter 0.06 m", "is it the radius?"]),
+    slip(TANK, ["jet = { mach = 1.0", "jet = { velocity = 0.4"], &["jet velocity 0.4 m/s", "1 to 10000 m/s"]),
+    slip(CAN, [CAN_FLOW, "[[0, 0], [5, 3], [20, 1.5], [50, 0]]"], &["up to 3 kg/ms", "0.1 kg/ms", "in kg/s?"]),
+    slip(CAN, ["pressure = 1.01325e-4", "pressure = 101325"], &["101325 GPa", "in Pa?"]),
+    slip(CAN, ["pressure = 1.01325e-4", "pressure = 1.01325"], &["1.01325 GPa", "in bar?"]),
+    slip(CAN, ["pressure = 1.01325e-4", "pressure = 0.2"], &["0.2 GPa", "1e-6 to 0.1 GPa", "is it in MPa?"]),
+    slip(CAN, ["heat_transfer = 5e-8", "heat_transfer = 50"], &["heat_transfer 50 J/(ms mm2 K)", "in W/(m2 K)?"]),
+    slip(CAN, ["end_time = 60.0", "end_time = 0.06"], &["goes on until 50 ms, 833.3 times `end_time` 0.06 ms"]),
+    slip(CAN, ["radius = 150", "radius = 0.150"], &["not in the gas", "radius of 7.979 mm"]),
+    slip(
+        CAN,
+        [
+            "[[probe]]",
+            "[[probe]]\nname = \"slice\"\nregion = { cylinder = { base = [0, 0, 200], axis = [0, 0, 1], \
+        radius = 300, height = 10 } }\n[[probe]]",
+        ],
+        &["probe `slice`", "radius 300 mm, twice the 150 mm of wall `can`", "diameter?"],
+    ),
+    slip(CAN, ["molar_mass = 0.0280134", "molar_mass = 28.0134"], &["28.0134 kg/mol", "in g/mol?"]),
+];
+
+#[test]
+fn what_no_vessel_has_is_told_with_its_likely_unit() {
+    let mut wrong = Vec::new();
+    for Slip { scene, line: [found, wanted], words } in SLIPS {
+        let text = scene.replace(found, wanted);
+        assert_ne!(&text, scene, "{wanted}");
+        let told = doubts(&text, Path::new(""));
+        // An error's lines are wrapped.
+        let plain = |text: &String| text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        if !told.iter().any(|text| words.iter().all(|word| plain(text).contains(word))) {
+            wrong.push(format!("{wanted}: {words:?} in {told:#?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A mesh in mm in a scene in metres, and one in metres in a scene in mm.
+#[test]
+fn a_mesh_in_another_unit_is_told_with_its_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    for (side, units, pressure, words) in [
+        (380.0, "SI", "101325", ["longest side 380 m", "is the mesh in mm? then `scale = 0.001`"]),
+        (0.38, "kg-mm-ms", "1.01325e-4", ["longest side 0.38 mm", "is the mesh in m? then `scale = 1000`"]),
+    ] {
+        std::fs::write(folder.path().join("box.obj"), cube(side)).unwrap();
+        let text = format!(
+            "units = \"{units}\"\nend_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n[[wall]]\nname = \"m\"\n\
+             shape = \"mesh\"\nfile = \"box.obj\"\ngas = \"inside\"\n[[chamber]]\nname = \"c\"\npressure = {pressure}\n\
+             temperature = 300\ngas = \"air\"\n[model]\nparticles = 2000\n"
+        );
+        let told = doubts(&text, folder.path());
+        assert!(told.iter().any(|text| words.iter().all(|word| text.contains(word))), "{told:#?}");
+        let scale = if side > 1.0 { "scale = 1e-3" } else { "scale = 1e3" };
+        let scaled = doubts(&text.replace("gas = \"inside\"", &format!("gas = \"inside\"\n{scale}")), folder.path());
+        assert!(scaled.iter().all(|text| !text.contains("longest side")), "{scaled:#?}");
+    }
+}
+
+/// A cube as an OBJ text, its faces outwards.
+fn cube(side: f64) -> String {
+    let mut text = String::new();
+    for corner in 0..8 {
+        let at = |bit: usize| if corner >> bit & 1 == 1 { side } else { 0.0 };
+        text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+    }
+    text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+}
+
+/// What is meant has no such warning: the scenes that were changed above, near vacuum beside other gas or before an inflow, free
+/// flight of thin gas, a vent into vacuum.
+#[test]
+fn what_is_meant_is_not_doubted() {
+    let with = |scene: &str, lines: &[[&str; 2]]| {
+        lines.iter().fold(scene.to_string(), |text, [found, wanted]| {
+            assert!(text.contains(found), "{found}");
+            text.replace(found, wanted)
+        })
+    };
+    let receiver = "[[chamber]]\nname = \"thin\"\nregion = { box = { min = [0, 0, 0], max = [0.1, 0.3, 0.25] } }\n\
+        pressure = 500.0\ntemperature = 300.0\ngas = \"air\"\n[[chamber]]";
+    let here = ["face = \"+x\"\nposition", "face = \"+x\"\nchamber = \"tank\"\nposition"];
+    let silent = ["[[0.0, 0.0], [0.002, 1.0], [0.004, 0.5]]", "[[0.0, 0.0], [0.004, 0.0]]"];
+    for text in [
+        TANK.to_string(),
+        CAN.to_string(),
+        with(TANK, &[["[[chamber]]", receiver], here, ["particles = 2000", "particles = 50000"]]),
+        with(TANK, &[[PRESSURE, "pressure = 1e-3\n"]]),
+        with(TANK, &[[PRESSURE, "pressure = 10.0\n"], ["[model]", "[model]\nmethod = \"none\""], silent]),
+        with(TANK, &[[VENT, "external_pressure = 10.0"]]),
+        with(TANK, &[[VENT, "external_pressure = 0.0"]]),
+    ] {
+        // (A vessel of hardly any gas has no particle, which is an error of its own.)
+        let told: Vec<String> =
+            doubts(&text, Path::new("")).into_iter().filter(|text| !text.contains("no particle")).collect();
+        assert_eq!(told, [""; 0], "{text}");
+    }
+}
+
+/// `check` and `plan` say of each wall, chamber and vent what it is, in the scene's units; with `--strict` a warning is an error.
+#[test]
+fn check_and_plan_say_what_a_scene_holds() {
+    let can = input("plausible/can.toml");
+    let (code, out, _) = outcome(&["check", can.to_str().unwrap()]);
+    assert_eq!(code, 0);
+    for line in [
+        "can   300 x 300 x 424.4 mm from (-150, -150, 0)",
+        "all gas with all inflow  2.991e7 mm3 (29.91 L)  0.09779 kg  0.0006903 GPa, 690.9 K if closed, no heat lost",
+        "burst disc  0.0002513 GPa (2.513 bar) absolute  0.00015 GPa",
+        "warning: vent `burst disc`: largest flux",
+    ] {
+        assert!(out.contains(line), "{line}\n{out}");
+    }
+    let (_, plan, _) = outcome(&["plan", can.to_str().unwrap()]);
+    assert!(plan.contains("burst disc  0.0002513 GPa (2.513 bar) absolute"), "{plan}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("slip.toml");
+    std::fs::write(&path, TANK.replace(PRESSURE, "pressure = 101.325\n")).unwrap();
+    let path = path.to_str().unwrap();
+    for verb in ["check", "plan", "run"] {
+        let (code, _, err) = outcome(&[verb, path, "--strict"]);
+        assert_eq!(code, 2, "{verb}");
+        assert!(err.contains("101.325 Pa") && err.contains("kPa?"), "{err}");
+    }
+}

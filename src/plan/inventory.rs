@@ -1,0 +1,136 @@
+//! What a scene holds, in its own units: the box, area and volume of each wall, the gas of each chamber, all gas once it is in, and
+//! where vents open. Who reads it sees a wrong unit at a glance; what no vessel has is told besides (`plausible`).
+//!
+//! All gas at the end: p = n R T / V with T from the energy balance of all gas and all inflow (`Amounts`), no heat lost, vents
+//! shut, no work of walls that move.
+
+use super::amounts::Amounts;
+use super::render::{significant, table};
+use super::{Measured, MeasuredWall, plausible};
+use crate::gas::moles_at;
+use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
+
+/// SI, but for what is shown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Inventory {
+    pub units: UnitSystem,
+    pub walls: Vec<(String, MeasuredWall)>,
+    pub chambers: Vec<(String, Contents)>,
+    /// All gas at the end of the run.
+    pub end: Contents,
+    pub vents: Vec<(String, Opens)>,
+    /// Values that no vessel has, each with its range and the unit that is likely meant.
+    pub doubts: Vec<String>,
+    inflow: bool,
+}
+
+/// Gas at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Contents {
+    /// m3.
+    pub volume: f64,
+    /// kg.
+    pub mass: f64,
+    /// Pa.
+    pub pressure: f64,
+    /// K.
+    pub temperature: f64,
+}
+
+/// When a vent opens.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Opens {
+    /// Pa.
+    pub absolute: f64,
+    pub outside: f64,
+    /// Whether a closed vessel that loses no heat gets there.
+    pub reached: bool,
+}
+
+impl Inventory {
+    pub(super) fn of(scene: &Scene, measured: &Measured, amounts: &Amounts) -> Inventory {
+        let volumes = measured.chamber_volumes.iter();
+        let chambers: Vec<(String, Contents)> = scene
+            .chambers
+            .iter()
+            .zip(volumes)
+            .map(|(chamber, &v)| (chamber.name.clone(), at_start(scene, chamber, v)))
+            .collect();
+        let volume = measured.motion.map_or(measured.gas_volume, |motion| motion.final_gas_volume);
+        let end = Contents {
+            volume,
+            mass: amounts.mass(scene),
+            pressure: amounts.total() * GAS_CONSTANT * amounts.final_temperature / volume,
+            temperature: amounts.final_temperature,
+        };
+        let highest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(end.pressure, f64::max);
+        let opens = |vent: &Vent| {
+            let absolute = vent.external_pressure + vent.opening_pressure;
+            Opens {
+                absolute,
+                outside: vent.external_pressure,
+                reached: highest >= absolute || measured.motion.is_some(),
+            }
+        };
+        Inventory {
+            units: scene.units,
+            walls: scene.walls.iter().map(|wall| wall.name.clone()).zip(measured.walls.iter().copied()).collect(),
+            chambers,
+            end,
+            vents: scene.vents.iter().map(|vent| (vent.name.clone(), opens(vent))).collect(),
+            doubts: plausible::doubts(scene, measured, &end),
+            inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
+        }
+    }
+
+    fn shown(&self, si: f64, dimension: Dimension) -> String {
+        format!("{} {}", significant(si / self.units.factor(dimension)), self.units.symbol(dimension))
+    }
+
+    /// Tables of walls, chambers and vents.
+    pub fn render(&self) -> String {
+        let mut walls = vec![heads(["wall", "box", "area", "volume"])];
+        walls.extend(self.walls.iter().map(|(name, wall)| {
+            let of = |values: [f64; 3]| values.map(|m| significant(m / self.units.factor(Dimension::Length)));
+            let sides = of(std::array::from_fn(|axis| wall.max[axis] - wall.min[axis])).join(" x ");
+            let [sides, low] = [sides, of(wall.min).join(", ")];
+            let place = format!("{sides} {} from ({low})", self.units.symbol(Dimension::Length));
+            let volume = self.shown(wall.volume, Dimension::Volume);
+            let volume = if wall.cavity { volume } else { format!("{volume}, solid") };
+            vec![name.clone(), place, self.shown(wall.area, Dimension::Area), volume]
+        }));
+        let mut chambers = vec![heads(["chamber", "volume", "mass", "pressure, temperature"])];
+        chambers.extend(self.chambers.iter().map(|(name, gas)| self.contents(name.clone(), gas)));
+        if self.inflow || self.chambers.len() > 1 {
+            let inflow = if self.inflow { " with all inflow" } else { "" };
+            chambers.push(self.contents(format!("all gas{inflow}"), &self.end));
+        }
+        let mut vents = vec![heads(["vent", "opens at", "above the outside", ""])];
+        vents.extend(self.vents.iter().map(|(name, opens)| {
+            let note = if opens.reached { "" } else { "not reached by all gas together" };
+            let [absolute, above] =
+                [opens.absolute, opens.absolute - opens.outside].map(|p| self.shown(p, Dimension::Pressure));
+            let bar = significant(1e-5 * opens.absolute);
+            vec![name.clone(), format!("{absolute} ({bar} bar) absolute"), above, note.to_string()]
+        }));
+        let parts = [walls, chambers, vents];
+        let tables: Vec<String> = parts.iter().filter(|part| part.len() > 1).map(|part| table(part)).collect();
+        tables.join("\n")
+    }
+
+    fn contents(&self, name: String, gas: &Contents) -> Vec<String> {
+        let state = format!("{}, {} K", self.shown(gas.pressure, Dimension::Pressure), significant(gas.temperature));
+        let state = if std::ptr::eq(gas, &self.end) { format!("{state} if closed, no heat lost") } else { state };
+        let volume = format!("{} ({} L)", self.shown(gas.volume, Dimension::Volume), significant(1e3 * gas.volume));
+        vec![name, volume, self.shown(gas.mass, Dimension::Mass), state]
+    }
+}
+
+fn heads(names: [&str; 4]) -> Vec<String> {
+    names.map(String::from).to_vec()
+}
+
+fn at_start(scene: &Scene, chamber: &Chamber, volume: f64) -> Contents {
+    let mass = chamber.mixture.molar_mass(&scene.gases) * moles_at(chamber.pressure, volume, chamber.temperature);
+    Contents { volume, mass, pressure: chamber.pressure, temperature: chamber.temperature }
+}

@@ -1,0 +1,356 @@
+//! Values that can be read but cannot be meant: beyond what any vessel, gas or inflator has. One table of ranges; each value
+//! beyond its range is told with the range and, where one fits, the unit in which it would lie within.
+//!
+//! A scene may mean it, so these are warnings. What is meant now and then is let pass: a chamber of near vacuum beside gas of
+//! ordinary pressure or before an inflow, free flight at any pressure, a vent into vacuum.
+
+mod shapes;
+mod units;
+
+use super::Measured;
+use super::inventory::Contents;
+use super::render::{grouped, significant};
+use crate::scene::{
+    Course, Curve, Dimension, GAS_CONSTANT, Gas, HeatCapacity, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape,
+    UnitSystem, Vent, VentFlow, Wall,
+};
+use units::{as_written, atmosphere_in, likely};
+
+/// What a number is of, where that decides its range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The longest edge of the box around a wall.
+    Extent,
+    Pressure,
+    Temperature,
+    MolarMass,
+    MolarHeat,
+    MassFlow,
+    HeatTransfer,
+    Speed,
+    Discharge,
+    EndTime,
+    Steps,
+}
+
+/// From the least to the most that is usual, SI, both included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    pub kind: Kind,
+    pub dimension: Dimension,
+    pub least: f64,
+    pub most: f64,
+    /// What is commonest: of several units the one that comes nearest is named.
+    usual: f64,
+}
+
+const fn range(kind: Kind, dimension: Dimension, [least, most]: [f64; 2], usual: f64) -> Range {
+    Range { kind, dimension, least, most, usual }
+}
+
+/// All ranges. From a pressure cell to a gas gun in pressure, from cryogenic hydrogen's neighbours to propellant flames in
+/// temperature; 20 R is more than any gas of an inflator has (hexane: 17 R), an inflator gives a few kg/s, free convection and
+/// jets give 1 to 1e3 W/(m2 K), and no gas here is faster than 1e4 m/s.
+pub const RANGES: &[Range] = &[
+    range(Kind::Extent, Dimension::Length, [1e-3, 10.0], 0.3),
+    range(Kind::Pressure, Dimension::Pressure, [1e3, 1e8], 101_325.0),
+    range(Kind::Temperature, Dimension::Temperature, [150.0, 4000.0], 300.0),
+    range(Kind::MolarMass, Dimension::MolarMass, [1e-3, 0.5], 0.029),
+    range(Kind::MolarHeat, Dimension::MolarHeat, [0.0, 20.0 * GAS_CONSTANT], 29.0),
+    range(Kind::MassFlow, Dimension::MassFlow, [0.0, 100.0], 1.0),
+    range(Kind::HeatTransfer, Dimension::HeatTransfer, [0.0, 1e5], 50.0),
+    range(Kind::Speed, Dimension::Velocity, [0.0, 1e4], 300.0),
+    range(Kind::Discharge, Dimension::Pure, [0.0, 1.0], 0.7),
+    range(Kind::EndTime, Dimension::Time, [1e-6, 100.0], 0.02),
+    range(Kind::Steps, Dimension::Pure, [0.0, 1e8], 1e4),
+];
+
+fn range_of(kind: Kind) -> &'static Range {
+    RANGES.iter().find(|range| range.kind == kind).unwrap_or(&RANGES[0])
+}
+
+impl Range {
+    fn holds(&self, value: f64) -> bool {
+        // Rounding is not beyond it.
+        value >= self.least * (1.0 - 1e-9) && value <= self.most * (1.0 + 1e-9)
+    }
+
+    fn words(&self, units: UnitSystem) -> String {
+        let shown = |si: f64| as_written(si / units.factor(self.dimension));
+        let unit = units.symbol(self.dimension);
+        let bounds = if self.least > 0.0 {
+            format!("{} to {}", shown(self.least), shown(self.most))
+        } else {
+            format!("at most {}", shown(self.most))
+        };
+        format!("{bounds} {unit}").trim_end().to_string()
+    }
+}
+
+/// How a value of a scene is named: whose it is, and by which key.
+struct Named<'a> {
+    subject: String,
+    key: &'a str,
+    units: UnitSystem,
+}
+
+impl Named<'_> {
+    fn value(&self, si: f64, dimension: Dimension) -> String {
+        let unit = self.units.symbol(dimension);
+        format!("{}: {} {} {unit}", self.subject, self.key, as_written(si / self.units.factor(dimension)))
+            .trim_end()
+            .into()
+    }
+
+    /// A warning if the value, SI, is beyond the range of its kind.
+    fn check(&self, kind: Kind, si: f64) -> Option<String> {
+        let range = range_of(kind);
+        let question = likely(range, si, self.units).map_or(String::new(), |unit| format!(": is it in {unit}?"));
+        (!range.holds(si)).then(|| self.beyond(range, si, &question))
+    }
+
+    fn beyond(&self, range: &Range, si: f64, rest: &str) -> String {
+        format!("{}, usual is {}{rest}", self.value(si, range.dimension), range.words(self.units))
+    }
+
+    /// The digits of an atmosphere in another unit.
+    fn atmosphere(&self, si: f64) -> Option<String> {
+        let unit = atmosphere_in(si / self.units.factor(Dimension::Pressure), self.units)?;
+        let range = range_of(Kind::Pressure);
+        let (value, usual) = (self.value(si, Dimension::Pressure), range.words(self.units));
+        Some(format!("{value} has the digits of an atmosphere, usual is {usual}: is it in {unit}?"))
+    }
+}
+
+/// All that is beyond its range by the scene alone, in its order: known also where no plan can be made of it, often for that reason.
+pub fn of_scene(scene: &Scene) -> Vec<String> {
+    let named = |subject: String, key: &'static str| Named { subject, key, units: scene.units };
+    let mut found = vec![named("the run".into(), "end_time").check(Kind::EndTime, scene.end_time)];
+    found.extend(scene.gases.iter().flat_map(|gas| of_gas(scene, gas)));
+    found.extend(scene.walls.iter().flat_map(|wall| of_wall(scene, wall)));
+    for chamber in &scene.chambers {
+        let subject = format!("chamber `{}`", chamber.name);
+        found.push(chamber_pressure(scene, &named(subject.clone(), "pressure"), chamber.pressure));
+        found.push(temperature(&named(subject, "temperature"), chamber.temperature));
+    }
+    found.extend(scene.orifices.iter().flat_map(|orifice| of_orifice(scene, orifice)));
+    found.extend(scene.vents.iter().flat_map(|vent| of_vent(scene, vent)));
+    found.extend(scene.motions.iter().map(|motion| {
+        let Course::Velocity(curve) = &motion.course else { return None };
+        let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
+        named(subject, "velocity").check(Kind::Speed, most(curve))
+    }));
+    found.into_iter().flatten().chain(shapes::doubts(scene)).collect()
+}
+
+/// The same, and by its meshes and all its gas at the end.
+pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String> {
+    let mut found = of_scene(scene);
+    for (wall, measured) in scene.walls.iter().zip(&measured.walls).filter(|(wall, _)| is_mesh(wall)) {
+        let sides = (0..3).map(|axis| measured.max[axis] - measured.min[axis]);
+        found.extend(extent(scene.units, wall, largest(sides)));
+    }
+    let range = range_of(Kind::Pressure);
+    if end.pressure > range.most && scene.chambers.iter().all(|chamber| chamber.pressure <= range.most) {
+        let all = Named { subject: "all gas with all inflow".into(), key: "mean pressure", units: scene.units };
+        let question = ": are `mass_flow` and the walls in the units of the scene?";
+        found.push(all.beyond(range, end.pressure, question));
+    }
+    found
+}
+
+/// Of a run of particles.
+pub fn many_steps(scene: &Scene, steps: f64) -> Option<String> {
+    let range = range_of(Kind::Steps);
+    let shown = |si: f64| {
+        format!("{} {}", as_written(si / scene.units.factor(Dimension::Time)), scene.units.symbol(Dimension::Time))
+    };
+    let step = scene.model.time_step.map_or(String::new(), |step| format!(" or `time_step` {}", shown(step)));
+    (!range.holds(steps)).then(|| {
+        format!(
+            "the run: {} steps, usual is {}: is `end_time` {}{step} in another unit?",
+            grouped(steps as u64),
+            range.words(scene.units),
+            shown(scene.end_time)
+        )
+    })
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}
+
+fn most(curve: &Curve) -> f64 {
+    largest(curve.points.iter().map(|point| point[1].abs()))
+}
+
+/// Below the range degrees Celsius are likely.
+fn temperature(named: &Named<'_>, kelvin: f64) -> Option<String> {
+    let range = range_of(Kind::Temperature);
+    let celsius = kelvin + 273.15;
+    let question = if kelvin < range.least && range.holds(celsius) {
+        format!(": is it in degrees Celsius? {} C are {} K", as_written(kelvin), as_written(celsius))
+    } else {
+        String::new()
+    };
+    (!range.holds(kelvin)).then(|| named.beyond(range, kelvin, &question))
+}
+
+fn of_wall(scene: &Scene, wall: &Wall) -> Vec<Option<String>> {
+    let named = |key| Named { subject: format!("wall `{}`", wall.name), key, units: scene.units };
+    let longest = match &wall.shape {
+        Shape::Box { min, max, .. } => Some(largest((0..3).map(|axis| max[axis] - min[axis]))),
+        Shape::Cylinder { radius, height, .. } => Some(height.max(2.0 * radius)),
+        Shape::Sphere { radius, .. } => Some(2.0 * radius),
+        Shape::Plane { size, .. } => Some(size[0].max(size[1])),
+        Shape::Mesh { .. } => None,
+    };
+    let coefficient = wall.heat.and_then(|heat| match heat.transfer {
+        HeatTransfer::Coefficient(coefficient) => Some(coefficient),
+        HeatTransfer::Accommodation(_) => None,
+    });
+    vec![
+        longest.and_then(|longest| extent(scene.units, wall, longest)),
+        wall.heat.and_then(|heat| temperature(&named("temperature"), heat.temperature)),
+        coefficient.and_then(|coefficient| named("heat_transfer").check(Kind::HeatTransfer, coefficient)),
+    ]
+}
+
+fn is_mesh(wall: &Wall) -> bool {
+    matches!(wall.shape, Shape::Mesh { .. })
+}
+
+fn extent(units: UnitSystem, wall: &Wall, longest: f64) -> Option<String> {
+    let range = range_of(Kind::Extent);
+    let named = Named { subject: format!("wall `{}`", wall.name), key: "longest side", units };
+    if range.holds(longest) {
+        return None;
+    }
+    let question = match likely(range, longest, units) {
+        None => String::new(),
+        Some(unit) if is_mesh(wall) => {
+            let scale = units::factor_of(unit, Dimension::Length) / units.factor(Dimension::Length);
+            format!(": is the mesh in {unit}? then `scale = {}`", as_written(scale))
+        }
+        Some(unit) => format!(": is it in {unit}?"),
+    };
+    Some(named.beyond(range, longest, &question))
+}
+
+/// Near vacuum is meant beside ordinary gas, before an inflow, and in free flight.
+fn chamber_pressure(scene: &Scene, named: &Named<'_>, pressure: f64) -> Option<String> {
+    let range = range_of(Kind::Pressure);
+    let beside = scene.chambers.iter().any(|other| range.holds(other.pressure));
+    // An atmosphere is more than this in MPa, as is a tenth of a bar.
+    let evacuated = pressure < 0.05 && !scene.orifices.is_empty();
+    let meant = pressure < range.least && (beside || evacuated || scene.model.method == Some(Method::None));
+    named.atmosphere(pressure).or_else(|| if meant { None } else { named.check(Kind::Pressure, pressure) })
+}
+
+fn of_gas(scene: &Scene, gas: &Gas) -> Vec<Option<String>> {
+    let named = |key| Named { subject: format!("gas `{}`", gas.name), key, units: scene.units };
+    // Where the gas may be, K.
+    let temperature = scene.chambers.iter().map(|chamber| chamber.temperature).fold(300.0, f64::max).min(1500.0);
+    let cp = gas.heat.molar_cv(temperature) + GAS_CONSTANT;
+    let heat = range_of(Kind::MolarHeat);
+    let at = match gas.heat {
+        HeatCapacity::Constant(_) => String::new(),
+        HeatCapacity::Curve(_) => format!(" at {} K", significant(temperature)),
+    };
+    let rest = format!("{at} (20 R): is it per kilogram? Multiply it by the molar mass then");
+    vec![
+        named("molar_mass").check(Kind::MolarMass, gas.molar_mass),
+        (!heat.holds(cp)).then(|| named("molar cp").beyond(heat, cp, &rest)),
+    ]
+}
+
+fn of_orifice(scene: &Scene, orifice: &Orifice) -> Vec<Option<String>> {
+    let named = |key| Named { subject: format!("orifice `{}`", orifice.name), key, units: scene.units };
+    let flow = most(&orifice.mass_flow);
+    let coldest = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+    let hottest = most(&orifice.temperature);
+    let of_time = |time: f64| {
+        let units = scene.units;
+        format!("{} {}", as_written(time / units.factor(Dimension::Time)), units.symbol(Dimension::Time))
+    };
+    let ends = orifice.mass_flow.points.last().map_or(0.0, |point| point[0]);
+    let late = (ends > FAR_BEYOND * scene.end_time).then(|| {
+        format!(
+            "orifice `{}`: its mass flow goes on until {}, {} times `end_time` {}: is `end_time` in another unit?",
+            orifice.name,
+            of_time(ends),
+            significant(ends / scene.end_time),
+            of_time(scene.end_time)
+        )
+    });
+    let speed = match orifice.jet.map(|jet| jet.speed) {
+        Some(JetSpeed::Velocity(speed)) => slow(&named("jet velocity"), speed),
+        _ => None,
+    };
+    vec![
+        named("mass_flow up to").check(Kind::MassFlow, flow).or_else(|| driven(scene, orifice, flow)),
+        temperature(&named("temperature"), if range_of(Kind::Temperature).holds(hottest) { coldest } else { hottest }),
+        late,
+        speed,
+    ]
+}
+
+/// How many times the length of a run a curve may go on.
+const FAR_BEYOND: f64 = 100.0;
+/// m/s: no jet that anybody models is slower.
+const SLOW: f64 = 1.0;
+
+fn slow(named: &Named<'_>, speed: f64) -> Option<String> {
+    let range = range_of(Kind::Speed);
+    let unit = likely(&Range { least: SLOW, ..*range }, speed, named.units);
+    let question = unit.map_or(String::new(), |unit| format!(": is it in {unit}?"));
+    (speed < SLOW || !range.holds(speed)).then(|| named.beyond(&Range { least: SLOW, ..*range }, speed, &question))
+}
+
+/// The pressure that drives a flow through an orifice at the speed of sound, p = G sqrt(R T/M) / .68: no inflator has more than
+/// vessels have. (The factor is .6847 at gamma 1.4, .726 at 5/3.)
+fn driven(scene: &Scene, orifice: &Orifice, flow: f64) -> Option<String> {
+    let hottest = most(&orifice.temperature);
+    let molar_mass = orifice.mixture.molar_mass(&scene.gases);
+    let pressure = flow / orifice.area * libm::sqrt(GAS_CONSTANT * hottest / molar_mass) / 0.6847;
+    let limit = range_of(Kind::Pressure).most;
+    let in_units = |si: f64, dimension| {
+        format!("{} {}", significant(si / scene.units.factor(dimension)), scene.units.symbol(dimension))
+    };
+    (pressure > limit).then(|| {
+        format!(
+            "orifice `{}`: mass_flow up to {} through an area of {} takes {} to drive it, usual is at most {}: are both in the \
+             units of the scene?",
+            orifice.name,
+            in_units(flow, Dimension::MassFlow),
+            in_units(orifice.area, Dimension::Area),
+            in_units(pressure, Dimension::Pressure),
+            in_units(limit, Dimension::Pressure),
+        )
+    })
+}
+
+fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
+    let named = |key| Named { subject: format!("vent `{}`", vent.name), key, units: scene.units };
+    let highest = range_of(Kind::Pressure).most;
+    let outside = vent.external_pressure;
+    let external = named("external_pressure");
+    let opening = named("opening_pressure");
+    let flow = match &vent.flow {
+        VentFlow::Discharge(curve) => {
+            let question = if (1.0..=100.0).contains(&most(curve)) { ": is it in per cent?" } else { "" };
+            let range = range_of(Kind::Discharge);
+            (!range.holds(most(curve))).then(|| named("discharge").beyond(range, most(curve), question))
+        }
+        VentFlow::DischargeByPressure(curve) => named("discharge_by_pressure").check(Kind::Discharge, most(curve)),
+        VentFlow::LeakVelocity(curve) => named("leak_velocity").check(Kind::Speed, most(curve)),
+    };
+    vec![
+        // Vacuum is no mistake.
+        external
+            .atmosphere(outside)
+            .or_else(|| if outside > highest { external.check(Kind::Pressure, outside) } else { None }),
+        if vent.opening_pressure > 0.0 { opening.check(Kind::Pressure, vent.opening_pressure) } else { None },
+        flow,
+    ]
+}

@@ -1,0 +1,66 @@
+//! Radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
+//! radius, a vent through exactly four times the disc that it is given.
+
+use super::units::as_written;
+use crate::scene::{Dimension, Region, Scene, Shape, Vent};
+
+/// Of a ratio of two lengths that should be the same number.
+const SAME: f64 = 1e-6;
+
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+pub fn doubts(scene: &Scene) -> Vec<String> {
+    let chambers = scene.chambers.iter().filter_map(|c| Some(("chamber", &c.name, c.region.as_ref()?)));
+    let regions = chambers.chain(scene.probes.iter().map(|probe| ("probe", &probe.name, &probe.region)));
+    let doubled = regions.filter_map(|(kind, name, region)| {
+        let (wall, radius) = scene.walls.iter().find_map(|wall| Some((wall, doubled(&wall.shape, region)?)))?;
+        let shown = |m: f64| {
+            let (value, unit) = (m / scene.units.factor(Dimension::Length), scene.units.symbol(Dimension::Length));
+            format!("{} {unit}", as_written(value))
+        };
+        Some(format!(
+            "{kind} `{name}`: its region has the radius {}, twice the {} of wall `{}` around it: is it the diameter?",
+            shown(2.0 * radius),
+            shown(radius),
+            wall.name
+        ))
+    });
+    doubled.chain(scene.vents.iter().filter_map(|vent| wide_vent(scene, vent))).collect()
+}
+
+/// The radius of the wall, if the region has the same place and twice that.
+fn doubled(shape: &Shape, region: &Region) -> Option<f64> {
+    match (shape, region) {
+        (Shape::Sphere { center, radius, .. }, Region::Sphere { center: middle, radius: own }) => {
+            (center == middle && is_same(*own, 2.0 * radius)).then_some(*radius)
+        }
+        (Shape::Cylinder { base, axis, radius, .. }, Region::Cylinder { base: low, axis: along, radius: own, .. }) => {
+            let way: [f64; 3] = std::array::from_fn(|k| low[k] - base[k]);
+            let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let beside = dot(&way, &way) - dot(&way, axis).powi(2);
+            let parallel = dot(axis, along).abs() > 1.0 - SAME;
+            (parallel && beside <= (SAME * radius).powi(2) && is_same(*own, 2.0 * radius)).then_some(*radius)
+        }
+        _ => None,
+    }
+}
+
+fn wide_vent(scene: &Scene, vent: &Vent) -> Option<String> {
+    let (disc, area) = (vent.disc?, vent.area?);
+    let full = std::f64::consts::PI * disc.diameter * disc.diameter;
+    // Areas are rounded to three digits or so.
+    let near = (area / full - 1.0).abs() < 5e-3;
+    let shown = |si: f64, dimension| {
+        format!("{} {}", as_written(si / scene.units.factor(dimension)), scene.units.symbol(dimension))
+    };
+    near.then(|| {
+        format!(
+            "vent `{}`: its area {} is four times that of a disc of the diameter {}: is it the radius?",
+            vent.name,
+            shown(area, Dimension::Area),
+            shown(disc.diameter, Dimension::Length)
+        )
+    })
+}
