@@ -37,14 +37,12 @@ pub enum ModelError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Plan(#[from] PlanError),
-    #[error(
-        "orifice \"{orifice}\": its disc, of a radius of {radius}, is not in the gas: {point} lies in or behind a wall"
-    )]
+    #[error("orifice \"{orifice}\": its disc, {found} lies in or behind a wall")]
     #[diagnostic(help(
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller (it is in the \
          unit of the scene, length times length)"
     ))]
-    OrificeInWall { orifice: String, radius: String, point: String },
+    OrificeInWall { orifice: String, found: String },
     #[error(
         "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
     )]
@@ -295,11 +293,9 @@ fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
 fn orifice_in_wall(scene: &Scene, orifice: &Orifice, point: DVec3) -> ModelError {
     let (factor, unit) = (scene.units.factor(Dimension::Length), scene.units.symbol(Dimension::Length));
     let [x, y, z] = point.to_array().map(|m| significant(m / factor));
-    ModelError::OrificeInWall {
-        orifice: orifice.name.clone(),
-        radius: format!("{} {unit}", significant((orifice.area / std::f64::consts::PI).sqrt() / factor)),
-        point: format!("({x}, {y}, {z}) {unit}"),
-    }
+    let radius = significant((orifice.area / std::f64::consts::PI).sqrt() / factor);
+    let found = format!("of a radius of {radius} {unit}, is not in the gas: ({x}, {y}, {z}) {unit}");
+    ModelError::OrificeInWall { orifice: orifice.name.clone(), found }
 }
 
 /// The middle of an orifice's disc, lifted a little off its wall, the disc's normal, and its radius, a little less, m.
