@@ -89,6 +89,11 @@ const SLIPS: &[Slip] = &[
         [AIR, "molar_mass = 0.02897\ncp = 1004.5"],
         &["236.627 internal degrees", "more than 20 R", "per kilogram?"],
     ),
+    slip(
+        PER_KILOGRAM,
+        ["rows = 20", "rows = 21"],
+        &["cp 1004.5 J/(mol K)", "166.289 J/(mol K) (20 R): is it per kilogram?"],
+    ),
     slip(TANK, [AIR, "molar_mass = 0.02897\ncv = 717.5"], &["more than 20 R", "per kilogram?"]),
     slip(TANK, [AIR, "molar_mass = 0.02897\ncp = 1.0045"], &["1.0045", "in kJ/(kg K)?", "29.1004 J/(mol K)"]),
     slip(
