@@ -147,6 +147,16 @@ struct Job<'a> {
     started: Instant,
 }
 
+/// How a run ended.
+struct Ended<'a> {
+    outcome: &'a Outcome,
+    set_up: Duration,
+    /// A line for each that has a pressure to open at.
+    vents: String,
+    /// At a checkpoint, as asked.
+    stopped: bool,
+}
+
 impl Job<'_> {
     fn run(&self, comm: &dyn Communicator) -> Result<(), CliError> {
         let Job { settings, device, setup, .. } = self;
@@ -194,9 +204,11 @@ impl Job<'_> {
         timing::of(comm, &outcome, set_up)?.write(folder.path())?;
         if outcome.continued.is_some() || outcome.time >= model.plan.end_time {
             let account = [outcome.audit.render(), continued(model, &outcome)].concat();
-            folder.end(&format!("{account}\n{}{}", totals(&outcome), warned(&outcome)))?;
+            let vents = recorder.of_vents();
+            folder.end(&format!("{account}\n{}{vents}{}", totals(&outcome), warned(&outcome)))?;
         }
-        self.tell(&outcome, set_up, &folder, recorder.stopped_at().is_some())
+        let vents = recorder.of_vents();
+        self.tell(&Ended { outcome: &outcome, set_up, vents, stopped: recorder.stopped_at().is_some() }, &folder)
     }
 
     /// The folder of the results, and who writes into it, on rank 0.
@@ -221,18 +233,19 @@ impl Job<'_> {
         Ok((folder, recorder))
     }
 
-    fn tell(&self, outcome: &Outcome, set_up: Duration, folder: &OutputFolder, stopped: bool) -> Result<(), CliError> {
+    fn tell(&self, ended: &Ended<'_>, folder: &OutputFolder) -> Result<(), CliError> {
+        let Ended { outcome, set_up, vents, stopped } = ended;
         let limits = audit_limits(&self.settings.model.plan);
         let warnings = outcome.audit.warnings(&limits);
         for warning in &warnings {
             tracing::warn!("{warning}");
         }
         if !self.quiet {
-            say(&summary(&self.settings.model, outcome))?;
+            say(&summary(&self.settings.model, outcome, vents))?;
             let seconds = self.started.elapsed().as_secs_f64();
             say(&format!("wall time {seconds:.1} s, of which set-up {:.1} s\n", set_up.as_secs_f64()))?;
         }
-        if stopped && !self.quiet {
+        if *stopped && !self.quiet {
             say(&format!(
                 "stopped as asked at {:.4} ms of {:.4} ms; to go on: corpuscle resume {}\n",
                 1e3 * outcome.time,
@@ -332,7 +345,7 @@ fn warned(outcome: &Outcome) -> String {
 }
 
 /// The audit, the phase table and the totals.
-fn summary(model: &Model, outcome: &Outcome) -> String {
+fn summary(model: &Model, outcome: &Outcome, vents: &str) -> String {
     let mut text = format!("\n{}{}\n", outcome.audit.render(), continued(model, outcome));
     if outcome.phases.rows.is_empty() {
         text += "This device does not time its phases.\n";
@@ -341,6 +354,7 @@ fn summary(model: &Model, outcome: &Outcome) -> String {
     }
     text += "\n";
     text += &totals(outcome);
+    text += vents;
     text += &warned(outcome);
     if outcome.repeated > 0 {
         // Writing to a string cannot fail.

@@ -357,8 +357,10 @@ pub struct RawVent {
     pub discharge_by_pressure: Option<At<Vec<At<Numbers<2>>>>>,
     /// Leakage of a fabric: points [pressure above the external one, velocity of the gas] (SI: Pa, m/s).
     pub leak_velocity: Option<At<Vec<At<Numbers<2>>>>>,
-    /// Pressure above the external one at which it opens, for good (SI: Pa); 0 unless given.
+    /// Pressure above the external one (gauge) at which it opens, for good (SI: Pa); 0 unless given.
     pub opening_pressure: Option<At<f64>>,
+    /// The same as an absolute pressure, not below the external one (SI: Pa); instead of `opening_pressure`.
+    pub opening_pressure_absolute: Option<At<f64>>,
     /// External pressure (SI: Pa); 101325 Pa unless given.
     pub external_pressure: Option<At<f64>>,
 }

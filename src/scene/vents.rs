@@ -4,7 +4,7 @@ use super::errors::Problem;
 use super::flows::curve;
 use super::holes::face;
 use super::names::Names;
-use super::numbers::{not_negative, point, positive};
+use super::numbers::{described, not_negative, point, positive, show};
 use super::raw::{RawShape, RawVent, RawWall};
 use super::raw_values::{At, NumberOr, Numbers};
 use super::types::{Curve, Disc, UnitSystem, Vent, VentFlow};
@@ -29,6 +29,7 @@ pub(super) fn vent(
         return Err(Problem::value(&given.span, found, "`face` of a box"));
     }
     let pressure = |at: &Option<At<f64>>| at.as_ref().map(|at| not_negative(at, Quantity::Pressure, units)).transpose();
+    let external_pressure = pressure(&vent.external_pressure)?.unwrap_or(ATMOSPHERE);
     Ok(Vent {
         name: vent.name.value.clone(),
         wall,
@@ -37,9 +38,36 @@ pub(super) fn vent(
         disc: disc(raw, units)?,
         area: vent.area.as_ref().map(|at| positive(at, Quantity::Area, units)).transpose()?,
         flow: flow(raw, units)?,
-        opening_pressure: pressure(&vent.opening_pressure)?.unwrap_or(0.0),
-        external_pressure: pressure(&vent.external_pressure)?.unwrap_or(ATMOSPHERE),
+        opening_pressure: opening_pressure(vent, external_pressure, units)?,
+        external_pressure,
     })
+}
+
+/// Pa above the external pressure, from whichever of the two keys is given.
+fn opening_pressure(vent: &RawVent, external: f64, units: UnitSystem) -> Result<f64, Problem> {
+    match (&vent.opening_pressure, &vent.opening_pressure_absolute) {
+        (None, None) => Ok(0.0),
+        (Some(gauge), None) => not_negative(gauge, Quantity::Pressure, units),
+        (None, Some(absolute)) => {
+            let si = not_negative(absolute, Quantity::Pressure, units)?;
+            if si < external {
+                let factor = units.factor(Quantity::Pressure);
+                let allowed = format!("at least the external pressure, {}", show(external / factor));
+                let problem = Problem::value(
+                    &absolute.span,
+                    show(absolute.value),
+                    described(&allowed, Quantity::Pressure, units),
+                );
+                return Err(problem.hint("a pressure above the external one is an `opening_pressure`"));
+            }
+            Ok(si - external)
+        }
+        (Some(gauge), Some(absolute)) => {
+            let later = if gauge.span.start > absolute.span.start { &gauge.span } else { &absolute.span };
+            let found = "both `opening_pressure` and `opening_pressure_absolute`";
+            Err(Problem::value(later, found, "at most one of them: above the external pressure, or absolute"))
+        }
+    }
 }
 
 fn disc(raw: &At<RawVent>, units: UnitSystem) -> Result<Option<Disc>, Problem> {

@@ -153,6 +153,11 @@ impl<'a> Conditions<'a> {
         self.state.current = self.see(at_start, 1, [0.0; 2], &[]).0;
     }
 
+    /// Of the chamber that a vent empties, Pa, by the tallies that were seen last.
+    pub fn pressure_before(&self, vent: usize) -> f64 {
+        self.local(&self.state.latest, self.model.coats.vents[vent].chamber).map_or(0.0, |gas| gas.pressure)
+    }
+
     /// Of each vent, whether it has opened.
     pub fn open_vents(&self) -> Vec<bool> {
         let seen = &self.state.latest.vents;

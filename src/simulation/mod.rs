@@ -33,6 +33,7 @@ mod stock;
 mod switch;
 mod tuning;
 mod uniform;
+mod vent_watch;
 
 pub use crate::subdomain::Ghosts;
 pub use audit::{AccountState, audit_limits};
@@ -59,6 +60,7 @@ pub use stock::{Initial, Stock, initial_particles};
 pub use switch::{Decided, Deviations, SwitchState};
 pub use tuning::HaloOptions;
 pub use uniform::{NoChamber, run_uniform};
+pub use vent_watch::VentWatch;
 
 use crate::gas::FillError;
 use crate::geometry::GeometryError;

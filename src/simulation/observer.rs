@@ -13,6 +13,7 @@ use super::interrupt::Request;
 use super::run_state::RunState;
 use super::setup::Shuffle;
 use super::tuning::HaloOptions;
+use super::vent_watch::VentWatch;
 
 /// What does not change a result (but for `hold_step`).
 #[derive(Clone, Copy, Default)]
@@ -73,6 +74,12 @@ pub trait Observer {
 
     /// Something has left its limits; each is told once.
     fn warning(&mut self, _told: &Told) {}
+
+    /// A vent has opened, by its index.
+    fn vent_opened(&mut self, _index: usize, _watch: &VentWatch) {}
+
+    /// At the end: what was seen of all vents.
+    fn vents(&mut self, _watches: &[VentWatch]) {}
 
     /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
     fn request(&mut self, _steps: u64) -> Request {

@@ -35,6 +35,7 @@ use super::run_state::{Asked, RunState, StateError as RunStateError};
 use super::setup::Setup;
 use super::switch::Switching;
 use super::tuning::Tuner;
+use super::vent_watch::VentWatch;
 
 use meter::Lists;
 use reading::all_tallies;
@@ -80,6 +81,7 @@ pub struct Simulation<'a> {
     asked: VecDeque<Asked>,
     conditions: Conditions<'a>,
     switching: Switching<'a>,
+    vents: Vec<VentWatch>,
     /// No particles from here on.
     switched: bool,
     submitted: usize,
@@ -179,6 +181,7 @@ impl<'a> Simulation<'a> {
             asked: VecDeque::new(),
             conditions: Conditions::new(model),
             switching: Switching::new(model)?,
+            vents: vec![VentWatch::default(); scene.vents.len()],
             switched: false,
             submitted: 0,
             fresh: true,
@@ -225,6 +228,11 @@ impl<'a> Simulation<'a> {
         simulation.conditions.restore(&state.conditions)?;
         simulation.guards.restore(&state.guards);
         simulation.switching.restore(&state.switch)?;
+        if state.vents.len() != model.scene.vents.len() {
+            let [found, expected] = [state.vents.len(), model.scene.vents.len()].map(|n| n as u64);
+            return Err(RunStateError::differs("vents", found, expected).into());
+        }
+        simulation.vents.clone_from(&state.vents);
         simulation.submitted = state.submitted as usize;
         simulation.next_row = state.next_row;
         simulation.next_snapshot = state.next_snapshot;
@@ -245,6 +253,7 @@ impl<'a> Simulation<'a> {
             conditions: self.conditions.state().clone(),
             guards: self.guards.state().clone(),
             switch: self.switching.state().clone(),
+            vents: self.vents.clone(),
             submitted: self.submitted as u64,
             next_row: self.next_row,
             next_snapshot: self.next_snapshot,
@@ -275,6 +284,7 @@ impl<'a> Simulation<'a> {
         let at_start = self.measure()?;
         self.account.start(&at_start);
         self.conditions.start(&at_start);
+        self.watch_vents(0.0, observer);
         let demand = self.ladder.demand(&at_start.blocks, &at_start.fast, [0; 2]);
         if self.options.hold_step {
             self.ladder.hold(demand);
@@ -342,6 +352,9 @@ impl<'a> Simulation<'a> {
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let audit = self.account.close(self.model, &self.inflow, &at_end, outside, &self.averages, &self.conditions);
         let continued = self.go_on_without_particles(&at_end, &audit, last.as_ref(), observer)?;
+        if continued.is_none() {
+            observer.vents(&self.vents);
+        }
         let left = if self.options.discard_particles { None } else { self.gather(own)? };
         let (particles, owners) = left.unwrap_or_default();
         Ok(Outcome {

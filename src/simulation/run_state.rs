@@ -12,6 +12,7 @@ use super::conditions::{ConditionsState, Seen};
 use super::guards::GuardState;
 use super::ladder::{Demand, LadderState};
 use super::switch::SwitchState;
+use super::vent_watch::VentWatch;
 use crate::gas::{InflowState, InflowStateError};
 use crate::output::{Checkpoint, CheckpointError};
 use crate::subdomain::GpuParticle;
@@ -41,6 +42,8 @@ pub struct RunState {
     pub conditions: ConditionsState,
     pub guards: GuardState,
     pub switch: SwitchState,
+    /// Of each vent of the scene.
+    pub vents: Vec<VentWatch>,
     /// Intervals so far.
     pub submitted: u64,
     /// s.
@@ -229,6 +232,7 @@ mod tests {
                 recent: [Deviations { window: [0.1, 0.1 + 0.2], of_places: vec![[-1e-3, 1e-300]] }].into(),
                 decided: Some(Decided { window: [0.1, 0.3], noise: 1.0 / 3.0 }),
             },
+            vents: vec![VentWatch { opened: Some([0.1 + 0.2, 1e5]), ..VentWatch::default() }],
             conditions: ConditionsState::default(),
             guards: GuardState::default(),
             submitted: 5,

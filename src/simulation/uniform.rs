@@ -19,6 +19,7 @@ use super::averages::{MotionState, Row, SurfaceState, VentState, WallState, Zone
 use super::model::{Model, chamber_of};
 use super::observer::Observer;
 use super::reference::{continued_with_losses, heated_walls, reference_with_losses};
+use super::vent_watch::VentWatch;
 
 /// Parts along each edge into which a triangle is cut to find what chambers it faces.
 const PARTS: u32 = 8;
@@ -34,11 +35,12 @@ pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, 
     let bounds: Vec<f64> = (0..=rows).map(|row| model.plan.end_time * f64::from(row) / f64::from(rows)).collect();
     let solved = |times: &[f64]| reference_with_losses(model, times);
     let known = Known::of(&model.scene, &model.vessel)?;
-    stretch(model, &known, &solved, &bounds, None, observer)
+    let watches = vec![VentWatch::default(); model.scene.vents.len()];
+    stretch(model, &known, &solved, &bounds, (None, &watches), observer)
 }
 
-/// Goes on from a state that particles had and emits the rows that end at `ends`, s, which are after it. `last`: the row
-/// before, whose totals go on. The audit is that of what follows.
+/// Goes on from a state that particles had and emits the rows that end at `ends`, s, which are after it. `earlier`: the row
+/// before, whose totals go on, and what was seen of the vents. The audit is that of what follows.
 ///
 /// # Errors
 /// If the observer stops the run.
@@ -47,12 +49,12 @@ pub(super) fn continue_uniform(
     known: &Known,
     beginning: &Beginning,
     ends: &[f64],
-    last: Option<&Row>,
+    earlier: Earlier<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Audit, SimulationError> {
     let bounds = [&[beginning.time], ends].concat();
     let solved = |times: &[f64]| continued_with_losses(model, beginning, times);
-    stretch(model, known, &solved, &bounds, last, observer)
+    stretch(model, known, &solved, &bounds, earlier, observer)
 }
 
 /// A probe or a surface of which a control volume knows nothing.
@@ -81,6 +83,9 @@ impl Known {
     }
 }
 
+/// The last row of what came before, if any did, and what was seen of each vent.
+type Earlier<'a> = (Option<&'a Row>, &'a [VentWatch]);
+
 /// States, and what has left since the start of the stretch, at times that ascend from it.
 type Solved<'a> = &'a dyn Fn(&[f64]) -> Vec<(Vec<State>, Lost)>;
 
@@ -89,7 +94,7 @@ fn stretch(
     known: &Known,
     solved: Solved<'_>,
     bounds: &[f64],
-    last: Option<&Row>,
+    (last, watches): Earlier<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Audit, SimulationError> {
     let Model { plan, .. } = model;
@@ -108,7 +113,11 @@ fn stretch(
     let mut worked: Vec<f64> = last.map_or_else(Vec::new, |row| row.motions.iter().map(|motion| motion.work).collect());
     worked.resize(model.moving.count(), 0.0);
     let worked_before: f64 = worked.iter().sum();
+    let mut watches = watches.to_vec();
     for row in 0..rows {
+        for k in 2 * row..=2 * row + 2 {
+            watch_vents(model, &mut watches, times[k], &states[k].0, observer);
+        }
         let [before, middle, after] = [0, 1, 2].map(|k| &states[2 * row + k].0);
         let [lost_before, lost_after] = [0, 2].map(|k| &states[2 * row + k].1);
         let window = [times[2 * row], times[2 * row + 2]];
@@ -153,6 +162,7 @@ fn stretch(
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }
+    observer.vents(&watches);
     let work = (!model.moving.is_empty()).then(|| worked.iter().sum::<f64>() - worked_before);
     let (end, lost) = &states[states.len() - 1];
     let heat = (!heated.is_empty()).then(|| lost.heat.iter().sum());
@@ -163,6 +173,15 @@ fn stretch(
         enthalpy_vented: lost.vented.iter().map(|vent| vent.enthalpy).sum(),
         ..audit(model, &states[0].0, end, [bounds[0], bounds[rows]])
     })
+}
+
+/// A vent opens where the line between two states reaches its pressure.
+fn watch_vents(model: &Model, watches: &mut [VentWatch], time: f64, states: &[State], observer: &mut dyn Observer) {
+    for (index, (watch, vent)) in watches.iter_mut().zip(&model.scene.vents).enumerate() {
+        if watch.see(vent, [time, states[model.coats.vents[index].chamber].pressure], true) {
+            observer.vent_opened(index, watch);
+        }
+    }
 }
 
 /// Those that keep a temperature, in the order of the scene; `lost`: until the start and the end of the window.

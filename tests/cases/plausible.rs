@@ -230,3 +230,38 @@ fn check_and_plan_say_what_a_scene_holds() {
         assert!(err.contains("101.325 Pa") && err.contains("kPa?"), "{err}");
     }
 }
+
+/// A vent opens at one pressure, whether it is given above the outside or absolute; the run says when it opens, and at its end when
+/// it did, or that it did not.
+#[test]
+fn a_run_says_when_a_vent_opens() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, text: String, more: &[&str]| {
+        let [path, out] = [format!("{name}.toml"), name.to_string()].map(|name| folder.path().join(name));
+        std::fs::write(&path, text).unwrap();
+        let steps = [&["run", path.to_str().unwrap(), "--out", out.to_str().unwrap()], more].concat();
+        let (code, said, err) = outcome(&steps);
+        assert_eq!(code, 0, "{err}");
+        let read = |file: &str| std::fs::read_to_string(out.join(file)).unwrap_or_default();
+        (said, err, read("audit.txt"), read("history.csv"))
+    };
+    let short = TANK.replace("end_time = 0.004", "end_time = 0.0004").replace(FLOW, "[[0.0, 50.0], [0.004, 50.0]]");
+    let absolute = short.replace(VENT, "opening_pressure_absolute = 251325.0");
+    let (said, err, audit, rows) = run("gauge", short.clone(), &[]);
+    let line =
+        said.lines().find(|line| line.starts_with("vent `vent` opened at 0.")).unwrap_or_else(|| panic!("{said}"));
+    assert!(line.ends_with(" bar) absolute") && err.contains(line) && audit.contains(line), "{line}\n{err}\n{audit}");
+    assert_eq!(run("absolute", absolute.clone(), &[]).3, rows);
+    // By a control volume the pressure is that at which it opens.
+    let uniform = |text: &str| text.replace("particles = 2000", "method = \"control-volume\"");
+    let (said, err, audit, _) = run("uniform", uniform(&absolute), &[]);
+    let line =
+        said.lines().find(|line| line.starts_with("vent `vent` opened at 0.")).unwrap_or_else(|| panic!("{said}"));
+    assert!(
+        line.ends_with("at 251325 Pa (2.513 bar) absolute") && err.contains(line) && audit.contains(line),
+        "{line}\n{err}"
+    );
+    let (said, _, audit, _) = run("shut", uniform(TANK), &[]);
+    let shut = "vent `vent` did not open: it opens at 251325 Pa (2.513 bar) absolute, and its chamber had 1";
+    assert!(said.contains(shut) && audit.contains(shut), "{said}");
+}

@@ -7,7 +7,7 @@ use crate::output::{
     SUBDOMAIN_CHART_FILE, SnapshotWriter, over_mean, subdomain_chart,
 };
 use crate::simulation::{
-    BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, Told, imbalance,
+    BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, Told, VentWatch, imbalance,
 };
 use crate::subdomain::{GpuParticle, Scales};
 
@@ -25,6 +25,8 @@ pub struct Recorder<'a> {
     checkpoints: Option<Checkpoints<'a>>,
     /// `None` on a rank alone.
     among: Option<Among>,
+    /// Of each vent; empty until the end.
+    vents: Vec<VentWatch>,
 }
 
 /// What there is to tell of several ranks.
@@ -52,13 +54,31 @@ impl<'a> Recorder<'a> {
             }
         };
         let progress = shown.then(|| Progress::new(model.plan.end_time));
-        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
+        Ok(Recorder {
+            model,
+            reference,
+            history,
+            snapshots,
+            progress,
+            checkpoints: None,
+            among: None,
+            vents: Vec::new(),
+        })
     }
 
     /// Of a run that has no particles, and so no snapshots.
     pub fn without_particles(model: &'a Model, reference: Reference, dir: &Path) -> Result<Recorder<'a>, OutputError> {
         let history = HistoryWriter::create(dir, &columns(&model.scene))?;
-        Ok(Recorder { model, reference, history, snapshots: None, progress: None, checkpoints: None, among: None })
+        Ok(Recorder {
+            model,
+            reference,
+            history,
+            snapshots: None,
+            progress: None,
+            checkpoints: None,
+            among: None,
+            vents: Vec::new(),
+        })
     }
 
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
@@ -85,7 +105,16 @@ impl<'a> Recorder<'a> {
         };
         let Totals { time, steps, particle_steps } = totals;
         let progress = shown.then(|| Progress::resume(model.plan.end_time, time, steps, particle_steps));
-        Ok(Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None })
+        Ok(Recorder {
+            model,
+            reference,
+            history,
+            snapshots,
+            progress,
+            checkpoints: None,
+            among: None,
+            vents: Vec::new(),
+        })
     }
 
     /// Also writes checkpoints.
@@ -115,6 +144,12 @@ impl<'a> Recorder<'a> {
     pub fn state(&mut self) -> Result<OutputState, OutputError> {
         let snapshots = self.snapshots.as_mut().map(SnapshotWriter::state).transpose()?;
         Ok(OutputState { history: self.history.state()?, snapshots })
+    }
+
+    /// When each vent opened, or that it did not: a line each, at the end of a run.
+    pub fn of_vents(&self) -> String {
+        let told = self.vents.iter().enumerate().filter_map(|(index, watch)| watch.told(&self.model.scene, index));
+        told.map(|text| text + "\n").collect()
     }
 
     pub fn history(&self) -> &History {
@@ -249,6 +284,18 @@ impl Observer for Recorder<'_> {
             Some(progress) => progress.warn(&told.to_string()),
             None => tracing::warn!("{told}"),
         }
+    }
+
+    fn vent_opened(&mut self, index: usize, watch: &VentWatch) {
+        let Some(text) = watch.told(&self.model.scene, index) else { return };
+        match &self.progress {
+            Some(progress) => progress.note(&text),
+            None => tracing::info!("{text}"),
+        }
+    }
+
+    fn vents(&mut self, watches: &[VentWatch]) {
+        self.vents = watches.to_vec();
     }
 
     fn request(&mut self, steps: u64) -> Request {

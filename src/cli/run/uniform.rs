@@ -41,9 +41,10 @@ pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), 
         ..Timing::default()
     };
     timing.write(folder.path())?;
-    folder.end(&format!("{}\n{:.4} ms as a control volume\n", audit.render(), 1e3 * model.plan.end_time))?;
+    let vents = recorder.of_vents();
+    folder.end(&format!("{}\n{:.4} ms as a control volume\n{vents}", audit.render(), 1e3 * model.plan.end_time))?;
     if !quiet {
-        say(&format!("{}: control volume\n\n{}\n", model.scene.title, audit.render()))?;
+        say(&format!("{}: control volume\n\n{}\n{vents}", model.scene.title, audit.render()))?;
         say(&format!("wall time {:.3} s\n", started.elapsed().as_secs_f64()))?;
     }
     say(&format!("{}\n", folder.path().display()))?;

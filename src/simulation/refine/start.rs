@@ -44,6 +44,7 @@ pub fn state(
         inflow: inflow.state(),
         asked: Vec::new(),
         switch: SwitchState::default(),
+        vents: parent.vents.clone(),
         conditions: parent.conditions.clone(),
         guards: GuardState::default(),
         submitted: 0,

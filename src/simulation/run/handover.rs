@@ -29,7 +29,7 @@ impl Simulation<'_> {
             (1..=rows).map(|row| until * f64::from(row) / f64::from(rows)).filter(|&end| end > time * (1.0 + 1e-9));
         let beginning = beginning(self.model, at_end, time, self.conditions.open_vents());
         let ends: Vec<f64> = ends.collect();
-        let audit = continue_uniform(self.model, known, &beginning, &ends, last, observer)?;
+        let audit = continue_uniform(self.model, known, &beginning, &ends, (last, &self.vents), observer)?;
         for (what, had, has) in
             [("mass", account.mass_end, audit.mass_start), ("energy", account.energy_end, audit.energy_start)]
         {

@@ -109,6 +109,7 @@ impl Simulation<'_> {
         self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];
         let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes);
+        self.watch_vents(self.read_until, observer);
         self.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
         self.averages.add_room(interval.dt, samples, &interval.volumes);
         if self.decomposition.is_some() {
@@ -151,6 +152,15 @@ impl Simulation<'_> {
         observer.row(&row)?;
         self.tell(&told, observer)?;
         Ok(row)
+    }
+
+    /// By the pressures that the vents follow, at a time, s.
+    pub(super) fn watch_vents(&mut self, time: f64, observer: &mut dyn Observer) {
+        for (index, (watch, vent)) in self.vents.iter_mut().zip(&self.model.scene.vents).enumerate() {
+            if watch.see(vent, [time, self.conditions.pressure_before(index)], false) {
+                observer.vent_opened(index, watch);
+            }
+        }
     }
 
     /// Tells what has left its limits; a strict run ends there, on all ranks alike.
