@@ -117,7 +117,7 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
         }
         let exchange = exchanged(i, j, mu, speed, draw3, draw2.zw, pick);
         let relative = exchange.speed * direction(draw2.x, draw2.y);
-        let after = deflected(i, j, mu, relative - g, exchange);
+        let after = deflected(i, j, relative - g, exchange);
         sorted[s].motion = vec4<f32>(after.i.velocity, after.i.spin);
         sorted[t].motion = vec4<f32>(after.j.velocity, after.j.spin);
         let new_bound = 2.000002 * max(length(after.i.velocity - mean), length(after.j.velocity - mean));

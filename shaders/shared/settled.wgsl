@@ -129,7 +129,7 @@ fn settle_pair(pair: vec2<u32>, k: u32) {
     }
     let old_i = i.velocity;
     let old_j = j.velocity;
-    let after = deflected(i, j, mu, relative - g, exchange);
+    let after = deflected(i, j, relative - g, exchange);
     i = after.i;
     j = after.j;
     i.position = shifted(i.position, old_i - i.velocity, time);

@@ -51,24 +51,52 @@ struct Pair {
     j: Particle,
 }
 
+// How much of a change of the relative velocity each of two gases takes, mu/m_i and mu/m_j, 16 apart: of i the upper
+// twelve bits and the rest of it, of j the same. One word's rounding has a sign that every collision of two gases repeats,
+// and the two shares would not sum up to one: energy would grow or fall as collisions go on.
+@group(0) @binding(67) var<uniform> mass_shares: array<vec4<f32>, 256>;
+
+fn shares_of(tag_i: u32, tag_j: u32) -> vec4<f32> {
+    if (GASES == 1u) {
+        return vec4<f32>(0.5, 0.0, 0.5, 0.0);
+    }
+    return mass_shares[16u * gas_of(tag_i) + gas_of(tag_j)];
+}
+
 // The pair with its relative velocity changed by `change` and these spins. Positions stay.
-fn deflected(before_i: Particle, before_j: Particle, mu: f32, change: vec3<f32>, after: Exchanged) -> Pair {
+//
+// What rounding would take from the energy of a pair, or give it, goes into spin; where neither gas has spin, into the
+// scale of the relative velocity, before it is shared out.
+fn deflected(before_i: Particle, before_j: Particle, change: vec3<f32>, after: Exchanged) -> Pair {
     var i = before_i;
     var j = before_j;
-    let mass_i = gases[kind_of(i.tag)].mass;
-    let mass_j = gases[kind_of(j.tag)].mass;
-    i.velocity = before_i.velocity - (mu / mass_i) * change;
-    j.velocity = before_j.velocity + (mu / mass_j) * change;
-    if (SPIN) {
+    let gas_i = gases[kind_of(i.tag)];
+    let gas_j = gases[kind_of(j.tag)];
+    let has_spin = SPIN && (gas_i.exchange > 0.0 || gas_j.exchange > 0.0);
+    let share = shares_of(i.tag, j.tag);
+    var small_i = share.y * change;
+    var small_j = share.w * change;
+    if (!has_spin) {
+        let g = before_j.velocity - before_i.velocity;
+        let turned_g = g + change;
+        // The difference of their squares, which should be zero.
+        let excess = dot(change, turned_g + g);
+        let correction = (0.5 * excess / max(dot(turned_g, turned_g), 1e-30)) * turned_g;
+        small_i -= share.x * correction;
+        small_j -= share.z * correction;
+    }
+    i.velocity = before_i.velocity - (share.x * change + small_i);
+    j.velocity = before_j.velocity + (share.z * change + small_j);
+    if (has_spin) {
         // The kinetic energy that the rounded velocities really gained, against what the spins gave.
-        let gained = 0.5 * mass_i * dot(i.velocity - before_i.velocity, i.velocity + before_i.velocity)
-            + 0.5 * mass_j * dot(j.velocity - before_j.velocity, j.velocity + before_j.velocity);
+        let gained = 0.5 * gas_i.mass * dot(i.velocity - before_i.velocity, i.velocity + before_i.velocity)
+            + 0.5 * gas_j.mass * dot(j.velocity - before_j.velocity, j.velocity + before_j.velocity);
         let residual = (i.spin - after.spin_i) + (j.spin - after.spin_j) - gained;
         i.spin = after.spin_i;
         j.spin = after.spin_j;
-        if (gases[kind_of(i.tag)].exchange > 0.0 && i.spin + residual >= 0.0) {
+        if (gas_i.exchange > 0.0 && i.spin + residual >= 0.0) {
             i.spin += residual;
-        } else if (gases[kind_of(j.tag)].exchange > 0.0 && j.spin + residual >= 0.0) {
+        } else if (gas_j.exchange > 0.0 && j.spin + residual >= 0.0) {
             j.spin += residual;
         }
     }

@@ -9,6 +9,7 @@ use super::layout::{
     GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate, GpuVent,
     GpuWeights, GpuZone,
 };
+use super::state::share_table;
 use super::walls::Walls;
 
 /// Cells per thread of the scan.
@@ -52,6 +53,7 @@ pub const FIRST_TAILS: u64 = 8;
 pub struct DomainBuffers {
     pub gases: wgpu::Buffer,
     pub modes: wgpu::Buffer,
+    pub mass_shares: wgpu::Buffer,
     pub wall_start: wgpu::Buffer,
     pub wall_list: wgpu::Buffer,
     pub triangles: wgpu::Buffer,
@@ -78,9 +80,13 @@ impl DomainBuffers {
         device.write(&gas_buffer, 0, &table);
         let mode_buffer = device.uniform("modes", size_of_val(modes) as u64)?;
         device.write(&mode_buffer, 0, modes);
+        let shares = share_table(gases);
+        let share_buffer = device.uniform("mass_shares", size_of_val(shares.as_slice()) as u64)?;
+        device.write(&share_buffer, 0, &shares);
         Ok(DomainBuffers {
             gases: gas_buffer,
             modes: mode_buffer,
+            mass_shares: share_buffer,
             wall_start: device.storage_of("wall_start", &walls.start)?,
             wall_list: device.storage_of("wall_list", &walls.list)?,
             triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
@@ -418,6 +424,7 @@ impl<'a> Buffers<'a> {
             (_, "step") => &fixed.step,
             (_, "gases") => &domain.gases,
             (_, "modes") => &domain.modes,
+            (_, "mass_shares") => &domain.mass_shares,
             (_, "counters") => &fixed.counters,
             (_, "held") => &fixed.held,
             (_, "stretch_sums") => &cell.stretch_sums,

@@ -47,7 +47,7 @@ pub use layout::{
 pub use memory::Memory;
 pub use place::{Cells, Ghosts, GridCells, Place};
 pub use scales::Scales;
-pub use state::{StateError, zone_of};
+pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;

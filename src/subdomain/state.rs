@@ -73,6 +73,27 @@ pub fn gas_table(plan: &Plan) -> Vec<GpuGas> {
         .collect()
 }
 
+/// The device's table of shares (`shaders/shared/spin.wgsl`), of 16 gases with each of 16: of a change of the relative velocity
+/// the one takes m_j/(m_i + m_j) and the other the rest, each in its upper twelve bits and what they lack.
+pub fn share_table(gases: &[GpuGas]) -> Vec<[f32; 4]> {
+    let mut table = vec![[0.5, 0.0, 0.5, 0.0]; 256];
+    for (i, one) in gases.iter().enumerate() {
+        for (j, other) in gases.iter().enumerate() {
+            let [own, others] = [one, other].map(|gas| f64::from(gas.mass));
+            let [[upper, lower], [upper_j, lower_j]] = [others, own].map(|mass| in_two(mass / (own + others)));
+            table[16 * i + j] = [upper, lower, upper_j, lower_j];
+        }
+    }
+    table
+}
+
+/// A number as the sum of two: its upper twelve bits, whose product with a word loses no more than that of any other word
+/// does, and the rest.
+fn in_two(number: f64) -> [f32; 2] {
+    let upper = f32::from_bits((number as f32).to_bits() & !0xfff);
+    [upper, (number - f64::from(upper)) as f32]
+}
+
 /// 1/beta; finite for a mode without internal energy, whose share it still makes zero.
 fn inverse(beta: f64) -> f32 {
     (1.0 / beta.max(1e-9)) as f32

@@ -7,6 +7,7 @@ use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{
     GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, Walls, readable_numbers,
+    share_table,
 };
 
 pub use crate::devices::device;
@@ -374,6 +375,7 @@ impl Rig {
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(gases);
         self.uniform("gases", &table);
+        self.uniform("mass_shares", &share_table(gases));
         self.constant("GASES", gases.len() as f64);
     }
 
