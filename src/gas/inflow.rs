@@ -1,8 +1,11 @@
 //! Exact injection through orifices (specification, section 4 "Orifice").
 //!
-//! **When.** Particle j of gas g enters orifice o when the moles of g that have flowed there reach
-//! (j + 1/2) nu, so the injected mass is within half a particle of the curve's integral at every time,
-//! per gas and orifice.
+//! **When.** Particle n of a gas enters when the moles of it that have flowed through all orifices reach (n + 1/2) nu, so the
+//! injected mass is within half a particle of the curves' integral at every time, per gas. **Where.** Of the orifices that have
+//! delivered more than their particles it enters that which is the first to have delivered a whole particle more than them.
+//! So each orifice is within one particle of its own curve: windows as long as a particle each, and slots of their sum, always
+//! leave room by the earliest end (Horn 1974). Orifices alike take turns. Of a gas of one orifice, particle j enters at
+//! (j + 1/2) nu of it.
 //!
 //! **With what.** Without a jet the normal speed has the Maxwell speed distribution, pdf ~ v^2 exp(-m
 //! v^2/2kT), i.e. m v^2/2kT is Gamma(3/2); tangential components are normal, spin is Gamma(zeta/2) kT (or as its
@@ -18,7 +21,7 @@
 //! standard deviations of one particle's energy. The last few particles of an orifice settle what is left, speed
 //! included, so that after them the energy injected is the enthalpy injected.
 //!
-//! Invariants: ids are dense in order of entry over all orifices (ties by orifice, then by the mixture's order);
+//! Invariants: ids are dense in order of entry over all orifices (ties by the first orifice of the gas, then by its mixture's order);
 //! draws are keyed on the id only; the newborns do not depend on how the time is cut by
 //! [`Inflow::take_until`].
 
@@ -47,6 +50,8 @@ pub struct Newborn {
 pub struct Inflow {
     sources: Vec<Source>,
     streams: Vec<Stream>,
+    /// One for each gas that flows, by its first stream.
+    schedules: Vec<Schedule>,
     gases: Vec<Species>,
     moles_per_particle: f64,
     seed: u64,
@@ -86,6 +91,7 @@ struct Source {
     orifice: Orifice,
     /// Two unit vectors in the disc.
     tangents: [[f64; 3]; 2],
+    /// Particles to come, at most.
     left: u64,
     debt: f64,
 }
@@ -99,34 +105,103 @@ struct Stream {
     flow: FlowIntegral,
     /// kg of the whole mixture that flow by while this gas delivers one particle.
     mass_per_particle: f64,
+    /// Particles of the run, at most.
+    most: u64,
+    taken: u64,
+}
+
+impl Stream {
+    /// Particles that the curve delivers until a time.
+    fn delivered(&self, time: f64) -> f64 {
+        self.flow.until(time) / self.mass_per_particle
+    }
+
+    /// When the curve has delivered so many, never if it does not.
+    fn time_of(&self, particles: u64) -> f64 {
+        self.flow.time_of(particles as f64 * self.mass_per_particle).unwrap_or(f64::INFINITY)
+    }
+}
+
+/// When the particles of a gas enter, through whichever orifice.
+#[derive(Debug, Clone, PartialEq)]
+struct Schedule {
+    streams: Vec<usize>,
+    /// Of all its orifices, kg of the mixture of the one or moles of the gas of several.
+    flow: FlowIntegral,
+    /// What of that flows by between two particles.
+    per_particle: f64,
     count: u64,
     taken: u64,
     next: Option<f64>,
 }
 
-impl Stream {
+impl Schedule {
+    fn new(streams: &[Stream], gas: usize, moles_per_particle: f64, end_time: f64) -> Option<Self> {
+        let own: Vec<usize> = (0..streams.len()).filter(|&index| streams[index].gas == gas).collect();
+        let (flow, per_particle) = match own[..] {
+            [] => return None,
+            [only] => (streams[only].flow.clone(), streams[only].mass_per_particle),
+            _ => {
+                let moles = |&index: &usize| {
+                    let stream: &Stream = &streams[index];
+                    (moles_per_particle / stream.mass_per_particle, &stream.flow)
+                };
+                (FlowIntegral::sum(&own.iter().map(moles).collect::<Vec<_>>()), moles_per_particle)
+            }
+        };
+        let schedule = Self { streams: own, flow, per_particle, count: 0, taken: 0, next: None };
+        Some(schedule.counted(end_time))
+    }
+
     fn time_of(&self, index: u64) -> Option<f64> {
-        self.flow.time_of((index as f64 + 0.5) * self.mass_per_particle)
+        self.flow.time_of((index as f64 + 0.5) * self.per_particle)
     }
 
     fn counted(mut self, end_time: f64) -> Self {
-        let enters = |stream: &Self, index| stream.time_of(index).is_some_and(|time| time < end_time);
+        let enters = |schedule: &Self, index| schedule.time_of(index).is_some_and(|time| time < end_time);
         // The quotient may miss the last particle by rounding: ask the schedule itself.
-        self.count = (self.flow.total() / self.mass_per_particle + 0.5) as u64;
+        self.count = (self.flow.total() / self.per_particle + 0.5) as u64;
         while enters(&self, self.count) {
             self.count += 1;
         }
         while self.count > 0 && !enters(&self, self.count - 1) {
             self.count -= 1;
         }
-        self.next = if self.count > 0 { self.time_of(0) } else { None };
+        self.take(0);
         self
     }
 
-    fn advance(&mut self) {
-        self.taken += 1;
-        self.next = if self.taken < self.count { self.time_of(self.taken) } else { None };
+    /// So many have entered.
+    fn take(&mut self, taken: u64) {
+        self.taken = taken;
+        self.next = if taken < self.count { self.time_of(taken) } else { None };
     }
+
+    /// The stream through which the particle of this time enters, the first of equals.
+    fn stream_at(&self, time: f64, streams: &[Stream]) -> usize {
+        if let [only] = self.streams[..] {
+            return only;
+        }
+        let ahead = |index: usize| streams[index].delivered(time) - streams[index].taken as f64;
+        let due = self.streams.iter().filter(|&&index| ahead(index) > 0.0);
+        let first = due.min_by(|&&a, &&b| {
+            let whole = |index: usize| streams[index].time_of(streams[index].taken + 1);
+            whole(a).total_cmp(&whole(b))
+        });
+        // Some stream is ahead by the half particle, but for rounding.
+        *first.or_else(|| self.streams.iter().max_by(|&&a, &&b| ahead(a).total_cmp(&ahead(b)))).unwrap_or(&0)
+    }
+}
+
+/// A flow that brings no particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unrepresented {
+    pub orifice: usize,
+    pub gas: usize,
+    /// What of a particle flows.
+    pub part: f64,
+    /// And what of one brings one for certain.
+    pub enough: f64,
 }
 
 impl Inflow {
@@ -146,40 +221,79 @@ impl Inflow {
         for (source, orifice) in orifices.iter().enumerate() {
             let flow = FlowIntegral::new(&orifice.mass_flow, end_time);
             let molar_mass = thermo::molar_mass(&orifice.mixture, gases);
-            let of_orifice = orifice.mixture.0.iter().map(|&(gas, fraction)| {
+            streams.extend(orifice.mixture.0.iter().map(|&(gas, fraction)| {
                 let mass_per_particle = moles_per_particle * molar_mass / fraction;
-                let flow = flow.clone();
-                Stream { source, gas, flow, mass_per_particle, count: 0, taken: 0, next: None }.counted(end_time)
-            });
-            let first = streams.len();
-            streams.extend(of_orifice);
-            let left = streams[first..].iter().map(|stream| stream.count).sum();
+                let most = (flow.total() / mass_per_particle).ceil() as u64;
+                Stream { source, gas, flow: flow.clone(), mass_per_particle, most, taken: 0 }
+            }));
             let tangents = tangents(orifice.direction);
-            sources.push(Source { orifice: orifice.clone(), tangents, left, debt: 0.0 });
+            sources.push(Source { orifice: orifice.clone(), tangents, left: 0, debt: 0.0 });
+        }
+        let mut flowing: Vec<usize> = Vec::new();
+        for stream in &streams {
+            if !flowing.contains(&stream.gas) {
+                flowing.push(stream.gas);
+            }
+        }
+        let of_gas = |gas: &usize| Schedule::new(&streams, *gas, moles_per_particle, end_time);
+        let schedules: Vec<Schedule> = flowing.iter().filter_map(of_gas).collect();
+        for schedule in &schedules {
+            if let [only] = schedule.streams[..] {
+                streams[only].most = schedule.count;
+            }
+        }
+        for stream in &streams {
+            sources[stream.source].left += stream.most;
         }
         let gases = gases.to_vec();
-        Self { sources, streams, gases, moles_per_particle, seed, first_id, entered: 0, enthalpy: 0.0 }
+        Self { sources, streams, schedules, gases, moles_per_particle, seed, first_id, entered: 0, enthalpy: 0.0 }
     }
 
     /// Particles of the whole run, taken and to come.
     pub fn total(&self) -> u64 {
-        self.streams.iter().map(|stream| stream.count).sum()
+        self.schedules.iter().map(|schedule| schedule.count).sum()
     }
 
     /// The same by gas.
     pub fn total_by_gas(&self) -> Vec<u64> {
-        self.by_gas(|stream| stream.count)
+        self.by_gas(|schedule| schedule.count)
     }
 
-    /// Flows too small for a particle: orifice, gas, and the part of a particle that flows.
-    pub fn without_particle(&self) -> Vec<(usize, usize, f64)> {
-        let none = self.streams.iter().filter(|stream| stream.count == 0);
-        none.map(|stream| (stream.source, stream.gas, stream.flow.total() / stream.mass_per_particle)).collect()
+    /// Flows too small for a particle.
+    pub fn without_particle(&self) -> Vec<Unrepresented> {
+        let part = |stream: &Stream| stream.flow.total() / stream.mass_per_particle;
+        let mut at_end = self.streams.clone();
+        for schedule in &self.schedules {
+            match schedule.streams[..] {
+                [only] => at_end[only].taken = schedule.count,
+                // Who brings a whole particle gets one.
+                _ if schedule.streams.iter().all(|&stream| part(&self.streams[stream]) >= 1.0) => {
+                    schedule.streams.iter().for_each(|&stream| at_end[stream].taken = 1);
+                }
+                _ => {
+                    let mut schedule = schedule.clone();
+                    while let Some(time) = schedule.next {
+                        let stream = schedule.stream_at(time, &at_end);
+                        at_end[stream].taken += 1;
+                        schedule.take(schedule.taken + 1);
+                    }
+                }
+            }
+        }
+        let is_alone = |gas| self.streams.iter().filter(|stream| stream.gas == gas).count() == 1;
+        let none = at_end.iter().filter(|stream| stream.taken == 0);
+        let found = none.map(|stream| Unrepresented {
+            orifice: stream.source,
+            gas: stream.gas,
+            part: part(stream),
+            enough: if is_alone(stream.gas) { 0.5 } else { 1.0 },
+        });
+        found.collect()
     }
 
     /// Particles taken so far, by gas.
     pub fn entered_by_gas(&self) -> Vec<u64> {
-        self.by_gas(|stream| stream.taken)
+        self.by_gas(|schedule| schedule.taken)
     }
 
     /// Enthalpy of the particles taken so far at their temperatures of entry, J.
@@ -195,8 +309,11 @@ impl Inflow {
     /// The particles not yet taken that enter before `end` (s), in order of time.
     pub fn take_until(&mut self, end: f64) -> Vec<Newborn> {
         let mut newborns = Vec::new();
-        while let Some((stream, time)) = self.earliest().filter(|&(_, time)| time < end) {
-            self.streams[stream].advance();
+        while let Some((schedule, time)) = self.earliest().filter(|&(_, time)| time < end) {
+            let schedule = &mut self.schedules[schedule];
+            let stream = schedule.stream_at(time, &self.streams);
+            schedule.take(schedule.taken + 1);
+            self.streams[stream].taken += 1;
             newborns.push(self.emit(stream, time));
         }
         newborns
@@ -223,10 +340,15 @@ impl Inflow {
                 expected_orifices: self.sources.len(),
             });
         }
-        for (stream, (&taken, &Stream { count, .. })) in state.taken.iter().zip(&self.streams).enumerate() {
-            if taken > count {
-                return Err(InflowStateError::Taken { stream, taken, count });
+        for (stream, (&taken, &Stream { most, .. })) in state.taken.iter().zip(&self.streams).enumerate() {
+            if taken > most {
+                return Err(InflowStateError::Taken { stream, taken, count: most });
             }
+        }
+        let of_schedule = |schedule: &Schedule| schedule.streams.iter().map(|&stream| state.taken[stream]).sum::<u64>();
+        if let Some(schedule) = self.schedules.iter().find(|schedule| of_schedule(schedule) > schedule.count) {
+            let (taken, count) = (of_schedule(schedule), schedule.count);
+            return Err(InflowStateError::Taken { stream: schedule.streams[0], taken, count });
         }
         if !state.debts.iter().chain([&state.enthalpy]).all(|energy| energy.is_finite()) {
             return Err(InflowStateError::Energy);
@@ -236,25 +358,27 @@ impl Inflow {
         }
         for (stream, &taken) in self.streams.iter_mut().zip(&state.taken) {
             stream.taken = taken;
-            stream.next = if taken < stream.count { stream.time_of(taken) } else { None };
-            self.sources[stream.source].left += stream.count - taken;
+            self.sources[stream.source].left += stream.most - taken;
+        }
+        for schedule in &mut self.schedules {
+            schedule.take(of_schedule(schedule));
         }
         self.entered = state.taken.iter().sum();
         self.enthalpy = state.enthalpy;
         Ok(())
     }
 
-    fn by_gas(&self, number: impl Fn(&Stream) -> u64) -> Vec<u64> {
+    fn by_gas(&self, number: impl Fn(&Schedule) -> u64) -> Vec<u64> {
         let mut sums = vec![0; self.gases.len()];
-        for stream in &self.streams {
-            sums[stream.gas] += number(stream);
+        for schedule in &self.schedules {
+            sums[self.streams[schedule.streams[0]].gas] += number(schedule);
         }
         sums
     }
 
-    /// Streams lie in order of orifice: the first of equals is the one of the lower index.
+    /// Schedules lie in order of their first stream: the first of equals is the one of the lower index.
     fn earliest(&self) -> Option<(usize, f64)> {
-        let next = self.streams.iter().enumerate().filter_map(|(index, stream)| Some((index, stream.next?)));
+        let next = self.schedules.iter().enumerate().filter_map(|(index, schedule)| Some((index, schedule.next?)));
         next.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -263,7 +387,7 @@ impl Inflow {
         let id = self.first_id.wrapping_add(self.entered as u32);
         self.entered += 1;
         let source = &mut self.sources[source];
-        source.left -= 1;
+        source.left = source.left.saturating_sub(1);
         let species = &self.gases[gas];
         let temperature = value_held(&source.orifice.temperature, time);
         let enthalpy = species.enthalpy(self.moles_per_particle, temperature);

@@ -9,6 +9,9 @@
 //!   end + to the walls, within a share of M sqrt(2 U / M), the momentum of all gas flying one way at its
 //!   mean thermal speed. In other scenes it is shown, not judged: the walls take an unknown part.
 //!
+//! Each is relative to all that there ever was, at the start and what came in: of a vessel that was pumped empty nothing is
+//! left to compare with.
+//!
 //! Every comparison is written so that a NaN fails it.
 
 use super::table::{aligned, grouped};
@@ -92,9 +95,14 @@ impl Default for AuditLimits {
 }
 
 impl Audit {
-    /// (U + vented + heat - U0 - injected - work) / (U0 + injected + work); NaN where there was no energy at all.
+    /// (U + vented + heat - U0 - injected - work) / (U0 + injected + work on the gas); NaN where there was no energy at all.
     pub fn energy_error(&self) -> f64 {
-        relative(self.energy_end + self.energy_out(), self.energy_start + self.energy_in())
+        (self.energy_end + self.energy_out() - self.energy_start - self.energy_in()) / self.energy_present()
+    }
+
+    /// All energy that there ever was. (Work that the gas did was its own.)
+    fn energy_present(&self) -> f64 {
+        self.energy_start + self.enthalpy_injected + self.work_by_walls.unwrap_or(0.0).max(0.0)
     }
 
     fn energy_in(&self) -> f64 {
@@ -107,18 +115,19 @@ impl Audit {
 
     /// As [`Audit::energy_error`], of the mass.
     pub fn mass_error(&self) -> f64 {
-        relative(self.mass_end + self.mass_vented, self.mass_start + self.mass_injected)
+        let present = self.mass_start + self.mass_injected;
+        (self.mass_end + self.mass_vented - present) / present
     }
 
-    /// |p_end - p_start - p_injected + p_to_walls| over M sqrt(2 U / M) at the end; `None` where the walls' part
-    /// was not tallied.
+    /// |p_end - p_start - p_injected + p_to_walls| over M sqrt(2 U / M) of all gas that there ever was; `None` where the walls'
+    /// part was not tallied.
     pub fn momentum_error(&self) -> Option<f64> {
         let to_walls = self.momentum_to_walls?;
         let square = |axis: usize| {
             let expected = self.momentum_start[axis] + self.momentum_injected[axis] - to_walls[axis];
             (self.momentum_end[axis] - expected).powi(2)
         };
-        let scale = (2.0 * self.energy_end * self.mass_end).sqrt();
+        let scale = (2.0 * self.energy_present() * (self.mass_start + self.mass_injected)).sqrt();
         Some((square(0) + square(1) + square(2)).sqrt() / scale)
     }
 
@@ -261,10 +270,6 @@ impl Audit {
     }
 }
 
-fn relative(found: f64, expected: f64) -> f64 {
-    (found - expected) / expected
-}
-
 /// False for a NaN.
 fn within(value: f64, limit: f64) -> bool {
     value <= limit
@@ -347,13 +352,38 @@ mod tests {
         let received = |x: f64| Audit { momentum_to_walls: Some([x, 2e-3, 0.0]), ..clean() };
         let closed = received(12.0 - 1e-3);
         assert!(closed.verdict(&limits).is_empty() && closed.momentum_error().unwrap() < 1e-12);
-        // All gas flying one way has sqrt(2 x 70000.5 J x 0.14 kg) = 140.0 kg m/s.
+        // All gas flying one way has sqrt(2 x 72,000 J x 0.15 kg) = 147.0 kg m/s.
         let off = received(12.03);
-        assert!((off.momentum_error().unwrap() - 0.031 / 140.0).abs() < 1e-7);
+        assert!((off.momentum_error().unwrap() - 0.031 / 147.0).abs() < 1e-7);
         let verdict = off.verdict(&limits);
-        assert!(verdict.len() == 1 && verdict[0].starts_with("the momentum is off by 2.21e-4"), "{verdict:?}");
+        assert!(verdict.len() == 1 && verdict[0].starts_with("the momentum is off by 2.11e-4"), "{verdict:?}");
         assert_eq!(received(f64::NAN).verdict(&limits).len(), 1);
         assert_eq!(clean().momentum_error(), None);
+    }
+
+    /// What was there counts, not what is left: a vessel pumped empty passes, and a fault in its momentum is found still.
+    #[test]
+    fn a_vessel_pumped_empty_is_judged_by_what_it_held() {
+        let limits = AuditLimits::default();
+        let empty = |to_walls: f64| Audit {
+            particles_vented: 20_000,
+            particles_inside: 0,
+            mass_vented: 0.15,
+            mass_end: 0.0,
+            momentum_end: [0.0; 3],
+            momentum_to_walls: Some([to_walls, 0.0, 0.0]),
+            enthalpy_vented: 72_000.0,
+            energy_end: 0.0,
+            ..clean()
+        };
+        assert_eq!(empty(12.0 + 1e-9).verdict(&limits), Vec::<String>::new());
+        let verdict = empty(12.0 + 1.1e-4 * 147.0).verdict(&limits);
+        assert!(verdict.len() == 1 && verdict[0].starts_with("the momentum is off by 1.10e-4"), "{verdict:?}");
+        // So is what a piston let expand to nothing: the work that the gas did was its own.
+        let expanded = Audit { work_by_walls: Some(-71_999.0), enthalpy_vented: 1.0, ..empty(12.0) };
+        assert_eq!(expanded.energy_error(), 0.0);
+        let off = Audit { enthalpy_vented: 1.0 + 7.3, ..expanded };
+        assert!((off.energy_error() - 7.3 / 72_000.0).abs() < 1e-9 && off.verdict(&limits).len() == 1);
     }
 
     #[test]

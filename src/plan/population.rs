@@ -6,7 +6,7 @@ use super::limits::{Quantity, limit};
 use super::render::{grouped, significant};
 use super::resolution::cell_edge;
 use super::{Measured, PlanError, Reason};
-use crate::gas::{Inflow, Species, kinetics};
+use crate::gas::{Inflow, Species, Unrepresented, kinetics};
 use crate::scene::{Method, Orifice, Scene};
 
 /// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
@@ -150,26 +150,27 @@ fn unrepresented(
     inflow: &Inflow,
 ) -> Vec<String> {
     let wanted = amounts.total() / moles_per_particle;
-    let none = |gas: usize, place: String, part: f64| {
-        // A little more than a half: an orifice's particle enters before the end.
-        let remedy = match more_particles(0.501 / part, wanted) {
+    let none = |gas: usize, place: String, part: f64, enough: f64| {
+        // A little more: an orifice's particle enters before the end.
+        let remedy = match more_particles((enough + 0.001) / part, wanted) {
             Some(more) => format!("{more}, or leave it out"),
             None => "leave it out".to_string(),
         };
         let (gas, part) = (&scene.gases[gas].name, significant(part));
-        format!("gas `{gas}` of {place}: {part} of a particle, less than a half, so none of it is in the run; {remedy}")
+        let bound = if enough < 1.0 { "less than a half, so none of it is" } else { "and none of it is" };
+        format!("gas `{gas}` of {place}: {part} of a particle, {bound} in the run; {remedy}")
     };
     let mut found = Vec::new();
     for (chamber, (moles, counts)) in scene.chambers.iter().zip(amounts.initial.iter().zip(initial)) {
         for (gas, (moles, count)) in moles.iter().zip(counts).enumerate() {
             if *moles > 0.0 && *count == 0 {
-                found.push(none(gas, format!("chamber `{}`", chamber.name), moles / moles_per_particle));
+                found.push(none(gas, format!("chamber `{}`", chamber.name), moles / moles_per_particle, 0.5));
             }
         }
     }
-    for (orifice, gas, part) in inflow.without_particle() {
+    for Unrepresented { orifice, gas, part, enough } in inflow.without_particle() {
         if part > 0.0 {
-            found.push(none(gas, format!("orifice `{}`", scene.orifices[orifice].name), part));
+            found.push(none(gas, format!("orifice `{}`", scene.orifices[orifice].name), part, enough));
         }
     }
     found

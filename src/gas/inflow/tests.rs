@@ -40,31 +40,70 @@ fn enthalpy(newborn: &Newborn) -> f64 {
     gases()[usize::from(newborn.particle.gas)].enthalpy(NU, temperature)
 }
 
-/// Mass: within half a particle per gas and orifice of the curve's integral, at every moment.
+/// Mass: within half a particle per gas of the curves' integral at every moment, and within one of each orifice's own; what
+/// has not begun to flow lets nobody in.
 #[test]
 fn mass_is_within_half_a_particle() {
-    let orifices = [orifice(vec![(0, 0.7), (1, 0.3)], None), orifice(vec![(0, 1.0)], None)];
+    let later = |start: f64, flow: f64| {
+        let mass_flow = Curve { points: vec![[start, flow], [start + 0.02, 0.3 * flow]] };
+        Orifice { mass_flow, ..orifice(vec![(0, 0.5), (1, 0.5)], None) }
+    };
+    let orifices =
+        [orifice(vec![(0, 0.7), (1, 0.3)], None), orifice(vec![(0, 1.0)], None), later(0.02, 0.1), later(0.031, 0.007)];
     let mut whole = inflow(&orifices);
     assert_eq!(whole.total(), whole.total_by_gas().iter().sum::<u64>());
-    let worst = |counts: &[u64], end: f64| {
-        let kg = FlowIntegral::new(&orifices[0].mass_flow, end).total();
-        let per_mole = kg / thermo::molar_mass(&orifices[0].mixture, &gases());
-        (counts[1] as f64 - 0.3 * per_mole / NU).abs()
+    let delivered = |end: f64| -> Vec<f64> {
+        let of = |orifice: &Orifice| {
+            let kg = FlowIntegral::new(&orifice.mass_flow, end).total();
+            let moles = kg / thermo::molar_mass(&orifice.mixture, &gases());
+            orifice.mixture.0.iter().map(|(_, fraction)| fraction * moles / NU).collect::<Vec<_>>()
+        };
+        orifices.iter().flat_map(of).collect()
     };
-    for step in 1..=100 {
-        let end = f64::from(step) * 1e-3;
+    let off = |counts: &[u64], end: f64| {
+        let delivered = delivered(end);
+        let nitrogen = delivered[0] + delivered[2] + delivered[3] + delivered[5];
+        (counts[0] as f64 - nitrogen).abs().max((counts[1] as f64 - delivered[1] - delivered[4] - delivered[6]).abs())
+    };
+    let mut worst = 0.0f64;
+    for step in 1..=1000 {
+        let end = f64::from(step) * 1e-4;
         whole.take_until(end);
-        let counts = whole.entered_by_gas();
-        assert!(worst(&counts, end) <= 0.5 + 1e-6);
+        assert!(off(&whole.entered_by_gas(), end) <= 0.5 + 1e-6);
+        for (taken, delivered) in whole.state().taken.iter().zip(delivered(end)) {
+            assert!((*taken as f64 - delivered).abs() < 1.0 + 1e-6, "{taken} {delivered} at {end}");
+            assert!(delivered > 0.0 || *taken == 0);
+            worst = worst.max((*taken as f64 - delivered).abs());
+        }
     }
+    assert!(worst > 0.6, "orifices take turns: {worst}");
     assert_eq!(whole.entered_by_gas(), whole.total_by_gas());
     // The check can fail: one particle less is outside.
     let mut counts = whole.entered_by_gas();
     counts[1] -= 1;
-    assert!(worst(&counts, 0.1) > 0.5);
+    assert!(off(&counts, 0.1) > 0.5);
     // Nothing enters after the end of the run.
     let short = Inflow::new(&orifices, &gases(), NU, 11, 0, 0.01);
     assert!(short.total() < whole.total() / 2);
+}
+
+/// Of many orifices alike, each of which brings .69 of a particle, all together bring what they bring, in turn; those
+/// that bring none are told.
+#[test]
+fn orifices_alike_take_turns() {
+    let small = orifice(vec![(0, 1.0)], None);
+    let each = FlowIntegral::new(&small.mass_flow, 0.1).total() / 0.028;
+    let orifices = vec![small; 24];
+    let mut inflow = Inflow::new(&orifices, &gases(), each / 0.69, 11, 0, 0.1);
+    assert_eq!(inflow.total(), 17, "24 times .69 is 16.56");
+    let without = inflow.without_particle();
+    let newborns = inflow.take_until(0.1);
+    assert_eq!(newborns.len(), 17);
+    assert!(inflow.state().taken.iter().all(|&taken| taken <= 1));
+    let expected: Vec<usize> = (0..24).filter(|&orifice| inflow.state().taken[orifice] == 0).collect();
+    assert_eq!(without.iter().map(|none| none.orifice).collect::<Vec<_>>(), expected);
+    assert!(without.iter().all(|none| (none.part - 0.69).abs() < 1e-9 && none.enough == 1.0));
+    assert!(inflow.debt().abs() < 1e-9 * inflow.enthalpy(), "each settles its debt");
 }
 
 /// Energy: exactly the enthalpy at the temperatures of entry, for spin, for speed, for mixtures and jets.
