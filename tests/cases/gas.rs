@@ -36,3 +36,24 @@ fn helium_and_argon_keep_their_energy() {
         assert!(drift.abs() < 3e-7, "{method}: {drift:e}");
     }
 }
+
+/// A vessel that is pumped until nobody is left passes its audit: the momentum is relative to what it held.
+#[test]
+fn a_vessel_pumped_empty_passes_its_audit() {
+    let folder = tempfile::tempdir().unwrap();
+    let audit = run(&input("pumped_empty/pumped.toml"), &folder.path().join("out"), &[]);
+    let particles = audit.lines().find(|line| line.starts_with("particles")).unwrap();
+    assert_eq!(particles.split_whitespace().skip(1).collect::<Vec<_>>(), ["1,500", "0", "1,500", "0", "0"]);
+    assert!(last_of(&audit, "  error") < 1e-6);
+}
+
+/// 24 nozzles, of which each brings .69 of a particle, bring 19 mg together within half a particle.
+#[test]
+fn many_small_orifices_bring_their_sum() {
+    let (code, plan, error) = outcome(&["plan", input("many_orifices/nozzles.toml").to_str().unwrap(), "--toml"]);
+    assert_eq!(code, 0, "{error}");
+    let plan: toml::Table = plan.parse().unwrap();
+    let particle = plan["moles_per_particle"].as_float().unwrap() * 0.0280134;
+    let injected = plan["injected_particles"].as_integer().unwrap() as f64 * particle;
+    assert!((injected - 19e-6).abs() <= 0.5 * particle, "{injected} of {particle} each");
+}

@@ -239,13 +239,14 @@ pub fn energy_drift(
     })
 }
 
-/// Rounding is a random walk of some 1.5e-7 of a particle's mean energy for each collision: with so many particles a quarter
-/// of the tolerance in 2,000 steps.
-const RESTING_PARTICLES: u64 = 2000;
+/// Steps, particles and tolerance: rounding is a random walk of some 1.5e-7 of a particle's mean energy for each collision,
+/// which with so many particles comes to a quarter of the tolerance.
+const QUICK_DRIFT: (u32, u64, f64) = (2000, 2000, 2e-7);
+const FULL_DRIFT: (u32, u64, f64) = (100_000, 500, 2e-6);
 
 /// Within 2e-7 in 2,000 steps, and in 1e5 steps within 2e-6, a fifth of what the specification allows (section 8).
 pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let (steps, tolerance) = if effort == Effort::Quick { (2000, 2e-7) } else { (100_000, 2e-6) };
+    let (steps, particles, tolerance) = if effort == Effort::Quick { QUICK_DRIFT } else { FULL_DRIFT };
     let [without_spin @ .., with_spin] = &RESTING_MIXTURES;
     let mut ways = vec![
         ("closest-approach", &RESTING_NITROGEN),
@@ -257,7 +258,7 @@ pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Findings, 
         ways.extend(without_spin.iter().map(|mixture| (method, mixture)));
     }
     let check = |(method, resting): (&str, &RestingGas)| {
-        let drift = energy_drift(device, method, resting, RESTING_PARTICLES, steps)?;
+        let drift = energy_drift(device, method, resting, particles, steps)?;
         let quantity = format!("{method}: {}, {steps} steps", resting.name);
         Ok(Check::of(quantity, 0.0, (drift.error, 0.0), tolerance))
     };

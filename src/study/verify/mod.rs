@@ -217,7 +217,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "energy-drift",
-        law: "relative change of the energy of a closed box, per 1e5 steps",
+        law: "relative change of the energy of gases and mixtures in a closed box",
         run: equilibrium::conservation,
     },
     Case {
