@@ -3,7 +3,7 @@
 //! Per chamber: dn_g/dt = inflow + net flow through openings, dU/dt = inflow x h + energy through openings,
 //! and -p dV/dt of walls that move, with U = sum n u(T) and p V = n R T; openings by [`discharge`](super::discharge) at the local Knudsen
 //! number Kn = lambda / length, lambda from the number density of *particles* (moles / V / nu) on the
-//! upstream side: the reference of what the run itself models (a run that is itself a control volume has Kn = 0). So that nothing jumps where two pressures
+//! upstream side: times what makes them more viscous than by it: the reference of what the run itself models (a run that is itself a control volume has Kn = 0). So that nothing jumps where two pressures
 //! cross, the two densities are blended while the pressures differ by less than 2 %.
 //!
 //! Integrated with the classical Runge-Kutta method (RK4), each step against two halves of it, between
@@ -53,7 +53,7 @@ pub enum Collisions {
     None,
     /// Those of particles of a diameter (m) and an amount (mol).
     /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, and are
-    /// the more viscous to a hole ([`kinetics::viscosity_of_cells`]).
+    /// the more viscous to a hole ([`kinetics::viscosity_of_cells`]); else where they crowd ([`kinetics::viscosity_of_crowds`]).
     Particles { diameter: f64, cap: Option<f64>, cell: Option<f64>, moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
@@ -333,8 +333,13 @@ impl ControlVolume {
         let (pa, pb) = (a.pressure(), b.pressure());
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);
         let upstream = weight * density(a) + (1.0 - weight) * density(b);
-        let path = kinetics::mean_free_path(upstream, kinetics::capped_diameter(diameter, cap, upstream));
-        path * cell.map_or(1.0, |edge| kinetics::viscosity_of_cells(edge / path)) / length
+        let diameter = kinetics::capped_diameter(diameter, cap, upstream);
+        let path = kinetics::mean_free_path(upstream, diameter);
+        let viscosity = match cell {
+            Some(edge) => kinetics::viscosity_of_cells(edge / path),
+            None => kinetics::viscosity_of_crowds(kinetics::occupancy(upstream, diameter)),
+        };
+        path * viscosity / length
     }
 }
 

@@ -27,8 +27,8 @@ pub use curve::{
     value_held, value_inside, velocity,
 };
 pub use discharge::{
-    BETWEEN, COEFFICIENT_LIMITS, CONTINUUM_COEFFICIENT, Side, coefficient_into_vacuum, exchange, isentropic, published,
-    specified,
+    BETWEEN, COEFFICIENT_LIMITS, CONTINUUM_COEFFICIENT, Side, coefficient_into_vacuum, continuum_by_excess,
+    continuum_coefficient, exchange, isentropic, published, specified,
 };
 pub use inflow::{Inflow, InflowState, InflowStateError, Newborn, Unrepresented, jet_mach, jet_state};
 pub use initial::{Correction, FillError, Filling, InitialGas};

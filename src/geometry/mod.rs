@@ -1,7 +1,7 @@
 //! Triangle meshes of the walls, where the gas is, its volumes and the triangle grid. All f64 and
 //! deterministic: the same walls give the same bits, whatever the number of threads.
 //!
-//! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `plate`, `polygon`,
+//! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `round`, `plate`, `polygon`,
 //! `mesh_file`, `closed`) and answers where the gas is (`lines`) and how much of it (`vessel`, `region`,
 //! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
 //! that part the gas near them from them.
@@ -19,6 +19,7 @@ mod plate;
 mod polygon;
 mod primitives;
 mod region;
+mod round;
 mod sampling;
 mod triangle_grid;
 mod vessel;
@@ -31,6 +32,7 @@ pub use error::GeometryError;
 pub use grid::{Grid, GridError};
 pub use primitives::FoundHole;
 pub use region::{region_bounds, region_contains, region_volume};
+pub use round::{Facets, facets};
 pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, TriangleGrid};
 pub use vessel::{Triangle, Vessel, WallInfo};
 

@@ -1,14 +1,14 @@
 //! The wall shapes of a scene as closed triangle meshes, normals outwards (away from the solid the shape
 //! describes, or away from what a shape without thickness encloses).
 //!
-//! Corners of cylinders and spheres lie on the round surface, so their volumes are a little below the round
-//! body's: by sin(a)/a with a = 2 pi / segments for a cylinder.
+//! Round bodies and holes keep what counts: a facetted cylinder or sphere has the volume of the round one (`round`), the
+//! polygon of a hole the area of its circle.
 
 use super::GeometryError;
 use super::plate::{Frame, HoleOutline, Plate, outlines};
+use super::round::{cylinder, sphere};
 use crate::scene::{Face, Shape};
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 /// A hole as cut. Lengths in m.
 #[derive(Debug, Clone, PartialEq)]
@@ -235,91 +235,4 @@ fn plate(
     }
     .add_to(&mut mesh, holes, wall, subject)?;
     Ok(mesh)
-}
-
-fn cylinder(base: DVec3, axis: DVec3, radius: f64, height: f64, segments: u32) -> WallMesh {
-    let mut mesh = WallMesh::default();
-    // The coordinate axis furthest from the cylinder's: exact rims for a cylinder along x, y or z.
-    let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
-    let u = (DVec3::AXES[least] - axis * axis[least]).normalize();
-    let v = axis.cross(u);
-    let mut rim = |level: f64| -> Vec<u32> {
-        (0..segments)
-            .map(|i| {
-                let angle = std::f64::consts::TAU * f64::from(i) / f64::from(segments);
-                let out = u * libm::cos(angle) + v * libm::sin(angle);
-                mesh.vertex(base + axis * level + out * radius)
-            })
-            .collect()
-    };
-    let (low, high) = (rim(0.0), rim(height));
-    let (bottom, top) = (mesh.vertex(base), mesh.vertex(base + axis * height));
-    for i in 0..segments as usize {
-        let next = (i + 1) % segments as usize;
-        mesh.quad([low[i], low[next], high[next], high[i]], None);
-        mesh.triangle([bottom, low[next], low[i]], None);
-        mesh.triangle([top, high[i], high[next]], None);
-    }
-    mesh
-}
-
-/// An icosahedron whose triangles are quartered `subdivisions` times, every vertex on the sphere.
-fn sphere(center: DVec3, radius: f64, subdivisions: u32) -> WallMesh {
-    let golden = (1.0 + 5f64.sqrt()) / 2.0;
-    let mut directions: Vec<DVec3> = Vec::new();
-    for axis in 0..3 {
-        for (a, b) in [(-1.0, -golden), (1.0, -golden), (-1.0, golden), (1.0, golden)] {
-            let mut p = DVec3::ZERO;
-            p[(axis + 1) % 3] = a;
-            p[(axis + 2) % 3] = b;
-            directions.push(p.normalize());
-        }
-    }
-    let mut triangles = icosahedron(&directions);
-    for _ in 0..subdivisions {
-        let mut middles: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-        let mut finer = Vec::with_capacity(4 * triangles.len());
-        for t in &triangles {
-            let middle = [0, 1, 2].map(|k| {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                    directions.push((directions[a as usize] + directions[b as usize]).normalize());
-                    (directions.len() - 1) as u32
-                })
-            });
-            finer.extend([
-                [t[0], middle[0], middle[2]],
-                [middle[0], t[1], middle[1]],
-                [middle[2], middle[1], t[2]],
-                middle,
-            ]);
-        }
-        triangles = finer;
-    }
-    let mut mesh = WallMesh::default();
-    for direction in directions {
-        mesh.vertex(center + direction * radius);
-    }
-    for t in triangles {
-        mesh.triangle(t, None);
-    }
-    mesh
-}
-
-/// The 20 faces: triples of vertices at the edge length, the shortest distance there is.
-fn icosahedron(directions: &[DVec3]) -> Vec<[u32; 3]> {
-    let near = |a: usize, b: usize| directions[a].dot(directions[b]) > 0.4;
-    let n = directions.len();
-    let mut faces = Vec::new();
-    for a in 0..n {
-        for b in a + 1..n {
-            for c in b + 1..n {
-                if near(a, b) && near(b, c) && near(c, a) {
-                    let outwards = directions[a].dot(directions[b].cross(directions[c])) > 0.0;
-                    faces.push(if outwards { [a, b, c] } else { [a, c, b] }.map(|v| v as u32));
-                }
-            }
-        }
-    }
-    faces
 }

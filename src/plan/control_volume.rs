@@ -22,6 +22,7 @@ pub fn plan(
 ) -> Result<Plan, PlanError> {
     measured.no_empty_space("the method `control-volume`")?;
     super::motion::reasons(scene, measured, &mut reasons);
+    super::facets::reasons(scene, &mut reasons);
     let mut because = |quantity: &str, value: &str, why: &str| {
         reasons.push(Reason { quantity: quantity.into(), value: value.into(), why: why.into() });
     };
@@ -30,7 +31,11 @@ pub fn plan(
         "none",
         "each chamber has one pressure, one temperature and one composition; right once pressures are uniform",
     );
-    because("openings", "continuum", "0.84 of isentropic flow by the pressures and the gas of their two chambers");
+    because(
+        "openings",
+        "continuum",
+        "0.84 of isentropic flow into vacuum, 0.61 by small differences of pressure, of the gas of the upper chamber",
+    );
     let parts = scene.model.particles.unwrap_or(PARTS);
     let unit = amounts.total() / parts as f64;
     because(
@@ -119,5 +124,6 @@ fn warnings(scene: &Scene, measured: &Measured, species: &[Species], openings: &
     });
     let heat = super::vents::heat(scene, species, Method::ControlVolume, measured);
     let silent = silent_orifices(scene);
-    closed.chain(rough).chain(silent).chain(heat).chain(super::motion::covered(scene, measured)).collect()
+    let facets = super::facets::warnings(scene, Method::ControlVolume);
+    closed.chain(rough).chain(silent).chain(heat).chain(facets).chain(super::motion::covered(scene, measured)).collect()
 }

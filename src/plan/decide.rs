@@ -4,6 +4,7 @@ use super::amounts::{Amounts, highest_temperature};
 use super::cap::diameter_cap;
 use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
+use super::facets;
 use super::heat::species;
 use super::longest::{Basis, possible_step};
 use super::motion;
@@ -55,6 +56,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     });
     let extreme = Extreme(kinetics::thermal_square(temperature_max, amounts.lightest(scene)));
     motion::reasons(scene, measured, &mut reasons);
+    facets::reasons(scene, &mut reasons);
     let states = mean_states(scene, measured, &amounts, [initial_particles as f64, particles as f64]);
     let number_density = states[1].number_density;
     let basis = Basis { method, request: &scene.model, measured, states, extreme, particles, end_time: scene.end_time };
@@ -92,6 +94,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let mut warnings = warnings(scene, measured, &decided);
     warnings.extend(shortened);
     warnings.extend(silent_orifices(scene));
+    warnings.extend(facets::warnings(scene, method));
     warnings.extend(population.warnings);
     let vents = vents::planned(scene, &species, measured);
     warnings.extend(vents::warnings(scene, &species, method, &vents, measured));

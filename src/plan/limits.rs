@@ -51,6 +51,8 @@ pub enum Quantity {
     FastParticles,
     /// Of the method `cell`, where a cell is at least a mean free path long.
     CellParticles,
+    /// Of a round wall: how far its facets lie from the round surface at most, over its radius.
+    Facets,
 }
 
 impl Quantity {
@@ -76,6 +78,7 @@ impl Quantity {
             Quantity::VentHits => "largest flux over p/sqrt(RT) of all hits on it",
             Quantity::Heat => "heat-transfer coefficient over what all hits can carry",
             Quantity::WallSpeed => "speed over sqrt(kT/m) of the coldest gas",
+            Quantity::Facets => "distance of facets from the round surface over its radius",
         }
     }
 }
@@ -220,6 +223,13 @@ pub const LIMITS: &[Limit] = &[
     limit_of(Quantity::VentHits, None, AtMost(0.398_942_280_4), "it cannot pass more than hits it"),
     limit_of(Quantity::Heat, None, AtMost(1.0), "the wall exchanges what all hits carry, and no more"),
     limit_of(Quantity::WallSpeed, None, AtMost(4.0), "the shock before it is thinner than a cell"),
+    // They keep its volume at any number.
+    limit_of(
+        Quantity::Facets,
+        None,
+        AtMost(0.02),
+        "what is as large as the round body, or touches it, may stand in the wall or leave a gap",
+    ),
 ];
 
 /// The limit of a quantity; none where nothing was found to break.

@@ -19,6 +19,7 @@ mod choice;
 mod control_volume;
 mod decide;
 mod error;
+mod facets;
 mod forecast;
 mod heat;
 mod inventory;

@@ -4,7 +4,7 @@
 //!
 //! Nothing that the scene asks to know may be left out, nor a part of a chamber that stays; else the reason is told.
 
-use crate::gas::CONTINUUM_COEFFICIENT;
+use crate::gas::continuum_by_excess;
 use crate::geometry::{Vessel, region_bounds};
 use crate::plan::{Measured, significant};
 use crate::scene::{Curve, GasSide, Hole, Opening, Scene, Shape, Surface, Vent, VentFlow, Wall};
@@ -232,6 +232,7 @@ fn vents(whole: &Whole<'_>, kept: &[usize], holes: &[&Hole], wall: usize) -> Res
     let mut vents: Vec<Vent> = Vec::new();
     for hole in holes {
         let (opening, [before, behind]) = opening_of(whole, kept, hole)?;
+        let outside = whole.scene.chambers[behind].pressure;
         let own = Vent {
             name: hole.name.clone(),
             wall,
@@ -239,9 +240,9 @@ fn vents(whole: &Whole<'_>, kept: &[usize], holes: &[&Hole], wall: usize) -> Res
             chamber: kept.iter().position(|&chamber| chamber == before),
             disc: None,
             area: Some(opening.area),
-            flow: VentFlow::Discharge(Curve { points: vec![[0.0, CONTINUUM_COEFFICIENT]] }),
+            flow: VentFlow::DischargeByPressure(Curve { points: continuum_by_excess(outside) }),
             opening_pressure: 0.0,
-            external_pressure: whole.scene.chambers[behind].pressure,
+            external_pressure: outside,
         };
         match vents.iter_mut().find(|vent| vent.face == own.face) {
             None => vents.push(own),
@@ -261,7 +262,7 @@ fn words(whole: &Whole<'_>, kept: &[usize], hole: &Hole) -> Result<(String, Stri
     let (opening, [_, behind]) = opening_of(whole, kept, hole)?;
     let behind = &whole.scene.chambers[behind];
     let what = format!(
-        "a [[vent]] of {} m2 over its face, `discharge` = {CONTINUUM_COEFFICIENT}, `external_pressure` = {} Pa, in place of \
+        "a [[vent]] of {} m2 over its face, the discharge of a thin orifice, `external_pressure` = {} Pa, in place of \
          chamber `{}`",
         significant(opening.area),
         significant(behind.pressure),

@@ -5,6 +5,7 @@
 mod folders;
 mod gas;
 mod meshes;
+mod plan;
 mod plausible;
 
 use std::path::{Path, PathBuf};

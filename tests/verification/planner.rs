@@ -71,6 +71,16 @@ const TWO_HOLES: &str = "end_time = 2e-3\n[[wall]]\nname = \"tank\"\nshape = \"b
      region = { box = { min = [0.06, -0.06, -0.06], max = [0.2, 0.06, 0.06] } }\n[[chamber]]\nname = \"tank\"\n\
      pressure = 1e5\ntemperature = 400.0\ngas = \"nitrogen\"\n";
 
+// A small chamber that is filled, in a larger one, by little flow: what differs are the small differences of pressure through its hole.
+const LOW: &str = "end_time = 0.02\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [-0.15, -0.15, -0.15]\n\
+     max = [0.25, 0.15, 0.15]\ngas = \"inside\"\n[[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [-0.1, -0.1, -0.1]\n\
+     max = [0.1, 0.1, 0.1]\nthickness = 0.005\n[[wall.hole]]\nname = \"hole\"\nface = \"+x\"\ncenter = [0.0, 0.0]\n\
+     size = [0.1, 0.1]\n[[chamber]]\nname = \"inner\"\npressure = 1e5\ntemperature = 300.0\ngas = \"nitrogen\"\n\
+     region = { box = { min = [-0.1, -0.1, -0.1], max = [0.1, 0.1, 0.1] } }\n[[chamber]]\nname = \"outer\"\n\
+     pressure = 1e5\ntemperature = 300.0\ngas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\n\
+     position = [-0.1, 0.0, 0.0]\ndirection = [1.0, 0.0, 0.0]\narea = 0.01\ngas = \"nitrogen\"\ntemperature = 300.0\n\
+     mass_flow = [[0.0, 0.0], [0.0025, 0.1], [0.015, 0.1], [0.0175, 0.0]]\n";
+
 const HOT: &str = "end_time = 0.02\n[[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\n\
      max = [0.4, 0.15, 0.15]\ngas = \"inside\"\n[[chamber]]\nname = \"all\"\npressure = 5e4\ntemperature = 300.0\n\
      gas = \"nitrogen\"\n[[orifice]]\nname = \"inflator\"\nposition = [0.2, 0.075, 0.0]\ndirection = [0.0, 0.0, 1.0]\n\
@@ -288,6 +298,12 @@ fn effusion() {
 #[test]
 fn a_closed_vessel_is_filled() {
     check("filling", FILLED, "closest-approach", 0.02, 20, 3);
+}
+
+#[test]
+#[ignore = "a minute: scripts/test.sh --long"]
+fn a_vessel_is_filled_by_little_flow() {
+    check("low flow", LOW, "closest-approach", 0.05, 20, 3);
 }
 
 #[test]

@@ -6,7 +6,7 @@
 //! matters (`flow_only`), both are planned and the better one is taken (`simulation::flow_only`).
 
 use super::Possible;
-use crate::gas::CONTINUUM_COEFFICIENT;
+use crate::gas::continuum_coefficient;
 use crate::plan::amounts::Amounts;
 use crate::plan::forecast::{Cause, DISCHARGE_UNKNOWN, Modelled, Outlook, pressures};
 use crate::plan::heat::species;
@@ -53,14 +53,16 @@ impl Holes {
             std::cmp::Ordering::Greater => b,
             std::cmp::Ordering::Equal => [a, b][usize::from(volume(b) > volume(a))],
         };
+        let high = pressure(a).max(pressure(b));
         let name = plan.chambers.get(behind).map_or("", |chamber| chamber.name.as_str());
         Some(format!(
             "; to resolve it takes {} particles, the statistics {}: if only the flow through it matters, mark it `flow_only`, or model it: a [[vent]] \
-             in a closed wall with `area` = {} m2, `discharge` = {CONTINUUM_COEFFICIENT} and `external_pressure` = {} Pa, in \
+             in a closed wall with `area` = {} m2, `discharge` = {} and `external_pressure` = {} Pa, in \
              place of chamber `{name}`",
             grouped(resolving as u64),
             grouped(self.statistics as u64),
             significant(hole.area),
+            significant(continuum_coefficient(if high > 0.0 { pressure(a).min(pressure(b)) / high } else { 0.0 })),
             significant(pressure(behind)),
         ))
     }

@@ -163,8 +163,10 @@ fn hole_reason(method: Method, name: &str, knudsen: f64, columns: &[ColumnForeca
     };
     let quantity = format!("hole {name}");
     if method == Method::ControlVolume {
-        let why =
-            format!("0.84 of isentropic flow, known to 0.02: {} of a pressure", percent(error(Cause::Coefficients)));
+        let why = format!(
+            "0.84 of isentropic flow into vacuum, 0.61 by small differences, known to 0.02: {} of a pressure",
+            percent(error(Cause::Coefficients))
+        );
         return reason(&quantity, "modelled".into(), why);
     }
     if method == Method::None {

@@ -5,8 +5,6 @@ use super::course::{Course, Moment};
 use crate::gas::{State, kinetics, value_inside};
 use crate::scene::{Jet, Method, Orifice};
 
-/// f at which the specification's rules of resolution are made (section 6).
-const USUAL_OCCUPANCY: f64 = 0.12;
 /// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (specification, section 2).
 const CELL_PATH: f64 = 0.9;
 /// T_int/T_tr falls by a tenth of the share of lost collisions: .985 where .186 are lost, .946 where .538 are
@@ -20,7 +18,7 @@ const SOD_PATH: f64 = 0.83 * 3.968e-3;
 const SOD_STEP: f64 = 0.875 / 0.5625;
 /// N^-.26 at a fixed shape is (lambda/L)^.78.
 const SOD_EXPONENT: f64 = 0.78;
-/// By how much the .84 of an orifice may be off: the specification gives it as "about", its table is good to .02.
+/// By how much the coefficient of an orifice may be off: the specification gives its .84 as "about", its table is good to .02.
 pub const DISCHARGE_UNKNOWN: f64 = 0.02 / 0.84;
 /// Thrust of a choked jet over p A, and of a slow one over (p - p_outside) A; both times the discharge coefficient.
 const CHOKED_THRUST: f64 = 1.27;
@@ -34,17 +32,6 @@ pub fn effective_path(method: Method, occupancy: f64) -> f64 {
         Method::Cell => CELL_PATH,
         _ => kinetics::effective_mean_free_path_over_spacing(occupancy),
     }
-}
-
-/// The diameter by which the discharge coefficients of holes follow, m: discharge was measured against the kinetic mean free
-/// path at occupancies about .12, and goes with the effective one at others; with `cell`, whose collisions take no room, with the kinetic one.
-pub fn diameter_of_holes(method: Method, occupancy: f64, number_density: f64) -> f64 {
-    if method == Method::Cell {
-        return kinetics::diameter(number_density, occupancy);
-    }
-    let usual = kinetics::diameter(number_density, USUAL_OCCUPANCY);
-    let paths = [occupancy, USUAL_OCCUPANCY].map(kinetics::effective_mean_free_path_over_spacing);
-    usual / (paths[0] / paths[1]).sqrt()
 }
 
 /// Of the pressure, where collisions are lost: T_tr is too high by zeta/(3 + zeta) of what T_int lacks.
@@ -147,19 +134,6 @@ mod tests {
         }
         // The check can fail: free flight has .0589.
         assert!(!near(0.5625 * of_fronts(SOD_PATH, SOD_STEP), 0.0589, 0.12));
-    }
-
-    /// At the usual occupancy the kinetic mean free path itself; a little finer where denser, but for `cell`.
-    #[test]
-    fn holes_go_by_the_effective_mean_free_path() {
-        let usual = kinetics::diameter(1e7, 0.12);
-        for method in [Method::ClosestApproach, Method::Cell] {
-            assert!(near(diameter_of_holes(method, 0.12, 1e7), usual, 1e-12));
-        }
-        let path = |diameter| kinetics::mean_free_path(1e7, diameter);
-        let [dense, in_cells] =
-            [Method::ClosestApproach, Method::Cell].map(|method| path(diameter_of_holes(method, 0.4, 1e7)));
-        assert!(in_cells < dense && dense < path(usual));
     }
 
     #[test]

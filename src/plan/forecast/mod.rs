@@ -324,7 +324,7 @@ impl<'a> Run<'a> {
         let (states, holes) = if unchanged {
             (None, vec![0.0; course.volumes.len()])
         } else {
-            let diameter = bias::diameter_of_holes(method, occupancy, density);
+            let diameter = kinetics::diameter(density, occupancy);
             let cell = (method == Method::Cell).then(|| cell_edge(density, diameter));
             // Measured biases belong to the diameter of the mean gas.
             let states = course.solve(Collisions::Particles { diameter, cap: None, cell, moles_per_particle });

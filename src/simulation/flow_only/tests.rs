@@ -99,7 +99,7 @@ fn the_better_of_both_is_chosen() {
     assert_eq!((why.value.as_str(), model.scene.chambers.len()), ("resolved", 2));
     assert!(model.choice.unwrap().forecast.seconds > 3.0 * modelled);
     // The pressure behind rises as far as that before the hole falls: a constant one is no model of it.
-    let filling = emptying().replace("pressure = 100000.0\n", "pressure = 200000.0\n").replace("0.15", "0.07");
+    let filling = emptying().replace("pressure = 100000.0\n", "pressure = 200000.0\n").replace("0.15", "0.06");
     let (model, why) = planned(&filling.replace("accuracy = 0.05", "accuracy = 0.1"));
     assert_eq!(why.value, "resolved", "{}", why.why);
     assert!(why.why.contains("no better") || why.why.contains("cannot be modelled: then"), "{}", why.why);
@@ -156,7 +156,7 @@ fn what_is_left_out_counts() {
         let parts = columns.iter().filter(|column| column.asked).flat_map(|column| &column.parts);
         parts.filter(|part| part.cause == Cause::LeftOut).map(|part| part.error).fold(0.0, f64::max)
     };
-    // Choked all the time, the flow does not know what is behind the hole.
-    assert!(error("1.0") < 0.01, "{}", error("1.0"));
+    // Into near-vacuum the flow hardly knows what is behind the hole.
+    assert!(error("1.0") < 0.015, "{}", error("1.0"));
     assert!(error("200000.0") > 3.0 * error("1.0").max(0.005), "{}", error("200000.0"));
 }
