@@ -258,8 +258,8 @@ fn a_wish_chooses_the_plan() {
     }
     let kept = printed(&["plan", "scenes/tank.toml", "--accuracy", "0.2", "--particles", "30000"]);
     assert!(particles(&kept).abs_diff(30_000) < 3 && !kept.contains("set aside"), "{kept}");
-    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--accuracy", "0.001"]);
-    assert!(code == 2 && err.contains("no plan is predicted to be within 0.001"), "{err}");
+    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--accuracy", "0.0003"]);
+    assert!(code == 2 && err.contains("no plan is predicted to be within 0.0003"), "{err}");
     let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--device-rate", "5"]);
     assert!(code == 2 && err.contains("--device-rate without a wish"), "{err}");
     assert_eq!(outcome(&["plan", "scenes/tank.toml", "--accuracy", "2"]).0, 2);

@@ -301,9 +301,9 @@ fn a_closed_vessel_is_filled() {
 }
 
 #[test]
-#[ignore = "a minute: scripts/test.sh --long"]
+#[ignore = "three minutes: scripts/test.sh --long"]
 fn a_vessel_is_filled_by_little_flow() {
-    check("low flow", LOW, "closest-approach", 0.05, 20, 3);
+    check("low flow", LOW, "closest-approach", 0.05, 20, 8);
 }
 
 #[test]
