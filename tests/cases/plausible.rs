@@ -211,8 +211,8 @@ fn check_and_plan_say_what_a_scene_holds() {
     let (code, out, _) = outcome(&["check", can.to_str().unwrap()]);
     assert_eq!(code, 0);
     for line in [
-        "can   300 x 300 x 424.4 mm from (-150, -150, 0)",
-        "all gas with all inflow  2.991e7 mm3 (29.91 L)  0.09779 kg  0.0006903 GPa, 690.9 K if closed, no heat lost",
+        "can   300.4 x 300.4 x 424.4 mm from (-150.2, -150.2, 0)",
+        "all gas with all inflow  3.000e7 mm3 (30 L)  0.09789 kg  0.0006886 GPa, 690.5 K if closed, no heat lost",
         "burst disc  0.0002513 GPa (2.513 bar) absolute  0.00015 GPa",
         "warning: vent `burst disc`: largest flux",
     ] {
