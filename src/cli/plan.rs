@@ -6,8 +6,15 @@ use super::settings::wished_model;
 use super::terminal::say;
 
 pub fn plan(raw: PlanArguments) -> Result<(), CliError> {
-    let plan = wished_model(&raw.scene, &raw.wish)?.explained();
-    say(&if raw.toml { plan.to_toml()? } else { plan.render() })?;
+    let model = wished_model(&raw.scene, &raw.wish)?;
+    let plan = model.explained();
+    if raw.toml {
+        say(&plan.to_toml()?)?;
+    } else {
+        let notes = model.vessel.notes(model.scene.units);
+        let notes: String = notes.iter().map(|note| format!("\nnote: {note}\n")).collect();
+        say(&(plan.render() + &notes))?;
+    }
     if raw.strict && !plan.warnings.is_empty() {
         return Err(CliError::PlanWarnings { scene: raw.scene.scene, warnings: plan.warnings });
     }

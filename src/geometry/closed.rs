@@ -3,11 +3,8 @@
 //! A mesh is closed when each directed edge (a, b) of a triangle is met by exactly one (b, a) of another.
 //! Several disjoint parts are allowed. The signed volume is positive when the normals point outwards.
 
-use super::GeometryError;
+use super::error::{GeometryError, Places};
 use glam::DVec3;
-
-/// How many offenders an error lists.
-const LISTED: usize = 3;
 
 /// Twice the area over the square of the longest edge, below which a triangle counts as degenerate.
 const FLAT: f64 = 1e-12;
@@ -21,25 +18,21 @@ pub fn check_closed(wall: &str, vertices: &[DVec3], triangles: &[[u32; 3]]) -> R
     }
     let bad: Vec<usize> = (0..vertices.len()).filter(|&v| !vertices[v].is_finite()).collect();
     if !bad.is_empty() {
-        let first = list(&bad, |&v| point(vertices[v]));
+        let first = Places::of(bad.iter().map(|&v| vec![vertices[v]]), "");
         return Err(GeometryError::NotFinite { wall, count: bad.len(), first });
     }
     let flat: Vec<[DVec3; 3]> =
         triangles.iter().map(|t| t.map(|v| vertices[v as usize])).filter(|corners| is_flat(*corners)).collect();
     if !flat.is_empty() {
-        let first = list(&flat, |c| format!("{} {} {}", point(c[0]), point(c[1]), point(c[2])));
+        let first = Places::of(flat.iter().map(|corners| corners.to_vec()), "");
         return Err(GeometryError::Degenerate { wall, count: flat.len(), first });
     }
     check_edges(wall, vertices, triangles)
 }
 
 fn check_edges(wall: String, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
-    // (lower vertex, higher vertex, runs upwards), sorted: triangles that share an edge become neighbours.
-    let mut edges: Vec<(u32, u32, bool)> = triangles
-        .iter()
-        .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
-        .map(|(a, b)| (a.min(b), a.max(b), a < b))
-        .collect();
+    // Sorted: triangles that share an edge become neighbours.
+    let mut edges: Vec<(u32, u32, bool)> = directed_edges(triangles).collect();
     edges.sort_unstable();
     let (mut open, mut crowded, mut turned) = (Vec::new(), Vec::new(), Vec::new());
     for group in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
@@ -52,7 +45,7 @@ fn check_edges(wall: String, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Resu
         }
     }
     let name = |edges: &[(u32, u32)]| {
-        list(edges, |&(a, b)| format!("{} to {}", point(vertices[a as usize]), point(vertices[b as usize])))
+        Places::of(edges.iter().map(|&(a, b)| vec![vertices[a as usize], vertices[b as usize]]), "to")
     };
     if !open.is_empty() {
         return Err(GeometryError::OpenEdges { wall, count: open.len(), first: name(&open) });
@@ -66,7 +59,21 @@ fn check_edges(wall: String, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Resu
     Ok(())
 }
 
-fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
+/// Whether each directed edge is met by exactly one the other way round.
+pub(super) fn is_closed(triangles: &[[u32; 3]]) -> bool {
+    let mut edges: Vec<(u32, u32, bool)> = directed_edges(triangles).collect();
+    edges.sort_unstable();
+    let matched = |pair: &[(u32, u32, bool)]| pair.len() == 2 && !pair[0].2 && pair[1].2;
+    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(matched)
+}
+
+/// (lower vertex, higher vertex, runs upwards).
+fn directed_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32, bool)> {
+    let sides = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
+    triangles.iter().flat_map(sides).map(|(a, b)| (a.min(b), a.max(b), a < b))
+}
+
+pub(super) fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let doubled = (b - a).cross(c - a).length();
     // An overflow to NaN counts as degenerate too.
@@ -90,14 +97,6 @@ pub fn area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     let corner = |v: u32| vertices[v as usize];
     triangles.iter().map(|t| (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length()).sum::<f64>()
         / 2.0
-}
-
-pub(super) fn point(p: DVec3) -> String {
-    format!("({}, {}, {})", p.x, p.y, p.z)
-}
-
-fn list<T>(items: &[T], name: impl Fn(&T) -> String) -> String {
-    items.iter().take(LISTED).map(name).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]
@@ -130,7 +129,8 @@ mod tests {
         let (vertices, triangles) = tetrahedron();
         let open = check_closed("t", &vertices, &triangles[1..]).unwrap_err();
         let GeometryError::OpenEdges { count: 3, first, .. } = open else { panic!("{open}") };
-        assert_eq!(first, "(0, 0, 0) to (1, 0, 0); (0, 0, 0) to (0, 1, 0); (1, 0, 0) to (0, 1, 0)");
+        let listed = "in m: (0, 0, 0) to (1, 0, 0); (0, 0, 0) to (0, 1, 0); (1, 0, 0) to (0, 1, 0)";
+        assert_eq!(first.to_string(), listed);
 
         let mut turned = triangles.clone();
         turned[3].swap(0, 1);

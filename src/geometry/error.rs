@@ -1,48 +1,121 @@
-//! What can be wrong with the walls of a scene. Each error names the wall, and its file where it has one.
+//! What can be wrong with the walls of a scene. Each error names the wall, and its file where it has one; places are
+//! told in the scene's unit of length.
+
+use std::fmt;
+
+use crate::scene::UnitSystem;
+use glam::DVec3;
+
+/// How many offenders an error lists.
+const LISTED: usize = 3;
+/// Names of parts that are listed.
+const MOST_NAMES: usize = 24;
+
+/// The first places of an error, each of one point or several (m), and how they are told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places(Box<Listed>);
+
+#[derive(Debug, Clone, PartialEq)]
+struct Listed {
+    places: Vec<Vec<DVec3>>,
+    /// Between the points of a place.
+    between: &'static str,
+    units: UnitSystem,
+}
+
+impl Places {
+    pub(super) fn of(places: impl Iterator<Item = Vec<DVec3>>, between: &'static str) -> Places {
+        Places(Box::new(Listed { places: places.take(LISTED).collect(), between, units: UnitSystem::Si }))
+    }
+
+    /// Tells them in the unit of length of these units.
+    pub fn told_in(mut self, units: UnitSystem) -> Places {
+        self.0.units = units;
+        self
+    }
+
+    pub(super) fn one(place: DVec3) -> Places {
+        Places::of(std::iter::once(vec![place]), "")
+    }
+}
+
+impl fmt::Display for Places {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Listed { places, between, units } = &*self.0;
+        let (factor, symbol) = units.length();
+        let point = |p: &DVec3| format!("({})", p.to_array().map(|x| short(x / factor)).join(", "));
+        let between = if between.is_empty() { " ".to_string() } else { format!(" {between} ") };
+        let place = |points: &Vec<DVec3>| points.iter().map(point).collect::<Vec<_>>().join(&between);
+        write!(f, "in {symbol}: {}", places.iter().map(place).collect::<Vec<_>>().join("; "))
+    }
+}
+
+/// Five significant digits, without zeros behind them.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
+    match rounded.abs() {
+        // No minus before a zero.
+        0.0 => "0".into(),
+        small if !(1e-4..1e7).contains(&small) && rounded.is_finite() => format!("{rounded:e}"),
+        _ => rounded.to_string(),
+    }
+}
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum GeometryError {
     #[error("{wall}: the file cannot be read: {reason}")]
-    #[diagnostic(help(
-        "give the path of an STL (binary or ASCII) or OBJ file, absolute or relative to the working directory"
-    ))]
+    #[diagnostic(help("give an STL (binary or ASCII) or OBJ file; its path is relative to the folder of the scene"))]
     Unreadable { wall: String, reason: String },
 
     #[error("{wall}: there are no triangles in it")]
     #[diagnostic(help("export the surface as triangles or polygons; points, lines and curves are not walls"))]
     Empty { wall: String },
 
-    #[error("{wall}: {count} vertices have a coordinate that is not a finite number (first: {first})")]
+    #[error("{wall}: {count} vertices have a coordinate that is not a finite number (first {first})")]
     #[diagnostic(help("NaN or infinite coordinates come from a failed export; also check the scale"))]
-    NotFinite { wall: String, count: usize, first: String },
+    NotFinite { wall: String, count: usize, first: Places },
 
-    #[error("{wall}: {count} triangles have no area (first: {first})")]
-    #[diagnostic(help(
-        "remove triangles with equal or collinear corners in the mesh tool (\"remove degenerate faces\")"
-    ))]
-    Degenerate { wall: String, count: usize, first: String },
+    #[error("{wall}: {count} triangles have no area (first {first})")]
+    #[diagnostic(help("remove triangles with collinear corners in the mesh tool (\"remove degenerate faces\")"))]
+    Degenerate { wall: String, count: usize, first: Places },
 
-    #[error("{wall}: the surface leaks: {count} edges belong to one triangle only (first: {first})")]
+    #[error("{wall}: the surface leaks: {count} edges belong to one triangle only (first {first})")]
     #[diagnostic(help(
         "close the surface: merge vertices that should be one, fill holes, and let neighbouring triangles share whole edges"
     ))]
-    OpenEdges { wall: String, count: usize, first: String },
+    OpenEdges { wall: String, count: usize, first: Places },
 
-    #[error("{wall}: {count} edges are shared by more than two triangles (first: {first})")]
+    #[error("{wall}: {count} edges are shared by more than two triangles (first {first})")]
     #[diagnostic(help(
         "sheets must not meet along an edge; give each sheet a thickness, or delete doubled and internal faces"
     ))]
-    CrowdedEdges { wall: String, count: usize, first: String },
+    CrowdedEdges { wall: String, count: usize, first: Places },
 
-    #[error("{wall}: neighbouring triangles are turned opposite ways at {count} edges (first: {first})")]
+    #[error("{wall}: neighbouring triangles are turned opposite ways at {count} edges (first {first})")]
     #[diagnostic(help(
         "make the orientation consistent in the mesh tool (\"recalculate normals\"); which side they point to is found here"
     ))]
-    Orientation { wall: String, count: usize, first: String },
+    Orientation { wall: String, count: usize, first: Places },
 
-    #[error("{wall}: a part of the surface is inside out, or two cavities overlap (seen at {place})")]
+    #[error("{wall}: a part of the surface is inside out, or two cavities overlap (seen {place})")]
     #[diagnostic(help("parts must not be nested with the same orientation: turn the inner shell round, or delete it"))]
-    InsideOut { wall: String, place: String },
+    InsideOut { wall: String, place: Places },
+
+    #[error("{wall}: the surface crosses itself: {count} pairs of triangles meet beside their edges (first {first})")]
+    #[diagnostic(help(
+        "repair it in the mesh tool (\"self-intersections\"): cut the parts where they meet, or give bodies that overlap as meshes of their own"
+    ))]
+    Crossing { wall: String, count: usize, first: Places },
+
+    #[error("{wall}: {count} pairs of triangles are a sheet without thickness in the gas (first {first})")]
+    #[diagnostic(help("remove the doubled triangles, or give the sheet a thickness"))]
+    Sheet { wall: String, count: usize, first: Places },
+
+    #[error("{wall}: no part is called {part_and_known}")]
+    #[diagnostic(help(
+        "parts are the solids of an ASCII STL file, and the groups (or objects) of an OBJ file; a binary STL file has none"
+    ))]
+    NoPart { wall: String, part_and_known: String },
 
     #[error("{wall}: the surface encloses no volume")]
     #[diagnostic(help("a wall is a closed surface with a solid on one side and gas on the other"))]
@@ -79,10 +152,50 @@ pub enum GeometryError {
     #[error("{count} triangles and vertices are more than the 2^32 that fit an index")]
     TooMany { count: usize },
 
-    #[error("{wall}: the triangle at {place} lies outside the cell grid")]
-    OutsideGrid { wall: String, place: String },
+    #[error("{wall}: the triangle {place} lies outside the cell grid")]
+    OutsideGrid { wall: String, place: Places },
 
-    #[error("{wall}: the triangle at {place} has no area once its corners are rounded to {quantum:.3e} m")]
+    #[error("{wall}: the triangle {place} has no area once its corners are rounded to {quantum:.3e} m")]
     #[diagnostic(help("remove slivers from the mesh, or use smaller cells"))]
-    DegenerateOnGrid { wall: String, place: String, quantum: f64 },
+    DegenerateOnGrid { wall: String, place: Places, quantum: f64 },
+}
+
+impl GeometryError {
+    /// Tells places in the unit of length of these units.
+    pub fn told_in(mut self, units: UnitSystem) -> GeometryError {
+        use GeometryError::*;
+        match &mut self {
+            NotFinite { first: places, .. }
+            | Degenerate { first: places, .. }
+            | OpenEdges { first: places, .. }
+            | CrowdedEdges { first: places, .. }
+            | Orientation { first: places, .. }
+            | Crossing { first: places, .. }
+            | Sheet { first: places, .. }
+            | InsideOut { place: places, .. }
+            | OutsideGrid { place: places, .. }
+            | DegenerateOnGrid { place: places, .. } => places.0.units = units,
+            Unreadable { .. }
+            | Empty { .. }
+            | NoPart { .. }
+            | NoVolume { .. }
+            | Side { .. }
+            | Shape { .. }
+            | Hole { .. }
+            | Unbounded
+            | NoGas
+            | TooMany { .. } => {}
+        }
+        self
+    }
+
+    pub(super) fn no_part(wall: &str, part: &str, known: Vec<String>) -> GeometryError {
+        let names: Vec<String> = known.iter().take(MOST_NAMES).map(|name| format!("`{name}`")).collect();
+        let known = match known.len() {
+            0 => "the file has no named parts".to_string(),
+            count if count > MOST_NAMES => format!("known: {}, and {} more", names.join(", "), count - MOST_NAMES),
+            _ => format!("known: {}", names.join(", ")),
+        };
+        GeometryError::NoPart { wall: wall.into(), part_and_known: format!("`{part}`; {known}") }
+    }
 }

@@ -1,9 +1,10 @@
-//! The narrowest passage of the gas between walls that face each other.
+//! The narrowest passage of the gas between walls that face each other, and the thinnest body between gas and gas.
 //!
 //! From points within each triangle a ray goes along the normal into the gas until it meets the next triangle. Where that
 //! one faces back within 45 degrees, and has no corner in common with the first, the ray's length is a passage. Every
 //! passage found is there, so the least of them is never below the narrowest; between two flat walls it is exact. A passage
-//! that no ray meets is missed: one narrower than the triangles around it are far apart, as at the foot of a wedge.
+//! that no ray meets is missed: one narrower than the triangles around it are far apart, as at the foot of a wedge. The
+//! same ray backwards, through the solid, measures bodies.
 
 use super::Vessel;
 use super::sampling::map;
@@ -41,9 +42,24 @@ impl Facet {
     }
 }
 
+/// What is narrowest, m; none where nothing of the kind was found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Narrowest {
+    /// Across gas, between two walls that face each other.
+    pub gap: Option<f64>,
+    /// Across a solid, between two walls that face away from each other, with gas before both.
+    pub body: Option<f64>,
+}
+
+impl Narrowest {
+    fn and(self, other: Narrowest) -> Narrowest {
+        let least = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::min);
+        Narrowest { gap: least(self.gap, other.gap), body: least(self.body, other.body) }
+    }
+}
+
 impl Vessel {
-    /// m; none where no two walls face each other across gas.
-    pub fn smallest_gap(&self) -> Option<f64> {
+    pub fn narrowest(&self) -> Narrowest {
         let place = |index: u32| DVec3::from(self.vertices[index as usize]);
         let facets: Vec<Facet> = self
             .triangles
@@ -58,23 +74,32 @@ impl Vessel {
         let every = (facets.len() * facets.len() * PLACES.len()).div_ceil(MOST_TRIALS).max(1);
         let found = map(facets.len().div_ceil(every), |index, _| {
             let own = &facets[index * every];
-            PLACES.iter().filter_map(|place| self.gap_from(&facets, own, place, ROUNDING * size)).reduce(f64::min)
+            let from_places = PLACES.iter().map(|place| self.through_place(&facets, own, place, ROUNDING * size));
+            from_places.fold(Narrowest::default(), Narrowest::and)
         });
-        found.into_iter().flatten().reduce(f64::min)
+        found.into_iter().fold(Narrowest::default(), Narrowest::and)
     }
 
-    /// The passage that a ray from a place of a facet measures.
-    fn gap_from(&self, facets: &[Facet], own: &Facet, place: &[f64; 3], least: f64) -> Option<f64> {
+    /// What the line along the normal through a place of a facet measures, before it and behind.
+    fn through_place(&self, facets: &[Facet], own: &Facet, place: &[f64; 3], least: f64) -> Narrowest {
         let from: DVec3 = own.corners.iter().zip(place).map(|(corner, weight)| *weight * *corner).sum();
-        let hits = facets.iter().filter_map(|facet| {
-            let distance = facet.met(from, own.normal)?;
-            (distance > least).then_some((distance, facet))
-        });
-        let (distance, other) = hits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let apart = own.corners.iter().all(|a| other.corners.iter().all(|b| a.distance(*b) > least));
-        let gas = |share: f64| self.is_gas((from + share * distance * own.normal).to_array());
+        let [mut ahead, mut behind]: [Option<(f64, &Facet)>; 2] = [None; 2];
+        for facet in facets {
+            let Some(distance) = facet.met(from, own.normal) else { continue };
+            let nearest = if distance > 0.0 { &mut ahead } else { &mut behind };
+            if distance.abs() > least && nearest.is_none_or(|(other, _)| distance.abs() < other.abs()) {
+                *nearest = Some((distance, facet));
+            }
+        }
+        let faces_back = |(distance, other): (f64, &Facet)| {
+            let apart = own.corners.iter().all(|a| other.corners.iter().all(|b| a.distance(*b) > least));
+            (apart && other.normal.dot(own.normal) < -FACING).then_some(distance)
+        };
+        let gas = |along: f64| self.is_gas((from + along * own.normal).to_array());
         // Of walls that overlap, what is hidden in another faces no gas.
-        (apart && other.normal.dot(own.normal) < -FACING && gas(0.01) && gas(0.5)).then_some(distance)
+        let gap = ahead.and_then(faces_back).filter(|&d| gas(0.01 * d) && gas(0.5 * d));
+        let body = behind.and_then(faces_back).filter(|&d| gas(-0.01 * d) && !gas(0.5 * d) && gas(1.01 * d));
+        Narrowest { gap, body: body.map(f64::abs) }
     }
 }
 
@@ -84,12 +109,16 @@ mod tests {
     use std::path::Path;
 
     fn gap(walls: &str) -> Option<f64> {
+        narrowest(walls).gap
+    }
+
+    fn narrowest(walls: &str) -> Narrowest {
         let text = format!(
             "end_time = 1.0\n[[gas]]\nname = \"n2\"\nmolar_mass = 0.028\ngamma = 1.4\n{walls}\n\
              [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"n2\"\n"
         );
         let scene = crate::scene::parse(&text, "test.toml", Path::new("")).unwrap();
-        Vessel::build(&scene.walls).unwrap().smallest_gap()
+        Vessel::build(&scene.walls).unwrap().narrowest()
     }
 
     const TANK: &str =
@@ -135,5 +164,21 @@ mod tests {
         // Half a thickness within the floor.
         let hidden = plate(0.0);
         assert!(hidden.is_some_and(|gap| gap > 0.14), "{hidden:?}");
+    }
+
+    /// Of a foil its thickness; of what is hidden in a wall, and of a vessel that has nothing behind its walls, none.
+    #[test]
+    fn the_thinnest_body_is_found() {
+        let foil = |low: f64, high: f64| {
+            narrowest(&format!(
+                "{TANK}[[wall]]\nname = \"foil\"\nshape = \"box\"\nmin = [0.2, 0.1, {low}]\nmax = [0.6, 0.3, {high}]\ngas = \"outside\"\n"
+            ))
+            .body
+        };
+        assert!(near(foil(0.2, 0.2 + 1e-7), 1e-7), "{:?}", foil(0.2, 0.2 + 1e-7));
+        assert!(near(foil(0.2, 0.25), 0.05));
+        assert_eq!(narrowest(TANK).body, None);
+        // Half within the floor: across its other sides.
+        assert!(near(foil(-0.01, 0.01), 0.2), "{:?}", foil(-0.01, 0.01));
     }
 }

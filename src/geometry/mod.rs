@@ -2,25 +2,31 @@
 //! deterministic: the same walls give the same bits, whatever the number of threads.
 //!
 //! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `round`, `plate`, `polygon`,
-//! `mesh_file`, `closed`) and answers where the gas is (`lines`) and how much of it (`vessel`, `region`,
-//! `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
+//! `mesh_file` of `stl`, `obj` and `facet`, `mend`, `closed`, `crossings`) and answers where the gas is (`lines`) and how much of it
+//! (`vessel`, `region`, `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
 //! that part the gas near them from them.
 
 mod blocks;
 mod cell_gas;
 mod clearance;
 mod closed;
+mod crossings;
 mod error;
+mod facet;
 mod gaps;
 mod grid;
 mod lines;
+mod mend;
 mod mesh_file;
+mod notes;
+mod obj;
 mod plate;
 mod polygon;
 mod primitives;
 mod region;
 mod round;
 mod sampling;
+mod stl;
 mod triangle_grid;
 mod vessel;
 
@@ -28,8 +34,11 @@ pub use blocks::block_volumes;
 pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
 pub use clearance::{CLEARANCE_UNIT, Clearance, NO_PLANE, clearances};
 pub use closed::check_closed;
-pub use error::GeometryError;
+pub use crossings::Overlaps;
+pub use error::{GeometryError, Places};
+pub use gaps::Narrowest;
 pub use grid::{Grid, GridError};
+pub use mend::Mended;
 pub use primitives::FoundHole;
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};

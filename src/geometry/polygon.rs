@@ -34,17 +34,14 @@ pub(super) fn triangulate(outer: &[DVec2], holes: &[Vec<DVec2>]) -> Option<Vec<[
         ring.push(back);
         ring.extend(tail);
     }
-    let mut triangles = Vec::with_capacity(ring.len());
-    while ring.len() > 2 {
-        let ear = plane.best_ear(&ring)?;
-        let n = ring.len();
-        triangles.push([ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]].map(|v| v as u32));
-        if n == 3 {
-            break;
-        }
-        ring.remove(ear);
-    }
-    Some(triangles)
+    plane.clip(ring)
+}
+
+/// The same of one counter-clockwise outline, `ring`, as indices into `points`; it may pass a point several times, as where
+/// a hole is joined to the outline by an edge to and fro.
+pub(super) fn clip(points: &[DVec2], ring: Vec<usize>) -> Option<Vec<[u32; 3]>> {
+    let extent = points.iter().map(|p| (*p - points[0]).abs().max_element()).fold(0.0, f64::max);
+    Plane { points, tolerance: FLAT * extent }.clip(ring)
 }
 
 /// An edge from `ring[from]` to `holes[hole][to]`.
@@ -83,6 +80,21 @@ impl Plane<'_> {
         } else {
             !(self.left_or_on(at, target, after) && self.left_or_on(target, at, before))
         }
+    }
+
+    /// The triangles of a ring, cut off as ears.
+    fn clip(&self, mut ring: Vec<usize>) -> Option<Vec<[u32; 3]>> {
+        let mut triangles = Vec::with_capacity(ring.len());
+        while ring.len() > 2 {
+            let ear = self.best_ear(&ring)?;
+            let n = ring.len();
+            triangles.push([ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]].map(|v| v as u32));
+            if n == 3 {
+                break;
+            }
+            ring.remove(ear);
+        }
+        Some(triangles)
     }
 
     fn shortest_bridge(&self, ring: &[usize], holes: &[Vec<usize>]) -> Option<Bridge> {

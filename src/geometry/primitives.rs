@@ -5,6 +5,7 @@
 //! polygon of a hole the area of its circle.
 
 use super::GeometryError;
+use super::mend::Mended;
 use super::plate::{Frame, HoleOutline, Plate, outlines};
 use super::round::{cylinder, sphere};
 use crate::scene::{Face, Shape};
@@ -34,6 +35,7 @@ pub(super) struct WallMesh {
     /// One per triangle.
     pub faces: Vec<Option<Face>>,
     pub holes: Vec<FoundHole>,
+    pub mended: Option<Mended>,
 }
 
 impl WallMesh {
@@ -119,9 +121,9 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
             })?;
             plate(frame, *size, *thickness, &cut, wall, subject)
         }
-        Shape::Mesh { path, scale } => {
+        Shape::Mesh { path, scale, parts } => {
             positive("scale", *scale)?;
-            super::mesh_file::read(path, *scale, subject)
+            super::mesh_file::read(path, *scale, parts, subject)
         }
     }
 }
@@ -159,7 +161,7 @@ fn plain_box(min: [f64; 3], max: [f64; 3]) -> WallMesh {
     mesh
 }
 
-/// The shell around the cavity `min`..`max`. Only the cavity's triangles carry their face: a surface of a box
+/// The shell around the cavity `min`..`max`. The faces of the box are those of the cavity: a surface of a box
 /// measures what the gas in the cavity does to it.
 fn hollow_box(
     min: [f64; 3],
@@ -191,7 +193,7 @@ fn hollow_box(
                 lower: (level, corners.map(|k| cavity[k])),
                 upper: (level + thickness, corners.map(|k| outside[k])),
                 lower_face: Some(face),
-                upper_face: None,
+                upper_face: Some(Face::Outside),
                 side_face: None,
             }
             .add_to(&mut mesh, &holes, wall, subject)?;
@@ -215,7 +217,6 @@ fn plate(
         return Err(hole.misplaced(subject, "names a face of a box, but the wall is a plane"));
     }
     let mut mesh = WallMesh::default();
-    let face = Some(Face::Plane);
     let mut level = |h: f64| {
         [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
             .map(|(a, b)| mesh.vertex(frame.point(glam::DVec2::new(a * size[0], b * size[1]), h)))
@@ -223,15 +224,15 @@ fn plate(
     let (low, high) = (level(-0.5 * thickness), level(0.5 * thickness));
     for i in 0..4 {
         let next = (i + 1) % 4;
-        mesh.quad([low[i], low[next], high[next], high[i]], face);
+        mesh.quad([low[i], low[next], high[next], high[i]], Some(Face::Rim));
     }
     Plate {
         frame,
         lower: (-0.5 * thickness, low),
         upper: (0.5 * thickness, high),
-        lower_face: face,
-        upper_face: face,
-        side_face: face,
+        lower_face: Some(Face::Back),
+        upper_face: Some(Face::Front),
+        side_face: Some(Face::Rim),
     }
     .add_to(&mut mesh, holes, wall, subject)?;
     Ok(mesh)

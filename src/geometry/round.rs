@@ -3,7 +3,7 @@
 //! sphere the cube root of its volume over that of the polyhedron inscribed in it.
 
 use super::primitives::WallMesh;
-use crate::scene::Shape;
+use crate::scene::{Face, Shape};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -63,9 +63,9 @@ pub(super) fn cylinder(base: DVec3, axis: DVec3, radius: f64, height: f64, segme
     let (bottom, top) = (mesh.vertex(base), mesh.vertex(base + axis * height));
     for i in 0..segments as usize {
         let next = (i + 1) % segments as usize;
-        mesh.quad([low[i], low[next], high[next], high[i]], None);
-        mesh.triangle([bottom, low[next], low[i]], None);
-        mesh.triangle([top, high[i], high[next]], None);
+        mesh.quad([low[i], low[next], high[next], high[i]], Some(Face::Side));
+        mesh.triangle([bottom, low[next], low[i]], Some(Face::Base));
+        mesh.triangle([top, high[i], high[next]], Some(Face::Top));
     }
     mesh
 }

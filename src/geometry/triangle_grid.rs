@@ -14,7 +14,7 @@ use std::ops::Range;
 use super::GeometryError;
 use super::Grid;
 use super::Vessel;
-use super::closed::point;
+use super::error::Places;
 use glam::DVec3;
 
 /// Slack of the overlap test in cells; coordinates up to 2^15 cells carry rounding errors near 1e-11.
@@ -194,7 +194,7 @@ fn fix(vessel: &Vessel, grid: &Grid, source: usize) -> Result<FixedTriangle, Geo
     let metres = triangle.vertices.map(|v| vessel.vertices[v as usize]);
     let name = || {
         let wall = format!("wall `{}`", vessel.walls[triangle.wall as usize].name);
-        (wall, metres.map(|p| point(p.into())).join(" "))
+        (wall, Places::of(std::iter::once(metres.map(DVec3::from).to_vec()), ""))
     };
     let mut corners = [[0; 3]; 3];
     for (corner, position) in corners.iter_mut().zip(metres) {

@@ -14,8 +14,11 @@
 //! bounded and its volume positive.
 
 use super::GeometryError;
-use super::closed::{area, check_closed, point, signed_volume};
+use super::closed::{area, check_closed, signed_volume};
+use super::crossings::Overlaps;
+use super::error::Places;
 use super::lines::{Crossing, LineIndex, intervals};
+use super::mend::Mended;
 use super::primitives::{FoundHole, mesh_of};
 use super::sampling::{Line, map, r2, sum};
 use crate::scene::{Face, GasSide, Shape, Wall};
@@ -54,8 +57,8 @@ pub struct Triangle {
     pub vertices: [u32; 3],
     /// Index of the wall.
     pub wall: u32,
-    /// Of a plain box its six faces; of a hollow box those of the cavity (its outside and the walls of its
-    /// holes have none); of a plane `Face::Plane` everywhere.
+    /// Of a plain box its six faces; of a hollow box those of the cavity, and its outside (the walls of its holes have
+    /// none); of a mesh the parts that the scene names.
     pub face: Option<Face>,
 }
 
@@ -68,6 +71,10 @@ pub struct WallInfo {
     pub volume: f64,
     /// The gas is inside: the solid is all that lies outside the surface.
     pub cavity: bool,
+    /// What of a mesh file had to be mended.
+    pub mended: Option<Mended>,
+    /// Where solids of a mesh file overlap.
+    pub overlaps: Option<Overlaps>,
 }
 
 impl Vessel {
@@ -95,6 +102,8 @@ impl Vessel {
                 area: area(&mesh.vertices, &mesh.triangles),
                 volume: volume.abs(),
                 cavity,
+                mended: mesh.mended,
+                overlaps: None,
             });
             let first = vertices.len() as u32;
             let count = triangles.len() + mesh.triangles.len() + vertices.len() + mesh.vertices.len();
@@ -126,6 +135,9 @@ impl Vessel {
             overlap: 0.0,
         };
         vessel.find_inside_out(walls)?;
+        for (index, wall) in walls.iter().enumerate().filter(|(_, wall)| matches!(wall.shape, Shape::Mesh { .. })) {
+            vessel.walls[index].overlaps = vessel.find_crossings(index, &subject(wall))?;
+        }
         vessel.measure()?;
         Ok(vessel)
     }
@@ -187,6 +199,11 @@ impl Vessel {
         depth
     }
 
+    /// Calls `visit` with each crossing of the line along x through a point.
+    pub(super) fn lines_through(&self, p: [f64; 3], visit: impl FnMut(Crossing)) {
+        self.lines.cross(p[1], p[2], visit);
+    }
+
     pub fn is_gas(&self, p: [f64; 3]) -> bool {
         self.solid_depth(p) == 0
     }
@@ -239,7 +256,9 @@ impl Vessel {
             })
         });
         match found.into_iter().flatten().next() {
-            Some((wall, place)) => Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: point(place) }),
+            Some((wall, place)) => {
+                Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: Places::one(place) })
+            }
             None => Ok(()),
         }
     }

@@ -53,6 +53,8 @@ pub enum Quantity {
     CellParticles,
     /// Of a round wall: how far its facets lie from the round surface at most, over its radius.
     Facets,
+    /// Of a body, or of a gap that faces gas, over the longest side of the vessel.
+    Thickness,
 }
 
 impl Quantity {
@@ -71,6 +73,7 @@ impl Quantity {
             Quantity::Flight => "cells flown in a step",
             Quantity::FastParticles => "share of particles that fly more than a cell",
             Quantity::CellParticles => "particles in a cell as long as their free path",
+            Quantity::Thickness => "thickness over the vessel's longest side",
             Quantity::Halvings => "halvings of the step left",
             Quantity::EnergyDrift => "drift of the energy",
             Quantity::ClippedHits => "share of clipped hits",
@@ -176,6 +179,8 @@ pub const LIMITS: &[Limit] = &[
     // Measured: 2.3 % above Carnahan and Starling's pressure in one of two, within 1 % of it in one of four.
     limit_of(Quantity::Gap, Some(Method::HardSphere), AtLeast(4.0), "rigid spheres there press still harder"),
     limit_of(Quantity::Gap, None, AtLeast(1.0), "what lies across the smallest passage is not resolved"),
+    // Rounding leaves particles up to 1e-6 of it behind a wall, on either side (`TOLERANCE` of `src/subdomain/walls.rs`).
+    limit_of(Quantity::Thickness, None, AtLeast(2e-6), "positions are too coarse for it, and gas may pass through"),
     // Measured in shock tubes of 40,000 particles (map `density-ratio`): what the thin gas feels is .96 +- .04 of the exact push
     // at .12, .92 +- .04 at .34 and .78 +- .05 at 1.1 (`closest-approach`); .91, .88 and .83 (`cell`).
     limit_of(Quantity::ThinGas, None, AtMost(0.2), "fronts that run into it are blurred, and push it too weakly"),
@@ -311,6 +316,7 @@ mod tests {
             (Quantity::ClippedHits, 13),
             (Quantity::WallSpeed, 17),
             (Quantity::CellParticles, 19),
+            (Quantity::Thickness, 21),
         ];
         for (quantity, number) in numbered {
             assert_eq!(quantity as u32, number, "{quantity:?}");

@@ -63,6 +63,8 @@ pub struct Measured {
     pub openings: Vec<Opening>,
     /// The narrowest passage of the gas between walls that face each other, m, where one was found.
     pub smallest_gap: Option<f64>,
+    /// The thinnest body with gas on both sides, m, where one was found.
+    pub thinnest_body: Option<f64>,
     /// m2, of all walls.
     pub wall_area: f64,
     /// m3 of gas, one per probe of the scene.

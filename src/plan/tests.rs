@@ -49,6 +49,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         bounds_max: [0.4, 0.4, 0.4],
         openings: vec![hole],
         smallest_gap: None,
+        thinnest_body: None,
         wall_area: 1.0,
         probe_volumes: vec![],
         vents: vec![],
@@ -250,6 +251,8 @@ fn warnings_fire() {
     warns("are few", &|scene, _| scene.model.particles = Some(900));
     warns("smallest passage", &|_, measured| measured.smallest_gap = Some(2e-3));
     warns("smallest passage", &|_, measured| measured.openings[0].length = 2e-3);
+    warns("the thinnest body, 0.0001 mm: thickness", &|_, measured| measured.thinnest_body = Some(1e-7));
+    warns("the narrowest gap, 0.0001 mm: thickness", &|_, measured| measured.smallest_gap = Some(1e-7));
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
     warns("wall hits", &|_, measured| measured.wall_area = 1e4);

@@ -72,6 +72,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         found.extend(thin(scene, decided));
         found.extend(starved(decided));
     }
+    found.extend(too_thin(measured, method));
     found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
         let count = number_density * volume;
         let remedy = "a larger region, or more `particles`";
@@ -157,6 +158,24 @@ fn narrow(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
         significant(1e3 * length)
     );
     Warning::by_table(Quantity::Gap, method, &subject, smallest / length, "more `particles`, or a modelled vent")
+}
+
+/// What positions on the grid do not tell apart.
+fn too_thin(measured: &Measured, method: Method) -> [Option<Warning>; 2] {
+    let longest = (0..3).map(|axis| measured.bounds_max[axis] - measured.bounds_min[axis]).fold(0.0, f64::max);
+    let warning = |what: &str, found: Option<f64>, remedy: &str| {
+        let found = found?;
+        let subject = format!("{what}, {} mm", significant(1e3 * found));
+        Warning::by_table(Quantity::Thickness, method, &subject, found / longest, remedy)
+    };
+    [
+        warning(
+            "the thinnest body",
+            measured.thinnest_body,
+            "a thicker one: what gas does beside it hardly depends on it",
+        ),
+        warning("the narrowest gap", measured.smallest_gap, "walls that overlap, or a wider gap"),
+    ]
 }
 
 /// The largest of the ladder; a run takes shorter steps where it must.

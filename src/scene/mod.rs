@@ -11,6 +11,7 @@ mod holes;
 mod motions;
 mod names;
 mod numbers;
+mod parts;
 mod places;
 mod raw;
 mod raw_values;

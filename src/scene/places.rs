@@ -2,10 +2,10 @@
 
 use super::errors::Problem;
 use super::gases::mixture;
-use super::holes::face;
 use super::names::Names;
 use super::numbers::{corners, direction, point, positive};
-use super::raw::{RawChamber, RawOpening, RawProbe, RawRegion, RawShape, RawSurface, RawWall};
+use super::parts::Parts;
+use super::raw::{RawChamber, RawOpening, RawProbe, RawRegion, RawSurface};
 use super::raw_values::At;
 use super::types::{Chamber, Opening, Probe, Region, Surface, UnitSystem};
 use super::units::Quantity;
@@ -67,16 +67,9 @@ pub(super) fn probe(raw: &At<RawProbe>, units: UnitSystem) -> Result<Probe, Prob
     Ok(Probe { name: raw.value.name.value.clone(), region: region(&raw.value.region.value, units)? })
 }
 
-pub(super) fn surface(raw: &At<RawSurface>, walls: &Names, raw_walls: &[At<RawWall>]) -> Result<Surface, Problem> {
+pub(super) fn surface(raw: &At<RawSurface>, walls: &Names, parts: &Parts) -> Result<Surface, Problem> {
     let surface = &raw.value;
     let wall = walls.find(&surface.wall)?;
-    if let Some(given) = &surface.face
-        && raw_walls[wall].value.shape.value != RawShape::Box
-    {
-        let found = format!("a face of the wall {:?}, which is no box", surface.wall.value);
-        return Err(
-            Problem::value(&given.span, found, "`face` of a box").hint("leave `face` out to measure on the whole wall")
-        );
-    }
-    Ok(Surface { name: surface.name.value.clone(), wall, face: surface.face.as_ref().map(|at| face(at.value)) })
+    let face = surface.face.as_ref().map(|given| parts.find(given, wall)).transpose()?;
+    Ok(Surface { name: surface.name.value.clone(), wall, face })
 }

@@ -321,7 +321,7 @@ pub struct RawProbe {
     pub region: At<RawRegion>,
 }
 
-/// A wall, or one face of a box, on which pressure and impulse are measured.
+/// A wall, or a part of one, on which pressure and impulse are measured.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawSurface {
@@ -329,8 +329,9 @@ pub struct RawSurface {
     pub name: At<String>,
     /// The name of a wall.
     pub wall: At<String>,
-    /// One face, of a wall that is a box; all of the wall unless given.
-    pub face: Option<At<RawFace>>,
+    /// A named part of it: `"-x"` to `"+z"` or `"outside"` of a box, `"base"`, `"top"` or `"side"` of a cylinder, `"front"`,
+    /// `"back"` or `"rim"` of a plane, a solid, group or object of a mesh file; all of the wall unless given.
+    pub face: Option<At<String>>,
 }
 
 /// A part of a wall that lets gas out of the scene; exactly one of `discharge`, `discharge_by_pressure`, `leak_velocity`.
@@ -341,8 +342,9 @@ pub struct RawVent {
     pub name: At<String>,
     /// The name of a wall.
     pub wall: At<String>,
-    /// One face, of a wall that is a box; all of the wall unless given.
-    pub face: Option<At<RawFace>>,
+    /// A named part of it: `"-x"` to `"+z"` or `"outside"` of a box, `"base"`, `"top"` or `"side"` of a cylinder, `"front"`,
+    /// `"back"` or `"rim"` of a plane, a solid, group or object of a mesh file; all of the wall unless given.
+    pub face: Option<At<String>>,
     /// The chamber that it empties; needed where its place borders on several.
     pub chamber: Option<At<String>>,
     /// Centre of a disc on the wall or face, its place; with `diameter`.

@@ -350,7 +350,7 @@ fn a_mesh_is_found_from_the_folder_of_the_scene_and_scaled_to_metres() {
     };
     for (line, expected) in [("", 1e-3), ("scale = 25.4", 0.0254)] {
         let scene = parse(&text(line), "bag.toml", folder.path()).unwrap();
-        let Shape::Mesh { path, scale } = &scene.walls[0].shape else { panic!() };
+        let Shape::Mesh { path, scale, .. } = &scene.walls[0].shape else { panic!() };
         assert!(path.is_absolute() && path.is_file());
         assert!((scale / expected - 1.0).abs() < 1e-15);
         let again = parse(&to_toml(&scene), "bag.toml", Path::new("/nowhere")).unwrap();

@@ -140,8 +140,9 @@ pub enum Shape {
     Sphere { center: [f64; 3], radius: f64, subdivisions: u32 },
     /// A flat rectangular plate: `size` along `u` and `normal x u`, `thickness` along `normal`, centred on `center`.
     Plane { center: [f64; 3], normal: [f64; 3], u: [f64; 3], size: [f64; 2], thickness: f64, holes: Vec<Hole> },
-    /// STL or OBJ (by extension), absolute or relative to the working directory; metres = file units x `scale`.
-    Mesh { path: PathBuf, scale: f64 },
+    /// STL or OBJ (by extension), absolute or relative to the working directory; metres = file units x `scale`. `parts` are
+    /// the names of those of its parts that the scene names: `Face::Part` counts in it.
+    Mesh { path: PathBuf, scale: f64, parts: Vec<String> },
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -157,14 +158,48 @@ pub struct Hole {
     pub flow_only: bool,
 }
 
+/// A named part of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
-    /// `axis` 0..3, and whether it is the face at the larger coordinate.
+    /// `axis` 0..3, and whether it is the face at the larger coordinate; of a hollow box that of its cavity.
     Box {
         axis: usize,
         positive: bool,
     },
+    /// Of a hollow box what is around its shell.
+    Outside,
+    /// Where the holes of a plane are.
     Plane,
+    /// Of a plane the side that its normal points out of, the other one, and what joins them, those of holes included.
+    Front,
+    Back,
+    Rim,
+    /// Of a cylinder.
+    Base,
+    Top,
+    Side,
+    /// Of a mesh, by its place in the `parts` of the shape.
+    Part(u32),
+}
+
+impl Face {
+    /// As scenes write it; `wall` is the one that has it.
+    pub fn name(self, wall: &Wall) -> String {
+        match (self, &wall.shape) {
+            (Face::Box { axis, positive }, _) => {
+                format!("{}{}", if positive { '+' } else { '-' }, ["x", "y", "z"][axis])
+            }
+            (Face::Part(part), Shape::Mesh { parts, .. }) => parts.get(part as usize).cloned().unwrap_or_default(),
+            (Face::Outside, _) => "outside".into(),
+            (Face::Plane | Face::Part(_), _) => String::new(),
+            (Face::Front, _) => "front".into(),
+            (Face::Back, _) => "back".into(),
+            (Face::Rim, _) => "rim".into(),
+            (Face::Base, _) => "base".into(),
+            (Face::Top, _) => "top".into(),
+            (Face::Side, _) => "side".into(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -266,7 +301,7 @@ pub struct Surface {
     pub name: String,
     /// Wall index.
     pub wall: usize,
-    /// One face of a box, or all of the wall.
+    /// A part of the wall, or all of it.
     pub face: Option<Face>,
 }
 
@@ -276,7 +311,7 @@ pub struct Vent {
     pub name: String,
     /// Wall index.
     pub wall: usize,
-    /// One face of a box, or all of the wall.
+    /// A part of the wall, or all of it.
     pub face: Option<Face>,
     /// Index of the chamber that it empties; `None`: the only one at its place.
     pub chamber: Option<usize>,

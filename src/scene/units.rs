@@ -28,6 +28,11 @@ pub enum Quantity {
 }
 
 impl UnitSystem {
+    /// Metres per unit of length, and what messages call it.
+    pub fn length(self) -> (f64, &'static str) {
+        (self.factor(Quantity::Length), self.symbol(Quantity::Length))
+    }
+
     /// SI units per unit of this system.
     pub fn factor(self, quantity: Quantity) -> f64 {
         use Quantity::*;

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::errors::{Problem, quote};
 use super::names::Names;
 use super::numbers::{count, positive};
+use super::parts::Parts;
 use super::raw::{RawScene, RawUnits};
 use super::raw_values::At;
 use super::types::{Scene, UnitSystem};
@@ -39,16 +40,16 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
     let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
     let gases = each(&raw.gas, &mut problems, |gas, _| gases::gas(gas, units));
-    let walls = each(&raw.wall, &mut problems, |wall, _| walls::wall(wall, units, base_dir));
+    let parts = Parts::collect(raw, &wall_names);
+    let walls = each(&raw.wall, &mut problems, |wall, index| walls::wall(wall, parts.of_mesh(index), units, base_dir));
     let last = raw.chamber.len().saturating_sub(1);
     let chambers =
         each(&raw.chamber, &mut problems, |chamber, i| places::chamber(chamber, i == last, &gas_names, units));
     let openings = each(&raw.opening, &mut problems, |opening, _| places::opening(opening, &chamber_names, units));
     let orifices = each(&raw.orifice, &mut problems, |orifice, _| flows::orifice(orifice, &gas_names, units));
     let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
-    let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &raw.wall));
-    let vents =
-        each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &raw.wall, units));
+    let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &parts));
+    let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &parts, units));
     let motions = each(&raw.motion, &mut problems, |motion, index| {
         motions::motion(motion, &raw.motion[..index], &wall_names, &raw.wall, &raw.vent, units)
     });

@@ -2,10 +2,10 @@
 
 use super::errors::Problem;
 use super::flows::curve;
-use super::holes::face;
 use super::names::Names;
 use super::numbers::{described, not_negative, point, positive, show};
-use super::raw::{RawShape, RawVent, RawWall};
+use super::parts::Parts;
+use super::raw::RawVent;
 use super::raw_values::{At, NumberOr, Numbers};
 use super::types::{Curve, Disc, UnitSystem, Vent, VentFlow};
 use super::units::Quantity;
@@ -17,23 +17,17 @@ pub(super) fn vent(
     raw: &At<RawVent>,
     walls: &Names,
     chambers: &Names,
-    raw_walls: &[At<RawWall>],
+    parts: &Parts,
     units: UnitSystem,
 ) -> Result<Vent, Problem> {
     let vent = &raw.value;
     let wall = walls.find(&vent.wall)?;
-    if let Some(given) = &vent.face
-        && raw_walls[wall].value.shape.value != RawShape::Box
-    {
-        let found = format!("a face of the wall {:?}, which is no box", vent.wall.value);
-        return Err(Problem::value(&given.span, found, "`face` of a box"));
-    }
     let pressure = |at: &Option<At<f64>>| at.as_ref().map(|at| not_negative(at, Quantity::Pressure, units)).transpose();
     let external_pressure = pressure(&vent.external_pressure)?.unwrap_or(ATMOSPHERE);
     Ok(Vent {
         name: vent.name.value.clone(),
         wall,
-        face: vent.face.as_ref().map(|at| face(at.value)),
+        face: vent.face.as_ref().map(|given| parts.find(given, wall)).transpose()?,
         chamber: vent.chamber.as_ref().map(|name| chambers.find(name)).transpose()?,
         disc: disc(raw, units)?,
         area: vent.area.as_ref().map(|at| positive(at, Quantity::Area, units)).transpose()?,

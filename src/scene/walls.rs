@@ -17,7 +17,8 @@ const SPHERE_SUBDIVISIONS: u32 = 3;
 /// How far from a right angle to its normal a plate's side may be (the cosine of the angle between them).
 const SQUARE_TOLERANCE: f64 = 1e-6;
 
-pub(super) fn wall(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Result<Wall, Problem> {
+/// `parts` are the names of the parts that the scene uses, of a mesh.
+pub(super) fn wall(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Path) -> Result<Wall, Problem> {
     refuse_foreign_keys(raw)?;
     let gas = gas_side(raw)?;
     let shape = match raw.value.shape.value {
@@ -25,7 +26,7 @@ pub(super) fn wall(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Res
         RawShape::Cylinder => cylinder(raw, units)?,
         RawShape::Sphere => sphere(raw, units)?,
         RawShape::Plane => plane(raw, units)?,
-        RawShape::Mesh => mesh(raw, units, base_dir)?,
+        RawShape::Mesh => mesh(raw, parts, units, base_dir)?,
     };
     Ok(Wall {
         name: raw.value.name.value.clone(),
@@ -238,7 +239,7 @@ fn square_to(normal: [f64; 3], u: [f64; 3]) -> Option<[f64; 3]> {
     Some(normalised(std::array::from_fn(|axis| u[axis] - cosine * normal[axis])))
 }
 
-fn mesh(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Result<Shape, Problem> {
+fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Path) -> Result<Shape, Problem> {
     let file = need(raw, &raw.value.file, "file", "the path of an STL or OBJ file")?;
     let known = Path::new(&file.value)
         .extension()
@@ -248,19 +249,18 @@ fn mesh(raw: &At<RawWall>, units: UnitSystem, base_dir: &Path) -> Result<Shape, 
     }
     let joined = base_dir.join(&file.value);
     // Absolute, so that the resolved scene can be read from another folder.
-    let path = std::path::absolute(&joined).unwrap_or(joined);
+    let path = std::path::absolute(&joined).unwrap_or_else(|_| joined.clone());
     if !path.is_file() {
-        return Err(Problem::value(
-            &file.span,
-            format!("{}, which does not exist", quote(&file.value)),
-            "an existing file",
-        )
-        .hint("the path is relative to the folder of the scene file"));
+        let what = if path.is_dir() { "which is a folder" } else { "which does not exist" };
+        let hint = format!("the path is relative to the folder of the scene file: {} was meant", joined.display());
+        return Err(
+            Problem::value(&file.span, format!("{}, {what}", quote(&file.value)), "an existing file").hint(&hint)
+        );
     }
     // The file's `scale` leads to length units of the scene; those of `Shape::Mesh` lead to metres.
     let scale = match &raw.value.scale {
         Some(scale) => positive(scale, Quantity::Length, units)?,
         None => units.factor(Quantity::Length),
     };
-    Ok(Shape::Mesh { path, scale })
+    Ok(Shape::Mesh { path, scale, parts })
 }

@@ -69,9 +69,7 @@ pub fn to_toml(scene: &Scene) -> String {
         out.header("[[surface]]");
         out.text("name", &surface.name);
         out.text("wall", &scene.walls[surface.wall].name);
-        if let Some(face) = surface.face {
-            out.face(face);
-        }
+        out.face(surface.face, &scene.walls[surface.wall]);
     }
     for vent in &scene.vents {
         write_vent(&mut out, vent, scene);
@@ -121,7 +119,7 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
             out.number("thickness", *thickness);
             holes
         }
-        Shape::Mesh { path, scale } => {
+        Shape::Mesh { path, scale, parts: _ } => {
             out.text("shape", "mesh");
             out.text("file", &path.to_string_lossy());
             out.number("scale", *scale);
@@ -146,7 +144,7 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
     for hole in holes {
         out.header("[[wall.hole]]");
         out.text("name", &hole.name);
-        out.face(hole.face);
+        out.face(Some(hole.face).filter(|face| *face != Face::Plane), wall);
         out.numbers("center", &hole.center);
         match hole.outline {
             Outline::Rectangle { size } => out.numbers("size", &size),
@@ -165,9 +163,7 @@ fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
     out.header("[[vent]]");
     out.text("name", &vent.name);
     out.text("wall", &scene.walls[vent.wall].name);
-    if let Some(face) = vent.face {
-        out.face(face);
-    }
+    out.face(vent.face, &scene.walls[vent.wall]);
     if let Some(chamber) = vent.chamber {
         out.text("chamber", &scene.chambers[chamber].name);
     }
@@ -276,10 +272,9 @@ impl Lines {
         let points: Vec<String> = curve.points.iter().map(|point| array(point)).collect();
         self.entry(key, &format!("[{}]", points.join(", ")));
     }
-    fn face(&mut self, face: Face) {
-        if let Face::Box { axis, positive } = face {
-            let sign = if positive { '+' } else { '-' };
-            self.text("face", &format!("{sign}{}", ["x", "y", "z"][axis]));
+    fn face(&mut self, face: Option<Face>, wall: &Wall) {
+        if let Some(face) = face {
+            self.text("face", &face.name(wall));
         }
     }
 }

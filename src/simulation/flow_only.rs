@@ -7,7 +7,7 @@
 use crate::gas::continuum_by_excess;
 use crate::geometry::{Vessel, region_bounds};
 use crate::plan::{Measured, significant};
-use crate::scene::{Curve, GasSide, Hole, Opening, Scene, Shape, Surface, Vent, VentFlow, Wall};
+use crate::scene::{Curve, Face, GasSide, Hole, Opening, Scene, Shape, Surface, Vent, VentFlow, Wall};
 
 use super::moving::extent;
 use super::outlook::source;
@@ -182,7 +182,8 @@ impl Cavity {
             return Err("without surfaces and probes all chambers are asked for, also those behind it".into());
         }
         for surface in scene.surfaces.iter().filter(|surface| surface.wall == self.wall) {
-            if surface.face.is_none_or(|face| holes.iter().any(|hole| hole.face == face)) {
+            let lost = |face| face == Face::Outside || holes.iter().any(|hole| hole.face == face);
+            if surface.face.is_none_or(lost) {
                 return Err(format!("surface \"{}\" is on the wall with the hole, or behind it", surface.name));
             }
         }

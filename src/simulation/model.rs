@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{GeometryError, Vessel, WallInfo, region_contains};
+use crate::geometry::{GeometryError, Narrowest, Vessel, WallInfo, region_contains};
 use crate::plan::{
     Choice, Limit, Measured, MeasuredVent, MeasuredWall, Outlook, Plan, PlanError, Quantity, Reason, choose, limit,
     modelling_errors, plan, significant,
@@ -149,7 +149,7 @@ struct Seen {
 
 impl Seen {
     fn new(scene: &Scene) -> Result<Seen, ModelError> {
-        let vessel = Vessel::build(&scene.walls)?;
+        let vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
         check_orifices(scene, &vessel)?;
         let coats = Coats::new(scene, &vessel)?;
         let moving = Moving::new(scene, &vessel)?;
@@ -238,6 +238,7 @@ pub(super) fn measured(
 ) -> Measured {
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
+    let Narrowest { gap, body } = vessel.narrowest();
     Measured {
         gas_volume: vessel.gas_volume(),
         motion: moving.measured(&chamber_volumes),
@@ -245,7 +246,8 @@ pub(super) fn measured(
         bounds_min,
         bounds_max,
         openings: found_openings(scene, vessel),
-        smallest_gap: vessel.smallest_gap(),
+        smallest_gap: gap,
+        thinnest_body: body,
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
         probe_volumes: probe_volumes.to_vec(),
         vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),

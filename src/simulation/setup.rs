@@ -113,7 +113,8 @@ impl Setup {
         let margin = Walls::tolerance(&plan.grid);
         let still = model.vessel.without(|wall| motion(wall).is_some());
         let bodies = model.moving.count();
-        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, bodies, motion)?;
+        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, bodies, motion)
+            .map_err(|error| error.told_in(model.scene.units))?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {
             let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
@@ -144,7 +145,7 @@ impl Setup {
         };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),
-            layout: layout(model, &patches),
+            layout: layout(model, &patch, &patches),
             patches: patches.len(),
             volumes: Arc::new(volumes_of_blocks(model, &still)?),
             cut_by: None,
@@ -179,8 +180,8 @@ fn volumes_of_blocks(model: &Model, still: &Vessel) -> Result<Vec<f64>, Simulati
     Ok(block_volumes(&still.clone().measured()?, &plan.grid, plan.block_cells_log2))
 }
 
-/// A patch is one face of one wall. Each triangle's patch, and the list of patches; none in a scene without
-/// surfaces.
+/// A patch is one face of one wall: of boxes each, of others each that a surface is of, and the rest. Each triangle's patch,
+/// and the list of patches; none in a scene without surfaces.
 pub(super) fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
     let mut patches = Vec::new();
     if model.scene.surfaces.is_empty() {
@@ -191,7 +192,12 @@ pub(super) fn patches(model: &Model) -> (Vec<u32>, Vec<(u32, Option<Face>)>) {
         .triangles
         .iter()
         .map(|triangle| {
-            let key = (triangle.wall, triangle.face);
+            let measured = |face: &Face| {
+                let surfaces = &model.scene.surfaces;
+                let of_box = matches!(face, Face::Box { .. });
+                of_box || surfaces.iter().any(|s| s.wall == triangle.wall as usize && s.face == Some(*face))
+            };
+            let key = (triangle.wall, triangle.face.filter(measured));
             let known = patches.iter().position(|patch| *patch == key);
             known.unwrap_or_else(|| {
                 patches.push(key);
@@ -213,13 +219,14 @@ fn zones(model: &Model) -> Vec<GpuZone> {
     std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
 }
 
-fn layout(model: &Model, patches: &[(u32, Option<Face>)]) -> Layout {
+fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -> Layout {
     let Model { scene, vessel, plan, coats, moving, probe_volumes, .. } = model;
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
-        let triangles = vessel.triangles.iter().filter(|triangle| (triangle.wall, triangle.face) == (wall, face));
+        let own = |patch: &u32| patches[*patch as usize] == (wall, face);
+        let triangles = vessel.triangles.iter().zip(of_triangle).filter(|(_, patch)| own(patch));
         triangles
-            .map(|triangle| {
+            .map(|(triangle, _)| {
                 let [a, b, c] = triangle.vertices.map(vertex);
                 0.5 * (b - a).cross(c - a).length()
             })

@@ -347,7 +347,7 @@ fn a_changed_mesh_is_refused() {
     let text = include_str!("../../../scenes/box.toml");
     let scene = |path: &Path| {
         let mut scene = crate::scene::parse(text, "box.toml", Path::new("")).unwrap();
-        scene.walls[0].shape = crate::scene::Shape::Mesh { path: path.to_path_buf(), scale: 1.0 };
+        scene.walls[0].shape = crate::scene::Shape::Mesh { path: path.to_path_buf(), scale: 1.0, parts: vec![] };
         Origin::new(&scene, String::new(), Adapter::default())
     };
     let origin = scene(&mesh).unwrap();

@@ -48,7 +48,8 @@ impl<'a> Places<'a> {
             let [a, b, c] = triangle.vertices.map(vertex);
             Facet { corner: a, edges: [b - a, c - a], normal: (b - a).cross(c - a).normalize_or_zero() }
         });
-        let walls = TriangleGrid::build(vessel, &plan.grid, tolerance)?;
+        let walls =
+            TriangleGrid::build(vessel, &plan.grid, tolerance).map_err(|error| error.told_in(parent.scene.units))?;
         let mut places = Places { parent, walls, facets: facets.collect(), tolerance, shares: Vec::new() };
         places.shares = places.measure(parents);
         Ok(places)
