@@ -6,8 +6,10 @@
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: all sources,
 //! entry point, and the bindings and override constants that the entry point uses.
 //!
-//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the commit of
-//! the working tree that is built, marked where its sources are others; not set where there is none, or no git.
+//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the last commit
+//! of the working tree that changed sources, marked where they are others; not set where there is none, or no git. It is found anew
+//! only where sources change: a commit of anything else builds nothing, and sources that are committed as they were built stay
+//! marked. `CORPUSCLE_VERSION` is the package's with that commit.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -52,10 +54,6 @@ fn main() {
     for path in SOURCES {
         println!("cargo::rerun-if-changed={path}");
     }
-    // The commit changes without them.
-    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
-        println!("cargo::rerun-if-changed={log}");
-    }
     let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
         for path in unused {
             println!("cargo::warning={} is used by no kernel", path.display());
@@ -68,8 +66,13 @@ fn main() {
         let mut number = FNV_START;
         SOURCES.iter().try_for_each(|path| add_to(&mut number, Path::new(path)))?;
         println!("cargo::rustc-env=CORPUSCLE_SOURCE={number:016x}");
-        if let Some(commit) = commit() {
-            println!("cargo::rustc-env=CORPUSCLE_COMMIT={commit}");
+        let version = env!("CARGO_PKG_VERSION");
+        match commit() {
+            Some(commit) => {
+                println!("cargo::rustc-env=CORPUSCLE_COMMIT={commit}");
+                println!("cargo::rustc-env=CORPUSCLE_VERSION={version} ({commit})");
+            }
+            None => println!("cargo::rustc-env=CORPUSCLE_VERSION={version}"),
         }
         Ok(())
     });
@@ -86,7 +89,8 @@ fn commit() -> Option<String> {
     if root != fs::canonicalize(".").ok()? {
         return None;
     }
-    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
+    let log = ["log", "-1", "--format=%h", "--abbrev=12", "--"];
+    let commit = git(&[&log, &SOURCES[..]].concat()).filter(|commit| !commit.is_empty())?;
     let changed = !git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?.is_empty();
     Some(if changed { commit + "-changed" } else { commit })
 }

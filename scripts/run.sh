@@ -37,8 +37,8 @@ export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 status=0
 cargo run --quiet --release --locked --features mpi --manifest-path "$root/Cargo.toml" -- \
   run "$@" ${options[@]+"${options[@]}"} || status=$?
-# 4: the run ended and its audit failed; its results are there to look at.
-if [ "$status" -eq 0 ] || [ "$status" -eq 4 ]; then
+# 4: the run ended and its audit failed; its results are there to look at. Above 128: a signal stopped it.
+if [ "$status" -eq 0 ] || [ "$status" -eq 4 ] || { [ "$status" -gt 128 ] && [ -d "$out" ]; }; then
   echo "Results: $(cd "$out" && pwd)"
 fi
 exit "$status"

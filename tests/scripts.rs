@@ -185,7 +185,7 @@ fn a_run_builds_then_runs_and_ends_with_the_path_of_its_results() {
 
 #[test]
 fn a_run_passes_on_its_exit_status() {
-    for (status, with_results) in [(2, false), (3, false), (4, true)] {
+    for (status, with_results) in [(2, false), (3, false), (4, true), (143, true)] {
         let output = complete(status).run("scripts/run.sh", &["scenes/tank.toml"]);
         assert_eq!(output.status.code(), Some(i32::from(status)));
         assert_eq!(String::from_utf8_lossy(&output.stdout).contains("Results:"), with_results);

@@ -4,7 +4,9 @@ mod studies;
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, Args, Parser, Subcommand, ValueHint};
+use std::ffi::OsString;
+
+use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY};
 use crate::simulation::{CheckpointEvery, WallTime};
@@ -13,20 +15,43 @@ pub use studies::{
     BenchArguments, EmulationArguments, ParetoArguments, StabilityArguments, SweepArguments, VerifyArguments,
 };
 
-const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked, 2 bad input, 3 device trouble, 4 the audit failed.";
+const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked by an option, 2 bad input, 3 device trouble, \
+    4 the audit failed, 128 + N stopped by signal N, with a checkpoint.";
+
+/// Of the program, and the commit of its sources where that is known.
+const VERSION: &str = env!("CORPUSCLE_VERSION");
 
 /// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags
 #[derive(Debug, Parser)]
-#[command(name = "corpuscle", version, disable_help_subcommand = true, after_help = EXIT_CODES)]
+#[command(name = "corpuscle", version = VERSION, after_help = EXIT_CODES)]
 pub struct Arguments {
     #[command(subcommand)]
     pub verb: Verb,
+    /// Colours on a terminal [auto: unless NO_COLOR is set]
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto", hide_default_value = true)]
+    pub color: ColorChoice,
     /// Say more; -vv says all
     #[arg(short, long, global = true, action = ArgAction::Count, conflicts_with = "quiet")]
     pub verbose: u8,
-    /// Say nothing but results and errors
+    /// Say nothing but where the results are, warnings and errors
     #[arg(short, long, global = true)]
     pub quiet: bool,
+}
+
+/// The choice of colours in a command line that is not parsed yet: errors of parsing have them, too.
+pub fn colour_of(words: &[OsString]) -> ColorChoice {
+    let option = "--color";
+    let mut choice = ColorChoice::Auto;
+    for (index, word) in words.iter().enumerate().skip(1) {
+        let word = word.to_string_lossy();
+        let value = match word.strip_prefix(option) {
+            Some("") => words.get(index + 1).map(|next| next.to_string_lossy().into_owned()),
+            Some(rest) => rest.strip_prefix('=').map(str::to_owned),
+            None => None,
+        };
+        choice = value.and_then(|value| ColorChoice::from_str(&value, false).ok()).unwrap_or(choice);
+    }
+    choice
 }
 
 /// How much is said on standard error.
@@ -72,8 +97,10 @@ pub enum Verb {
     /// Check scenes, their walls and their plans; opens no device
     Check(CheckArguments),
     /// Print the JSON schema of scene files
+    #[command(after_help = EXIT_CODES)]
     Schema,
     /// List the devices that runs can use, with the limits that matter
+    #[command(after_help = EXIT_CODES)]
     Adapters,
     /// Print a shell's completions
     Completions(CompletionsArguments),
@@ -154,20 +181,21 @@ fn rate(text: &str) -> Result<f64, String> {
 pub struct RunArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    #[command(flatten)]
-    pub wish: WishArguments,
     /// The folder for the results [default: results/<name of the scene file>]
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Write into a folder that holds more than an earlier run's results
+    /// Also replace a run that has not ended or is of another scene, and write beside what no run wrote
     #[arg(long)]
     pub force: bool,
     /// Run it with N seeds, the scene's and the N - 1 after it, each in a folder of its own; mean and spread of the
     /// histories in history_mean.csv
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with_all = ["steps", "checkpoint_every", "stop_after"])]
     pub repeat: Option<u32>,
+    // Headings hold for all that follows: what has one goes last.
     #[command(flatten)]
     pub execution: ExecutionArguments,
+    #[command(flatten)]
+    pub wish: WishArguments,
 }
 
 #[derive(Debug, Args)]
@@ -271,7 +299,7 @@ pub struct RefineArguments {
     /// The folder of the refined run [default: beside the run's, as <name>-x<K>]
     #[arg(short, long, value_name = "NEWDIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Write into a folder that holds more than an earlier run's results
+    /// Also replace a run that has not ended or is of another scene, and write beside what no run wrote
     #[arg(long)]
     pub force: bool,
 }
@@ -287,20 +315,22 @@ pub enum MethodName {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub struct PlanArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    #[command(flatten)]
-    pub wish: WishArguments,
     /// As TOML, with everything that is in the plan.toml of a run
     #[arg(long)]
     pub toml: bool,
     /// Warnings are errors
     #[arg(long)]
     pub strict: bool,
+    #[command(flatten)]
+    pub wish: WishArguments,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub struct CheckArguments {
     /// The scenes, TOML files
     #[arg(required = true, value_name = "SCENE", value_hint = ValueHint::FilePath)]
@@ -311,11 +341,13 @@ pub struct CheckArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub struct CompletionsArguments {
     pub shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub struct ManArguments {
     /// The page of this verb instead of the program's
     pub verb: Option<String>,

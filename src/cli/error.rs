@@ -226,6 +226,8 @@ fn study_code(error: &StudyError) -> u8 {
         StudyError::Run { code, .. } => match code {
             Some(2) => BAD_INPUT,
             Some(4) => AUDIT_FAILED,
+            // It was stopped by a signal, and so is the study.
+            Some(code @ 129..=255) => *code as u8,
             _ => DEVICE_TROUBLE,
         },
         StudyError::Simulation(

@@ -2,7 +2,8 @@
 //!
 //! Raw arguments ([`Arguments`], what was typed) become settings (what is meant: a scene with its overrides, a
 //! folder) before anything is done. Results go to standard output, messages to standard error. Exit codes:
-//! 0 done, or stopped as asked with a checkpoint; 2 bad input; 3 device trouble; 4 the audit failed.
+//! 0 done, or stopped as asked with a checkpoint; 2 bad input; 3 device trouble; 4 the audit failed; 128 and the number of
+//! the signal for which a run has stopped, with a checkpoint.
 
 mod adapters;
 mod arguments;
@@ -25,7 +26,7 @@ mod verify;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 
 pub use arguments::Arguments;
 pub use error::CliError;
@@ -34,7 +35,10 @@ use arguments::Verb;
 
 /// Reads the command line, does what it says and tells how it went.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let words: Vec<_> = std::env::args_os().collect();
+    let choice = arguments::colour_of(&words);
+    let parsed = Arguments::command().color(choice).try_get_matches_from(words);
+    let arguments = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
         Err(usage) => {
             // Help and version come this way too. Nobody is left to tell if it cannot be printed.
@@ -42,9 +46,9 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
         }
     };
-    terminal::start(arguments.verbosity());
+    terminal::start(arguments.verbosity(), terminal::wanted_colour(choice));
     match perform(arguments) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => ExitCode::from(code),
         Err(error) => {
             let code = error.exit_code();
             terminal::complain(error);
@@ -53,17 +57,18 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn perform(arguments: Arguments) -> Result<(), CliError> {
+/// Returns the exit code of what was done.
+fn perform(arguments: Arguments) -> Result<u8, CliError> {
     let quiet = arguments.quiet;
     if let Some(verb) = arguments.verb.of_one_process()
         && let Some((variable, value)) = crate::ranks::one_of_several()
     {
         return Err(CliError::OneProcess { verb, variable, value });
     }
-    match arguments.verb {
-        Verb::Run(raw) => run::run(raw, quiet),
+    let done = match arguments.verb {
+        Verb::Run(raw) => return Ok(run::run(raw, quiet)?.exit_code()),
+        Verb::Resume(raw) => return Ok(resume::resume(raw, quiet)?.exit_code()),
         Verb::Refine(raw) => refine::refine(raw),
-        Verb::Resume(raw) => resume::resume(raw, quiet),
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Bench(raw) => bench::bench(raw),
         Verb::Plan(raw) => plan::plan(raw),
@@ -75,5 +80,6 @@ fn perform(arguments: Arguments) -> Result<(), CliError> {
         Verb::Adapters => adapters::adapters(),
         Verb::Completions(raw) => completions::completions(raw),
         Verb::Man(raw) => man::man(raw),
-    }
+    };
+    done.map(|()| 0)
 }

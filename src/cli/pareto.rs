@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::gpu::Device;
-use crate::output::{OutputFolder, PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE};
+use crate::output::{Claim, Content, OutputFolder, PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE};
 use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::pareto::report::{Chart, front_of};
@@ -35,7 +35,8 @@ pub fn pareto(raw: ParetoArguments) -> Result<(), CliError> {
     settings.push(default.0);
     let device = Device::open(raw.gpu.as_deref())?;
     let path = raw.out.clone().unwrap_or_else(|| Path::new("results").join(format!("pareto-{}", case.name)));
-    let folder = OutputFolder::create(&path, raw.force)?;
+    let claim = Claim { content: Content::Pareto, scene: None, meshes: &[], inputs: &[], force: raw.force };
+    let folder = OutputFolder::create(&path, &claim)?;
     let mut chart = Chart {
         name: case.name,
         trials: &trials,

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::output::{
-    Checkpoint, CheckpointWriter, HistoryWriter, Moment, Origin, OutputFolder, OutputState, PLAN_FILE, SCENE_FILE,
-    SnapshotWriter, grouped, latest,
+    Checkpoint, CheckpointWriter, Claim, Content, HistoryWriter, Manifest, Moment, Origin, OutputFolder, OutputState,
+    PLAN_FILE, SCENE_FILE, SnapshotWriter, grouped, latest,
 };
 use crate::scene::{parse, to_toml};
 use crate::simulation::{Model, RefineReport, Refined, RunState, particles_of, refine as split};
@@ -25,11 +25,20 @@ pub fn refine(raw: RefineArguments) -> Result<(), CliError> {
     }
     let checkpoint = Checkpoint::open(&path)?;
     let (parent, state, particles) = read(&checkpoint)?;
-    let refined = split(&parent, &state, &particles, raw.times)?;
+    let mut refined = split(&parent, &state, &particles, raw.times)?;
+    checkpoint.name_meshes(&mut refined.model.scene);
     for warning in &refined.model.plan.warnings {
         tracing::warn!("{warning}");
     }
-    let written = write(&refined, &checkpoint, &OutputFolder::create(&folder, raw.force)?)?;
+    let scene = to_toml(&refined.model.scene);
+    let claim = Claim {
+        content: Content::Run,
+        scene: Some(&scene),
+        meshes: &checkpoint.manifest().mesh,
+        inputs: &[&[path.clone()], &checkpoint.meshes()?[..]].concat(),
+        force: raw.force,
+    };
+    let written = write(&refined, &checkpoint, &OutputFolder::create(&folder, &claim)?)?;
     say(&summary(&refined.report, raw.times))?;
     say(&format!("{}\n", written.display()))
 }
@@ -61,8 +70,7 @@ fn same(a: &Path, b: &Path) -> bool {
 
 fn read(checkpoint: &Checkpoint) -> Result<(Model, RunState, Vec<GpuParticle>), CliError> {
     let name = checkpoint.path().join(SCENE_FILE);
-    // Paths of meshes in it are as the run resolved them.
-    let scene = parse(&checkpoint.scene()?, &name.display().to_string(), Path::new(""))?;
+    let scene = parse(&checkpoint.scene_here()?, &name.display().to_string(), Path::new(""))?;
     let model = model_of(&name, scene)?;
     checkpoint.check_plan(&model.plan.to_toml()?)?;
     let (_, state) = checkpoint.state::<RunState>()?;
@@ -73,8 +81,13 @@ fn read(checkpoint: &Checkpoint) -> Result<(Model, RunState, Vec<GpuParticle>), 
 fn write(refined: &Refined, parent: &Checkpoint, folder: &OutputFolder) -> Result<PathBuf, CliError> {
     let Refined { model, particles, state, report } = refined;
     let plan = model.plan.to_toml()?;
-    let origin = Origin::new(&model.scene, plan.clone(), parent.manifest().adapter.clone())?;
-    folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
+    let Manifest { adapter, mesh, .. } = parent.manifest();
+    for (record, source) in mesh.iter().zip(parent.meshes()?) {
+        record.keep(&source, folder)?;
+    }
+    let scene = to_toml(&model.scene);
+    let origin = Origin { scene, plan: plan.clone(), meshes: mesh.clone(), adapter: adapter.clone() };
+    folder.write_text(SCENE_FILE, &origin.scene)?;
     folder.write_text(PLAN_FILE, &plan)?;
     let history = HistoryWriter::create(folder.path(), &columns(&model.scene))?.state()?;
     let snapshots = match model.scene.output.snapshots {

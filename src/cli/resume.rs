@@ -8,36 +8,48 @@ use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::output::{Adapter, Checkpoint, CheckpointError, OutputFolder, OutputState, latest, run_folder};
+use crate::output::{
+    Adapter, Checkpoint, CheckpointError, OutputFolder, OutputState, check_marker, has_ended, latest, run_folder,
+};
 use crate::ranks::Communicator;
 use crate::scene::parse;
 use crate::simulation::RunState;
 
 use super::CliError;
 use super::arguments::ResumeArguments;
-use super::run::{among_ranks, launch};
+use super::run::{Ending, among_ranks, launch, once};
 use super::settings::{Execution, RunSettings, model_of};
-use super::terminal::say;
+use super::terminal::tell;
 
-pub fn resume(raw: ResumeArguments, quiet: bool) -> Result<(), CliError> {
+pub fn resume(raw: ResumeArguments, quiet: bool) -> Result<Ending, CliError> {
     let started = Instant::now();
     among_ranks("resume", |comm| {
-        let execution = Execution::new(raw.execution)?;
-        let Some(checkpoint) = agreed(&raw.from, comm)? else {
-            return if comm.rank() == 0 { tell_the_end(&raw.from, quiet) } else { Ok(()) };
+        let execution = once(Execution::new(raw.execution), comm)?;
+        let Some((folder, checkpoint)) = agreed(&raw.from, comm)? else {
+            if comm.rank() == 0 {
+                tell_the_end(&raw.from, quiet);
+            }
+            return Ok(Ending::Done);
         };
-        let scene = checkpoint.path().join("scene.toml");
-        let model = parse(&checkpoint.scene()?, &scene.display().to_string(), Path::new(""))?;
-        let model = model_of(&scene, model)?;
-        checkpoint.check_plan(&model.plan.to_toml()?)?;
-        let done = checkpoint.manifest().step;
-        if let Some(asked) = execution.stop_after_steps.filter(|asked| *asked <= done) {
-            return Err(CliError::StepsDone { asked, done });
-        }
-        let folder = run_folder(&raw.from, checkpoint.path());
-        let settings = RunSettings { scene, model, folder, force: false, execution };
-        launch(&settings, Some(Beginning::new(checkpoint)?), comm, quiet, started)
+        let settings = once(settings_of(&raw.from, &checkpoint, execution), comm)?;
+        let beginning = once(Beginning::new(checkpoint, folder).map_err(CliError::from), comm)?;
+        launch(&settings, Some(beginning), comm, quiet, started)
     })
+}
+
+/// The run as its checkpoint has it.
+fn settings_of(from: &Path, checkpoint: &Checkpoint, execution: Execution) -> Result<RunSettings, CliError> {
+    let scene = checkpoint.path().join("scene.toml");
+    let model = parse(&checkpoint.scene_here()?, &scene.display().to_string(), Path::new(""))?;
+    let mut model = model_of(&scene, model)?;
+    checkpoint.name_meshes(&mut model.scene);
+    checkpoint.check_plan(&model.plan.to_toml()?)?;
+    let done = checkpoint.manifest().step;
+    if let Some(asked) = execution.stop_after_steps.filter(|asked| *asked <= done) {
+        return Err(CliError::StepsDone { asked, done });
+    }
+    let folder = run_folder(from, checkpoint.path());
+    Ok(RunSettings { scene, model, folder, force: false, execution })
 }
 
 /// What a run goes on from.
@@ -45,12 +57,14 @@ pub struct Beginning {
     pub checkpoint: Checkpoint,
     pub state: RunState,
     pub output: OutputState,
+    /// Of the run; on rank 0.
+    pub folder: Option<OutputFolder>,
 }
 
 impl Beginning {
-    fn new(checkpoint: Checkpoint) -> Result<Beginning, CheckpointError> {
+    fn new(checkpoint: Checkpoint, folder: Option<OutputFolder>) -> Result<Beginning, CheckpointError> {
         let (output, state) = checkpoint.state()?;
-        Ok(Beginning { checkpoint, state, output })
+        Ok(Beginning { checkpoint, state, output, folder })
     }
 
     pub fn step(&self) -> u64 {
@@ -72,35 +86,39 @@ impl Beginning {
     }
 }
 
+/// A run's folder, on rank 0, and one of its checkpoints.
+type Found = (Option<OutputFolder>, Checkpoint);
+
 /// The checkpoint that rank 0 has found for `from`; none if the run has ended. Collective.
-fn agreed(from: &Path, comm: &dyn Communicator) -> Result<Option<Checkpoint>, CliError> {
+fn agreed(from: &Path, comm: &dyn Communicator) -> Result<Option<Found>, CliError> {
     let own = if comm.rank() == 0 { found(from)? } else { None };
-    let message = own.as_ref().map(|checkpoint| checkpoint.path().as_os_str().as_bytes().to_vec());
+    let message = own.as_ref().map(|(_, checkpoint)| checkpoint.path().as_os_str().as_bytes().to_vec());
     let path = comm.broadcast(message.unwrap_or_default())?;
     match own {
-        Some(checkpoint) => Ok(Some(checkpoint)),
+        Some(found) => Ok(Some(found)),
         None if path.is_empty() => Ok(None),
-        None => Ok(Some(Checkpoint::open_checked(&PathBuf::from(OsString::from_vec(path)))?)),
+        None => Ok(Some((None, Checkpoint::open_checked(&PathBuf::from(OsString::from_vec(path)))?))),
     }
 }
 
 /// The checkpoint that `from` names, all of it sound; none if `from` names a run that has ended. Of a run that has ended
 /// a single checkpoint can still be named: all from there is done anew.
-fn found(from: &Path) -> Result<Option<Checkpoint>, CliError> {
-    if OutputFolder::open(from).is_ok_and(|folder| folder.has_ended()) {
+fn found(from: &Path) -> Result<Option<Found>, CliError> {
+    if check_marker(from).is_ok() && has_ended(from) {
         return Ok(None);
     }
+    let folder = OutputFolder::open(&run_folder(from, &latest(from)?))?;
+    // The one that has just ended may have written others.
     let path = latest(from)?;
-    let folder = OutputFolder::open(&run_folder(from, &path))?;
-    if folder.has_ended() && path != from {
+    if has_ended(folder.path()) && path != from {
         return Ok(None);
     }
-    Ok(Some(Checkpoint::open(&path)?))
+    Ok(Some((Some(folder), Checkpoint::open(&path)?)))
 }
 
-fn tell_the_end(from: &Path, quiet: bool) -> Result<(), CliError> {
+fn tell_the_end(from: &Path, quiet: bool) {
     if !quiet {
-        say("the run has reached its end: there is nothing left to do\n")?;
+        tell("the run has reached its end: there is nothing left to do\n");
     }
-    say(&format!("{}\n", from.display()))
+    tell(&format!("{}\n", from.display()));
 }

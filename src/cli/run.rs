@@ -1,7 +1,7 @@
 //! `corpuscle run`: a scene from its file to the results.
 //!
-//! An earlier run's results are removed only once the scene, the device and the set-up have shown that this
-//! run can start. A run that goes on from a checkpoint takes the same way.
+//! The folder is claimed once the scene is planned; an earlier run's results are removed only once the device and the set-up
+//! have shown that this run can start. A run that goes on from a checkpoint takes the same way.
 
 mod chart;
 mod checkpoints;
@@ -18,40 +18,82 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{AdapterDescription, Device};
 use crate::output::{
-    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Environment, Origin, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE,
-    SCENE_FILE, forget_after, grouped,
+    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Claim, Content, Environment, LOG_FILE, Origin, OutputFolder, PLAN_FILE,
+    PRESSURE_CHART_FILE, SCENE_FILE, Shown, forget_after, grouped, meshes_of,
 };
 use crate::ranks::{Communicator, Pace, from_environment, in_process};
 use crate::scene::{Method, to_toml};
 use crate::simulation::{
-    Continued, Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits,
+    Continued, Interrupt, Model, Options, Outcome, Setup, Simulation, SimulationError, audit_limits, signal_name,
 };
 
 use super::CliError;
 use super::arguments::RunArguments;
 use super::resume::Beginning;
 use super::settings::RunSettings;
-use super::terminal::{self, say};
+use super::terminal::{self, LOG_ONLY, tell};
 
 use checkpoints::Checkpoints;
 pub use checkpoints::Wanted;
 use recorder::{Recorder, Totals};
 use reference::Reference;
 
-pub fn run(raw: RunArguments, quiet: bool) -> Result<(), CliError> {
+/// How a run has ended that nothing went wrong with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// At its end, or where it was asked to stop by an option.
+    Done,
+    /// For a signal, with a checkpoint. The same on all ranks.
+    Stopped { signal: u8 },
+}
+
+impl Ending {
+    /// As of a shell for a process that a signal has ended.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Ending::Done => 0,
+            Ending::Stopped { signal } => 128 + signal.min(127),
+        }
+    }
+}
+
+pub fn run(raw: RunArguments, quiet: bool) -> Result<Ending, CliError> {
     let started = Instant::now();
     let verb = raw.repeat.map_or_else(|| "run".to_owned(), |times| format!("run --repeat {times}"));
-    among_ranks(&verb, |comm| match raw.repeat {
-        Some(times) => repeat::repeat(RunSettings::new(raw)?, times, comm, quiet, started),
-        None => launch(&RunSettings::new(raw)?, None, comm, quiet, started),
+    among_ranks(&verb, |comm| {
+        let repeat = raw.repeat;
+        let settings = once(RunSettings::new(raw), comm)?;
+        match repeat {
+            Some(times) => repeat::repeat(settings, times, comm, quiet, started),
+            None => launch(&settings, None, comm, quiet, started),
+        }
     })
 }
 
+/// What every rank has made of the same input: if it is bad, the first to find that so says it, and the others wait for the end
+/// that this puts to all.
+///
+/// # Errors
+/// Of this rank.
+pub fn once<T>(prepared: Result<T, CliError>, comm: &dyn Communicator) -> Result<T, CliError> {
+    let failed = comm.all_gather(vec![u8::from(prepared.is_err())])?;
+    if failed.iter().position(|failed| *failed != [0]).is_some_and(|first| first != comm.rank()) {
+        comm.barrier()?;
+    }
+    prepared
+}
+
 /// What this process does as a rank of those that a launcher may have started.
-pub fn among_ranks(verb: &str, work: impl FnOnce(&dyn Communicator) -> Result<(), CliError>) -> Result<(), CliError> {
+pub fn among_ranks(
+    verb: &str,
+    work: impl FnOnce(&dyn Communicator) -> Result<Ending, CliError>,
+) -> Result<Ending, CliError> {
     let comm = from_environment()?;
     let done = devices::agree_on_verb(verb, &*comm).and_then(|()| work(&*comm));
     if let Err(error) = &done {
+        if comm.size() > 1 {
+            terminal::keep(error);
+        }
         // Under a launcher this ends all ranks, and nobody tells of the error later; alone it changes nothing.
         comm.fail(&terminal::report(error), error.exit_code().into());
     }
@@ -65,7 +107,7 @@ pub fn launch(
     comm: &dyn Communicator,
     quiet: bool,
     started: Instant,
-) -> Result<(), CliError> {
+) -> Result<Ending, CliError> {
     let quiet = quiet || comm.rank() > 0;
     let execution = &settings.execution;
     let subdomains = execution.sharing.subdomains;
@@ -74,10 +116,12 @@ pub fn launch(
     }
     let model = &settings.model;
     let told = model.plan.told();
-    if execution.strict && !told.is_empty() {
-        let (scene, warnings) = (settings.scene.clone(), told);
-        return Err(CliError::PlanWarnings { scene, warnings });
-    }
+    let strict = if execution.strict && !told.is_empty() {
+        Err(CliError::PlanWarnings { scene: settings.scene.clone(), warnings: told.clone() })
+    } else {
+        Ok(())
+    };
+    once(strict, comm)?;
     if comm.rank() == 0 {
         for warning in &told {
             tracing::warn!("{warning}");
@@ -87,17 +131,28 @@ pub fn launch(
         }
     }
     devices::agree_on_run(model, execution, comm)?;
+    let mut from = from;
+    let folder = match &mut from {
+        Some(beginning) => beginning.folder.take(),
+        None if comm.rank() == 0 => Some(claim(settings, Content::Run)?),
+        None => None,
+    };
     if model.plan.method == Method::ControlVolume {
         // Nothing to share out: the first rank does it.
-        return if comm.rank() == 0 { uniform::run(settings, quiet, started) } else { Ok(()) };
+        return match folder {
+            Some(folder) => uniform::run(settings, &folder, quiet, started).map(|()| Ending::Done),
+            None => Ok(Ending::Done),
+        };
     }
     let device = devices::open(execution.gpu.as_deref(), comm)?;
     devices::agree_on_device(&device, comm)?;
-    if !quiet {
-        say(&heading(device.adapter(), model))?;
-        say(&devices::map(&device, comm)?)?;
-    } else {
-        devices::map(&device, comm)?;
+    let map = devices::map(&device, comm)?;
+    if comm.rank() == 0 {
+        let heading = heading(device.adapter(), model) + &map;
+        tracing::info!(target: LOG_ONLY, "{}", heading.trim_end());
+        if !quiet {
+            tell(&heading);
+        }
     }
     let ranks = comm.size().max(subdomains);
     let setup = match &from {
@@ -113,7 +168,8 @@ pub fn launch(
         tracing::info!("no collisions: particles are dealt out by id, nothing is exchanged or balanced");
     }
     let interrupt = Interrupt::catch().map_err(CliError::Signals)?;
-    let job = Job { settings, from, device: &device, setup: &setup, interrupt: &interrupt, quiet, started };
+    let (device, setup, interrupt) = (&device, &setup, &interrupt);
+    let job = Job { settings, folder, from, device, setup, interrupt, quiet, started };
     if subdomains == 1 {
         return job.run(comm);
     }
@@ -124,11 +180,12 @@ pub fn launch(
         }
         done
     })?;
+    let ending = results.first().and_then(|result| result.as_ref().ok().copied()).unwrap_or(Ending::Done);
     // The cause rather than what the others heard of it.
     let heard = |error: &CliError| matches!(error, CliError::Rank(_) | CliError::Simulation(SimulationError::Rank(_)));
     let failed = results.into_iter().enumerate().filter_map(|(rank, result)| Some((rank, result.err()?)));
     match failed.min_by_key(|(rank, error)| (heard(error), *rank)) {
-        None => Ok(()),
+        None => Ok(ending),
         Some((rank, error)) => {
             tracing::error!("subdomain {rank} of {subdomains} ended the run");
             Err(error)
@@ -136,9 +193,21 @@ pub fn launch(
     }
 }
 
+/// The folder of the results, which nothing has been changed in yet.
+fn claim(settings: &RunSettings, content: Content) -> Result<OutputFolder, CliError> {
+    let scene = to_toml(&settings.model.scene);
+    let meshes = meshes_of(&settings.model.scene)?;
+    let mut inputs = vec![settings.scene.clone()];
+    inputs.extend(meshes.iter().map(|mesh| mesh.path.clone()));
+    let claim = Claim { content, scene: Some(&scene), meshes: &meshes, inputs: &inputs, force: settings.force };
+    Ok(OutputFolder::claim(&settings.folder, &claim)?)
+}
+
 /// What all ranks of this process share.
 struct Job<'a> {
     settings: &'a RunSettings,
+    /// Of rank 0.
+    folder: Option<OutputFolder>,
     from: Option<Beginning>,
     device: &'a Device,
     setup: &'a Setup,
@@ -158,7 +227,7 @@ struct Ended<'a> {
 }
 
 impl Job<'_> {
-    fn run(&self, comm: &dyn Communicator) -> Result<(), CliError> {
+    fn run(&self, comm: &dyn Communicator) -> Result<Ending, CliError> {
         let Job { settings, device, setup, .. } = self;
         let model = &settings.model;
         let execution = &settings.execution;
@@ -178,17 +247,20 @@ impl Job<'_> {
             Some(from) => Simulation::resume(model, device, setup, comm, options, &from.state)?,
         };
         let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
-        if comm.rank() > 0 {
-            match simulation.run(&mut checkpoints) {
+        let Some(folder) = self.folder.as_ref().filter(|_| comm.rank() == 0) else {
+            return match simulation.run(&mut checkpoints) {
                 // All ranks stop there alike; rank 0 says it.
-                Err(SimulationError::Guard { .. }) => {}
-                done => drop(timing::of_ranks(comm, &done?)?),
-            }
-            return Ok(());
-        }
+                Err(SimulationError::Guard { .. }) => Ok(Ending::Done),
+                done => {
+                    let outcome = done?;
+                    timing::of_ranks(comm, &outcome)?;
+                    ending(&outcome, comm)
+                }
+            };
+        };
         let adapter = record(device);
-        let origin = Origin::new(&model.scene, model.plan.to_toml()?, Adapter::from(&adapter))?;
-        let (folder, recorder) = self.files(adapter)?;
+        let origin = self.origin(Adapter::from(&adapter))?;
+        let recorder = self.files(folder, &origin, adapter)?;
         let step = self.from.as_ref().map_or(0, Beginning::step);
         let mut recorder = recorder.checkpointing(checkpoints.leading(execution.checkpoints, step, origin));
         if comm.size() > 1 {
@@ -208,29 +280,46 @@ impl Job<'_> {
             folder.end(&format!("{account}\n{}{vents}{}", totals(&outcome), warned(&outcome)))?;
         }
         let vents = recorder.of_vents();
-        self.tell(&Ended { outcome: &outcome, set_up, vents, stopped: recorder.stopped_at().is_some() }, &folder)
+        let stopped = recorder.stopped_at().is_some();
+        self.tell(&Ended { outcome: &outcome, set_up, vents, stopped }, folder)?;
+        ending(&outcome, comm)
     }
 
-    /// The folder of the results, and who writes into it, on rank 0.
-    fn files(&self, adapter: AdapterRecord) -> Result<(OutputFolder, Recorder<'_>), CliError> {
-        let RunSettings { model, folder, force, .. } = self.settings;
-        let (reference, shown) = (Reference::new(model), !self.quiet);
+    /// Of all checkpoints of the run, the earlier ones included.
+    fn origin(&self, adapter: Adapter) -> Result<Origin, CliError> {
+        let model = &self.settings.model;
+        let plan = model.plan.to_toml()?;
+        Ok(match &self.from {
+            None => Origin::new(&model.scene, plan, adapter)?,
+            Some(Beginning { checkpoint, .. }) => {
+                Origin { scene: checkpoint.scene()?, plan, meshes: checkpoint.manifest().mesh.clone(), adapter }
+            }
+        })
+    }
+
+    /// The files of the results, and who writes them, on rank 0.
+    fn files(&self, folder: &OutputFolder, origin: &Origin, adapter: AdapterRecord) -> Result<Recorder<'_>, CliError> {
+        let RunSettings { model, .. } = self.settings;
+        let reference = Reference::new(model);
+        let shown = if self.quiet { Shown::No } else { Shown::Yes { colour: terminal::colour() } };
         let Some(from) = &self.from else {
-            let folder = OutputFolder::create(folder, *force)?;
-            folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
+            folder.clear()?;
+            terminal::log_to(&folder.path().join(LOG_FILE));
+            folder.write_text(SCENE_FILE, &origin.scene)?;
             folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
+            for mesh in &origin.meshes {
+                mesh.keep(&mesh.path, folder)?;
+            }
             Environment::of_this_host(command(), adapter).write(folder.path())?;
-            let recorder = Recorder::new(model, reference, folder.path(), shown)?;
-            return Ok((folder, recorder));
+            return Ok(Recorder::new(model, reference, folder.path(), shown)?);
         };
-        let folder = OutputFolder::open(folder)?;
         folder.go_on()?;
+        terminal::log_to(&folder.path().join(LOG_FILE));
         // First, since they count on what is cut off then.
         forget_after(&folder.checkpoints(), from.step())?;
         let totals =
             Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps };
-        let recorder = Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?;
-        Ok((folder, recorder))
+        Ok(Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?)
     }
 
     fn tell(&self, ended: &Ended<'_>, folder: &OutputFolder) -> Result<(), CliError> {
@@ -241,19 +330,24 @@ impl Job<'_> {
             tracing::warn!("{warning}");
         }
         if !self.quiet {
-            say(&summary(&self.settings.model, outcome, vents))?;
+            tell(&summary(&self.settings.model, outcome, vents));
             let seconds = self.started.elapsed().as_secs_f64();
-            say(&format!("wall time {seconds:.1} s, of which set-up {:.1} s\n", set_up.as_secs_f64()))?;
+            tell(&format!("wall time {seconds:.1} s, of which set-up {:.1} s\n", set_up.as_secs_f64()));
         }
-        if *stopped && !self.quiet {
-            say(&format!(
-                "stopped as asked at {:.4} ms of {:.4} ms; to go on: corpuscle resume {}\n",
+        if *stopped {
+            let signal = outcome.signal.map(|signal| format!(" ({})", signal_name(signal))).unwrap_or_default();
+            let text = format!(
+                "stopped as asked{signal} at {:.4} ms of {:.4} ms; to go on: corpuscle resume {}",
                 1e3 * outcome.time,
                 1e3 * self.settings.model.plan.end_time,
                 folder.path().display()
-            ))?;
+            );
+            tracing::info!(target: LOG_ONLY, "{text}");
+            if !self.quiet {
+                tell(&(text + "\n"));
+            }
         }
-        say(&format!("{}\n", folder.path().display()))?;
+        tell(&format!("{}\n", folder.path().display()));
         let mut failures = outcome.audit.verdict(&limits);
         failures.extend(outcome.continued.iter().flat_map(|continued| continued.audit.verdict(&limits)));
         if !failures.is_empty() {
@@ -264,6 +358,13 @@ impl Job<'_> {
         }
         Ok(())
     }
+}
+
+/// Rank 0 may still be writing when others are done: a launcher ends all when the first ends for a signal.
+fn ending(outcome: &Outcome, comm: &dyn Communicator) -> Result<Ending, CliError> {
+    let Some(signal) = outcome.signal else { return Ok(Ending::Done) };
+    comm.barrier()?;
+    Ok(Ending::Stopped { signal })
 }
 
 fn command() -> Vec<String> {
@@ -350,7 +451,7 @@ fn summary(model: &Model, outcome: &Outcome, vents: &str) -> String {
     if outcome.phases.rows.is_empty() {
         text += "This device does not time its phases.\n";
     } else {
-        text += &outcome.phases.render();
+        text += &outcome.phases.render(outcome.stepping_seconds);
     }
     text += "\n";
     text += &totals(outcome);

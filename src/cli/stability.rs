@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::gpu::Device;
-use crate::output::{OutputError, OutputFolder, STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE};
+use crate::output::{
+    Claim, Content, OutputError, OutputFolder, STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE,
+};
 use crate::study::StudyError;
 use crate::study::stability::report::{self, Map};
 use crate::study::stability::{AXES, Axis, Effort};
@@ -33,7 +35,8 @@ pub fn stability(raw: StabilityArguments) -> Result<(), CliError> {
     // Before the folder is made ready, which removes it.
     let kept =
         if raw.go_on { fs::read_to_string(folder.join(STABILITY_FILE)).unwrap_or_default() } else { String::new() };
-    let folder = OutputFolder::create(&folder, raw.force)?;
+    let claim = Claim { content: Content::Stability, scene: None, meshes: &[], inputs: &[], force: raw.force };
+    let folder = OutputFolder::create(&folder, &claim)?;
     let info = &device.adapter().info;
     let driver = format!("{} {}", info.driver, info.driver_info);
     let adapter = format!("{} ({})", info.name, driver.trim());

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use crate::gpu::Device;
 use crate::output::{
-    OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, Timing, grouped,
+    Claim, Content, OutputFolder, SCENE_FILE, SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE,
+    Timing, grouped, mesh_paths,
 };
 use crate::scene::{Method, Scene, to_toml};
 use crate::simulation::{BalanceOptions, Ghosts, HaloOptions, SimulationError};
@@ -32,8 +33,12 @@ pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
     let emulating = plan.raw.emulation.emulate;
     // Earlier results are removed once it is clear that there can be others.
     let device = emulating.then(|| Device::open(plan.raw.gpu.as_deref())).transpose()?;
-    let folder = OutputFolder::create(&plan.folder, plan.raw.force)?;
-    folder.write_text(SCENE_FILE, &to_toml(&plan.scene))?;
+    let scene = to_toml(&plan.scene);
+    let inputs = plan.inputs();
+    let claim =
+        Claim { content: Content::Sweep, scene: Some(&scene), meshes: &[], inputs: &inputs, force: plan.raw.force };
+    let folder = OutputFolder::create(&plan.folder, &claim)?;
+    folder.write_text(SCENE_FILE, &scene)?;
     let emulated = device.map(|device| plan.emulate(&device)).transpose()?;
     let measured = plan.run(folder.path())?;
     let points = emulated.as_ref().map_or(&[][..], |emulated| &emulated.points);
@@ -110,6 +115,14 @@ impl SweepPlan {
             }
         }
         Ok(SweepPlan { raw, scene, folder, devices, real, strategies, launcher, moments })
+    }
+
+    /// The files and folders that are read.
+    fn inputs(&self) -> Vec<PathBuf> {
+        let mut inputs = vec![self.raw.scene.scene.clone()];
+        inputs.extend(mesh_paths(&self.scene));
+        inputs.extend(self.raw.from.iter().cloned());
+        inputs
     }
 
     /// Every count with every strategy; one device has nothing to share out.

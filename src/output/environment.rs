@@ -64,6 +64,12 @@ impl Environment {
     }
 }
 
+/// Of this machine.
+pub fn host_name() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/hostname")
+        .map_or_else(|_| "this machine".into(), |name| name.trim().into())
+}
+
 /// The system's kind, and its own name for itself where `os-release` gives one.
 fn os_name(os_release: Option<&str>) -> String {
     let kind = std::env::consts::OS;

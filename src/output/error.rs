@@ -13,6 +13,36 @@ pub enum OutputError {
         path = path.display()
     )]
     FolderInUse { path: PathBuf, foreign: String },
+    #[error(
+        "the output folder {path} is being written into by {holder}; \
+         wait for its end, stop it, or choose another folder with --out",
+        path = path.display()
+    )]
+    InUse { path: PathBuf, holder: String },
+    #[error(
+        "the output folder {path} holds {state}; choose another folder with --out, or pass --force to replace it",
+        path = path.display()
+    )]
+    Unfinished { path: PathBuf, state: String },
+    #[error(
+        "the output folder {path} holds {found}, this is {wanted}; \
+         choose another folder with --out, or pass --force to replace it",
+        path = path.display()
+    )]
+    OtherContent { path: PathBuf, found: &'static str, wanted: &'static str },
+    #[error(
+        "the output folder {path} holds the results of another scene: {difference}; \
+         choose another folder with --out, or pass --force to replace them",
+        path = path.display()
+    )]
+    OtherScene { path: PathBuf, difference: String },
+    #[error(
+        "{input} is read, and lies where the output folder {path} has results: it would be removed; \
+         choose another folder with --out",
+        path = path.display(),
+        input = input.display()
+    )]
+    OverInput { path: PathBuf, input: PathBuf },
     #[error("{path} is a file, not a folder; choose another output folder", path = path.display())]
     NotAFolder { path: PathBuf },
     #[error("{path} is no folder of a run: it has no {marker}; name the folder that the run was given as --out",

@@ -15,6 +15,7 @@ mod error;
 mod folder;
 mod history;
 mod map;
+mod meshes;
 mod phases;
 mod progress;
 mod scatter;
@@ -31,21 +32,23 @@ pub use audit::{Audit, AuditLimits};
 pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
-    Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, MeshRecord, Moment, Origin,
-    OutputState, RECORD_BYTES, forget_after, latest, run_folder,
+    Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, Moment, Origin, OutputState,
+    RECORD_BYTES, forget_after, latest, run_folder,
 };
-pub use environment::{AdapterRecord, Environment};
+pub use environment::{AdapterRecord, Environment, host_name};
 pub use error::OutputError;
 pub use folder::{
-    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, OutputFolder,
-    PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
-    STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE, SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE,
-    SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE, seed_folder,
+    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, Claim, Content, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE,
+    LOG_FILE, OutputFolder, PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE,
+    SCENE_FILE, SNAPSHOT_FOLDER, STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE, SUBDOMAIN_CHART_FILE,
+    SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE, check_marker, has_ended,
+    seed_folder,
 };
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use map::{MapCell, MapRow, map_chart};
+pub use meshes::{MeshRecord, mesh_paths, meshes_of};
 pub use phases::PhaseTable;
-pub use progress::Progress;
+pub use progress::{LOG_ONLY, Progress, Shown};
 pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};
 pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
 pub use spread::spread as history_spread;

@@ -1,7 +1,7 @@
 //! How far a run has come: a bar on a terminal, plain log lines elsewhere.
 //!
 //! Rates are those of the last few seconds, so that they follow a growing number of particles; the time
-//! left assumes that simulated time goes on at its recent pace.
+//! left assumes that simulated time goes on at its recent pace, and is told once the run has shown one.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -14,6 +14,21 @@ use super::table::{grouped, metric};
 const LOG_INTERVAL: Duration = Duration::from_secs(5);
 /// Between two updates of the bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(200);
+/// The target of events that only the log of a run has: what a bar or standard output says in another form.
+pub const LOG_ONLY: &str = "corpuscle::log_only";
+
+/// How progress is shown on standard error; the log has its lines in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// A bar if that is a terminal, else lines.
+    Yes {
+        colour: bool,
+    },
+    No,
+}
+
+/// The share of the way that is behind before it is said when the end comes.
+const LEAST_SHOWN: f64 = 0.02;
 /// Steps of the bar.
 const BAR_LENGTH: u64 = 1000;
 
@@ -23,10 +38,12 @@ pub struct Progress {
     /// s of simulated time.
     end_time: f64,
     started: Instant,
-    /// `None`: log lines.
     bar: Option<ProgressBar>,
-    /// When something was shown last.
-    shown: Duration,
+    /// Log lines are for the log alone.
+    hidden: bool,
+    /// When the bar was drawn last, and when there was a line last.
+    drawn: Duration,
+    logged: Duration,
     /// Where the rates are measured from, and the one that will replace it.
     base: Sample,
     next_base: Sample,
@@ -46,19 +63,19 @@ struct Sample {
 }
 
 impl Progress {
-    /// For a run that ends at `end_time` (s, simulated): a bar if standard error is a terminal.
-    pub fn new(end_time: f64) -> Progress {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            // The template is a constant; the default style stands in if it did not parse.
-            let style = ProgressStyle::with_template("{bar:32.cyan/blue} {percent:>3} %  {msg}")
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::new(BAR_LENGTH).with_style(style)
-        });
+    /// For a run that ends at `end_time` (s, simulated).
+    pub fn new(end_time: f64, shown: Shown) -> Progress {
+        let bar = match shown {
+            Shown::Yes { colour } if std::io::stderr().is_terminal() => Some(bar(colour)),
+            _ => None,
+        };
         Progress {
             end_time,
             started: Instant::now(),
+            hidden: bar.is_some() || shown == Shown::No,
             bar,
-            shown: Duration::ZERO,
+            drawn: Duration::ZERO,
+            logged: Duration::ZERO,
             base: Sample::default(),
             next_base: Sample::default(),
             first: Sample::default(),
@@ -66,9 +83,9 @@ impl Progress {
     }
 
     /// For a run that goes on with these totals; they count in no rate.
-    pub fn resume(end_time: f64, time: f64, steps: u64, particle_steps: u64) -> Progress {
+    pub fn resume(self, time: f64, steps: u64, particle_steps: u64) -> Progress {
         let first = Sample { elapsed: Duration::ZERO, time, steps, particle_steps };
-        let mut progress = Progress::new(end_time);
+        let mut progress = self;
         (progress.base, progress.next_base, progress.first) = (first, first, first);
         progress
     }
@@ -115,18 +132,20 @@ impl Progress {
     }
 
     fn show(&mut self, now: Sample) {
-        let interval = if self.bar.is_some() { BAR_INTERVAL } else { LOG_INTERVAL };
-        if now.elapsed.saturating_sub(self.shown) < interval {
+        if let Some(bar) = self.bar.as_ref().filter(|_| now.elapsed.saturating_sub(self.drawn) >= BAR_INTERVAL) {
+            self.drawn = now.elapsed;
+            bar.set_position((BAR_LENGTH as f64 * self.fraction(now.time)) as u64);
+            bar.set_message(self.message(&now));
+        }
+        if now.elapsed.saturating_sub(self.logged) < LOG_INTERVAL {
             return;
         }
-        self.shown = now.elapsed;
-        let message = self.message(&now);
-        match &self.bar {
-            Some(bar) => {
-                bar.set_position((BAR_LENGTH as f64 * self.fraction(now.time)) as u64);
-                bar.set_message(message);
-            }
-            None => tracing::info!("{:.0} %: {message}", 100.0 * self.fraction(now.time)),
+        self.logged = now.elapsed;
+        let line = format!("{:.0} %: {}", 100.0 * self.fraction(now.time), self.message(&now));
+        if self.hidden {
+            tracing::info!(target: LOG_ONLY, "{line}");
+        } else {
+            tracing::info!("{line}");
         }
         if now.elapsed.saturating_sub(self.next_base.elapsed) >= LOG_INTERVAL {
             self.base = self.next_base;
@@ -140,19 +159,29 @@ impl Progress {
 
     fn message(&self, now: &Sample) -> String {
         let rates = now.rates_since(&self.base);
-        let left = if rates.time > 0.0 {
-            duration((self.end_time - now.time).max(0.0) / rates.time)
+        let behind = now.time - self.first.time;
+        let left = if rates.time > 0.0 && behind >= LEAST_SHOWN * (self.end_time - self.first.time) {
+            format!(", {} left", duration((self.end_time - now.time).max(0.0) / rates.time))
         } else {
-            "unknown time".to_owned()
+            String::new()
         };
         format!(
-            "{} of {}, {}steps/s, {}particle-steps/s, {left} left",
+            "{} of {}{left}, {}steps/s, {}particle-steps/s",
             milliseconds(now.time),
             milliseconds(self.end_time),
             metric(rates.steps),
             metric(rates.particle_steps),
         )
     }
+}
+
+/// As wide as its terminal at most: what does not fit is left out.
+fn bar(colour: bool) -> ProgressBar {
+    let blocks = if colour { "{bar:20.cyan/blue}" } else { "{bar:20}" };
+    // The template is a constant; the default style stands in if it did not parse.
+    let style = ProgressStyle::with_template(&format!("{blocks} {{percent:>3}} % {{wide_msg}}"))
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(BAR_LENGTH).with_style(style)
 }
 
 impl Drop for Progress {
@@ -222,8 +251,8 @@ mod tests {
         let captured = Captured::default();
         let writer = captured.clone();
         let subscriber = tracing_subscriber::fmt().with_writer(move || writer.clone()).with_ansi(false).finish();
-        let mut progress = Progress::new(0.1);
-        progress.bar = None;
+        let mut progress = Progress::new(0.1, Shown::Yes { colour: false });
+        (progress.bar, progress.hidden) = (None, false);
         tracing::subscriber::with_default(subscriber, || samples.for_each(|now| progress.show(now)));
         String::from_utf8(captured.0.lock().unwrap().clone()).unwrap()
     }
@@ -245,7 +274,7 @@ mod tests {
     #[test]
     fn a_line_gives_simulated_time_rates_and_time_left() {
         let log = logged((0..=6).map(second));
-        let expected = "5 %: 5.00 ms of 100.00 ms, 100 steps/s, 2.00 M particle-steps/s, 1 min 35 s left";
+        let expected = "5 %: 5.00 ms of 100.00 ms, 1 min 35 s left, 100 steps/s, 2.00 M particle-steps/s";
         assert!(log.contains(expected), "{log}");
     }
 
@@ -258,14 +287,23 @@ mod tests {
         assert!(last.contains("13 min 00 s left"), "{log}");
     }
 
+    /// The first steps say little about the last: they are compiled, or come before the gas.
+    #[test]
+    fn when_the_end_comes_is_not_said_before_two_percent() {
+        let long = |k: u64| Sample { time: 1.9e-3 * k as f64 / 6.0, ..second(k) };
+        assert!(!logged((0..=6).map(long)).contains("left"));
+        let later = |k: u64| Sample { time: 3e-3 * k as f64 / 6.0, ..second(k) };
+        assert!(logged((0..=6).map(later)).contains("left"));
+    }
+
     /// What an earlier process did counts in no rate; counted, it would make the run look fast.
     #[test]
     fn a_resumed_run_starts_with_its_own_rates() {
-        let resumed = Progress::resume(0.1, 0.05, 5000, 100_000_000);
+        let resumed = Progress::new(0.1, Shown::No).resume(0.05, 5000, 100_000_000);
         let after = Sample { elapsed: Duration::from_secs(5), time: 0.055, steps: 5500, particle_steps: 110_000_000 };
-        let expected = "55.00 ms of 100.00 ms, 100 steps/s, 2.00 M particle-steps/s, 45.0 s left";
+        let expected = "55.00 ms of 100.00 ms, 45.0 s left, 100 steps/s, 2.00 M particle-steps/s";
         assert_eq!(resumed.message(&after), expected);
-        assert_ne!(Progress::new(0.1).message(&after), expected);
+        assert_ne!(Progress::new(0.1, Shown::No).message(&after), expected);
     }
 
     #[test]
@@ -277,8 +315,8 @@ mod tests {
 
     #[test]
     fn a_run_of_no_length_or_without_steps_still_shows() {
-        let progress = Progress::new(0.0);
+        let progress = Progress::new(0.0, Shown::No);
         assert_eq!(progress.fraction(0.0), 1.0);
-        assert!(progress.message(&Sample::default()).contains("unknown time left"));
+        assert!(progress.message(&Sample::default()).starts_with("0.00 ms of 0.00 ms, 0"));
     }
 }

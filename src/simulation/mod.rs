@@ -44,7 +44,7 @@ pub use coats::{Coat, Coats, VentPlace};
 pub use conditions::{Conditions, ConditionsState, Seen, Wanted};
 pub use exchange::Traffic;
 pub use guards::{GuardState, Told};
-pub use interrupt::{Interrupt, Request};
+pub use interrupt::{Interrupt, Request, signal_name};
 pub use ladder::{Demand, Ladder, LadderError, LadderState};
 pub use model::{Model, ModelError, chamber_of};
 pub use observer::{Continued, Moment, Observer, Options, Outcome};

@@ -156,4 +156,6 @@ pub struct Outcome {
     pub rebalances: usize,
     /// Wall time of the steps, s: without the set-up, and without the account at the end.
     pub stepping_seconds: f64,
+    /// The signal that stopped it, the same on all ranks.
+    pub signal: Option<u8>,
 }

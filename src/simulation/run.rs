@@ -97,6 +97,8 @@ pub struct Simulation<'a> {
     wish: Request,
     request: Request,
     stopping: bool,
+    /// The signal for which it stops.
+    signal: Option<u8>,
     /// The run goes on from a state; its start has been accounted for.
     resumed: bool,
     options: Options<'a>,
@@ -195,6 +197,7 @@ impl<'a> Simulation<'a> {
             wish: Request::None,
             request: Request::None,
             stopping: false,
+            signal: None,
             resumed: false,
             options,
             model,
@@ -374,13 +377,16 @@ impl<'a> Simulation<'a> {
             repeated: self.repeated,
             step_range: self.account.state().step_range,
             stepping_seconds,
+            signal: self.signal,
         })
     }
 
     /// A checkpoint, with nothing under way.
     fn checkpoint(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
         self.read_all(observer)?;
-        self.stopping = self.request == Request::CheckpointAndStop;
+        if let Request::CheckpointAndStop(signal) = self.request {
+            (self.stopping, self.signal) = (true, signal);
+        }
         (self.wish, self.request) = (Request::None, Request::None);
         let own = self.subdomain.particles(self.device)?;
         let entered = self.inflow.entered_by_gas().iter().sum::<u64>();

@@ -154,7 +154,7 @@ impl Schedule {
         if let Some(WallTime(limit)) = self.stop_after {
             let writing = self.costliest.map_or(limit / UNMEASURED, |cost| 2 * cost);
             if elapsed.saturating_add(GAPS * self.longest_gap).saturating_add(writing) >= limit {
-                return Request::CheckpointAndStop;
+                return Request::CheckpointAndStop(None);
             }
         }
         let (at, last_step) = self.last;
@@ -269,17 +269,17 @@ mod tests {
         let limited = |elapsed| Schedule::new(None, "1000s".parse().ok(), elapsed, 0);
         let mut schedule = limited(Duration::ZERO);
         assert_eq!(schedule.due(100 * SECOND, 1), Request::None);
-        assert_eq!(schedule.due(400 * SECOND, 2), Request::CheckpointAndStop, "gaps of 300 s may come again");
+        assert_eq!(schedule.due(400 * SECOND, 2), Request::CheckpointAndStop(None), "gaps of 300 s may come again");
         // A long set-up is no gap between questions.
         assert_eq!(limited(600 * SECOND).due(601 * SECOND, 2), Request::None);
         let mut schedule = limited(Duration::ZERO);
         for second in 1..977 {
             assert_eq!(schedule.due(second * SECOND, 1), Request::None, "{second}");
         }
-        assert_eq!(schedule.due(977 * SECOND, 2), Request::CheckpointAndStop);
+        assert_eq!(schedule.due(977 * SECOND, 2), Request::CheckpointAndStop(None));
         schedule.written(900 * SECOND, 1, 40 * SECOND);
         assert_eq!(schedule.due(901 * SECOND, 2), Request::None);
-        assert_eq!(schedule.due(917 * SECOND, 2), Request::CheckpointAndStop);
+        assert_eq!(schedule.due(917 * SECOND, 2), Request::CheckpointAndStop(None));
         // Without a limit it never stops.
         assert_eq!(Schedule::new(None, None, Duration::ZERO, 0).due(u32::MAX * SECOND, 1), Request::None);
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::output::{
-    AUDIT_FILE, CHECKPOINT_FOLDER, HISTORY_FILE, OutputError, OutputFolder, RankTiming, TIMING_FILE, Timing,
+    AUDIT_FILE, CHECKPOINT_FOLDER, HISTORY_FILE, OutputError, RankTiming, TIMING_FILE, Timing, check_marker,
 };
 
 use super::emulation::median;
@@ -91,7 +91,8 @@ impl Program {
         };
         let mut done = 0;
         match &case.from {
-            None => command.arg("run").arg(&case.scene).arg("--out").arg(folder),
+            // Of an earlier sweep that failed.
+            None => command.arg("run").arg(&case.scene).arg("--force").arg("--out").arg(folder),
             Some(start) => {
                 done = start.step;
                 command.arg("resume").arg(folder)
@@ -112,9 +113,9 @@ impl Start {
     /// Copies the run as it was at this checkpoint, that it can go on in `to`: not what it wrote at its end, nor later checkpoints,
     /// and nothing of an earlier sweep that failed stays there.
     fn copy(&self, to: &Path) -> Result<(), OutputError> {
-        OutputFolder::open(&self.folder)?;
+        check_marker(&self.folder)?;
         if to.exists() {
-            OutputFolder::open(to)?;
+            check_marker(to)?;
             std::fs::remove_dir_all(to).map_err(io("remove", to))?;
         }
         let after = [CHECKPOINT_FOLDER, AUDIT_FILE, TIMING_FILE];

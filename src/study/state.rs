@@ -31,9 +31,10 @@ impl Moment {
         let checkpoint = Checkpoint::open(&path)?;
         let folder = run_folder(from, &path);
         let name = checkpoint.path().join("scene.toml").display().to_string();
-        let scene = parse(&checkpoint.scene()?, &name, Path::new(""))?;
+        let scene = parse(&checkpoint.scene_here()?, &name, Path::new(""))?;
         let unsound = |error: ModelError| StudyError::Model { from: from.to_path_buf(), error: Box::new(error) };
-        let model = Model::new(scene).map_err(unsound)?;
+        let mut model = Model::new(scene).map_err(unsound)?;
+        checkpoint.name_meshes(&mut model.scene);
         checkpoint.check_plan(&model.plan.to_toml().map_err(StudyError::PlanToml)?)?;
         let (_, run) = checkpoint.state()?;
         let particles = particles_of(&checkpoint)?;

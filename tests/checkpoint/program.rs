@@ -211,7 +211,7 @@ impl Results {
             for path in fs::read_dir(&inside).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file())
             {
                 let name = path.strip_prefix(folder).unwrap().to_path_buf();
-                if !["environment.json", "balance.csv", "timing.json", "subdomains.svg"]
+                if !["environment.json", "balance.csv", "timing.json", "subdomains.svg", "log.txt"]
                     .contains(&name.to_str().unwrap())
                 {
                     let bytes = fs::read(&path).unwrap();

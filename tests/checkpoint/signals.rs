@@ -1,5 +1,5 @@
-//! Law: a run that is asked for a checkpoint writes one and goes on; one that is asked to stop writes one, ends with exit
-//! code 0, says how to go on, and loses nothing.
+//! Law: a run that is asked for a checkpoint writes one and goes on; one that a signal stops writes one, ends with 128 and the number
+//! of the signal, says how to go on, and loses nothing; one that its wall time stops ends with 0.
 
 use std::fs;
 
@@ -12,8 +12,8 @@ fn rows(case: &Case) -> usize {
     fs::read_to_string(case.out("out/history.csv")).map_or(0, |text| text.lines().count().saturating_sub(1))
 }
 
-/// SIGUSR1 through `checkpoint`, then SIGTERM through `stop`; and on to the end.
-fn asked(program: &Program, next: &Program, stop: impl FnOnce(&super::program::Running)) {
+/// SIGUSR1, then another signal through `stop`, by which the run ends with `code`; and on to the end.
+fn asked(program: &Program, next: &Program, code: i32, stop: impl FnOnce(&super::program::Running)) {
     let case = Case::new(&tank(0.012));
     let mut running = case.run(program, "out", &[]);
     let long = "the run must be longer for this test";
@@ -26,8 +26,8 @@ fn asked(program: &Program, next: &Program, stop: impl FnOnce(&super::program::R
     let before = rows(&case);
     assert!(running.until(|| rows(&case) > before), "{long}");
     stop(&running);
-    let (code, stdout, stderr) = running.end();
-    assert_eq!(code, Some(0), "{stdout}{stderr}");
+    let (ended, stdout, stderr) = running.end();
+    assert_eq!(ended, Some(code), "{stdout}{stderr}");
     let hint = format!("corpuscle resume {}", case.out("out").display());
     assert!(stdout.contains("stopped as asked") && stdout.contains(&hint), "{stdout}");
     assert!(stderr.contains("INFO checkpoint "), "{stderr}");
@@ -38,19 +38,25 @@ fn asked(program: &Program, next: &Program, stop: impl FnOnce(&super::program::R
 
 #[test]
 fn a_process_goes_on_after_sigusr1_and_stops_after_sigterm() {
-    asked(&Program::sharing(2), &Program::alone(), |running| running.signal("TERM"));
+    asked(&Program::sharing(2), &Program::alone(), 143, |running| running.signal("TERM"));
 }
 
 #[test]
 fn a_process_stops_after_ctrl_c() {
-    asked(&Program::alone(), &Program::sharing(2), |running| running.signal("INT"));
+    asked(&Program::alone(), &Program::sharing(2), 130, |running| running.signal("INT"));
+}
+
+/// Its terminal is gone.
+#[test]
+fn a_process_stops_when_it_is_hung_up() {
+    asked(&Program::alone(), &Program::alone(), 129, |running| running.signal("HUP"));
 }
 
 /// The launcher hands SIGUSR1 on to all ranks; SIGTERM may reach any one of them.
 #[cfg(feature = "mpi")]
 #[test]
 fn ranks_go_on_after_sigusr1_and_stop_after_sigterm_to_one_of_them() {
-    asked(&Program::mpi(2), &Program::alone(), |running| {
+    asked(&Program::mpi(2), &Program::alone(), 143, |running| {
         let ranks = running.processes();
         assert_eq!(ranks.len(), 2);
         signal("TERM", ranks[1]);

@@ -105,6 +105,22 @@ fn every_verb_has_its_help() {
     }
 }
 
+/// Help by its other name, colours where they are asked for, and which build it is.
+#[test]
+fn help_colours_and_version_are_as_asked() {
+    assert_eq!(printed(&["help", "check"]), printed(&["check", "--help"]));
+    let bad = ["check", "tests/robustness/bad/empty.toml"];
+    for (choice, coloured) in [("always", true), ("never", false), ("auto", false)] {
+        for (arguments, option) in [(&bad[..], format!("--color={choice}")), (&["walk"], format!("--color={choice}"))] {
+            let (code, _, err) = outcome(&[arguments, &[&option]].concat());
+            assert!(code == 2 && err.contains('\u{1b}') == coloured, "{choice}: {err}");
+        }
+    }
+    assert_eq!(outcome(&["--color", "sometimes", "schema"]).0, 2);
+    let version = printed(&["--version"]);
+    assert!(version.starts_with(concat!("corpuscle ", env!("CARGO_PKG_VERSION"))) && version.lines().count() == 1);
+}
+
 #[test]
 fn every_scene_of_the_package_is_sound() {
     let names = ["box", "corner", "effusion", "tank", "vent"].map(|name| format!("scenes/{name}.toml"));
@@ -213,7 +229,7 @@ fn an_unknown_device_is_3_and_touches_no_earlier_results() {
     let folder = tempfile::tempdir().unwrap();
     finished_run(folder.path(), &[]);
     let before = names_below(folder.path());
-    let (code, _, err) = short_run(folder.path(), &["--gpu", "no such"]);
+    let (code, _, err) = short_run(folder.path(), &["--force", "--gpu", "no such"]);
     assert!(code == 3 && err.contains("no adapter `no such`"), "{err}");
     assert_eq!(names_below(folder.path()), before);
 }

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use super::{finished_run, names_below, outcome, printed, scene_with, short_run};
 
-const FILES: [&str; 11] = [
+const FILES: [&str; 12] = [
     ".corpuscle-run",
     "environment.json",
     "history.csv",
+    "log.txt",
     "plan.toml",
     "pressure.svg",
     "scene.toml",
@@ -30,7 +31,7 @@ fn a_run_leaves_exactly_its_files_and_its_path_as_the_last_line() {
     let out = folder.path().join("deep/results");
     let text = finished_run(&out, &["--seed", "3"]);
     assert_eq!(text.lines().last(), out.to_str());
-    for part in ["adapter 0: ", "Audit ", "particles", "Phase ", "advect", "64 steps", "wall time "] {
+    for part in ["adapter 0: ", "Audit ", "particles", "Phase, sampled", "advect", "64 steps", "wall time "] {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert_eq!(names_below(&out), FILES);
@@ -64,7 +65,7 @@ fn a_run_leaves_exactly_its_files_and_its_path_as_the_last_line() {
 fn results_are_replaced_and_what_is_no_result_is_not() {
     let folder = tempfile::tempdir().unwrap();
     finished_run(folder.path(), &["--quiet"]);
-    let text = finished_run(folder.path(), &["--quiet"]);
+    let text = finished_run(folder.path(), &["--quiet", "--force"]);
     assert_eq!(text.lines().collect::<Vec<_>>(), [folder.path().to_str().unwrap()]);
     assert_eq!(names_below(folder.path()), FILES);
 
@@ -153,6 +154,7 @@ fn a_control_volume_leaves_a_history_without_a_device() {
         "audit.txt",
         "environment.json",
         "history.csv",
+        "log.txt",
         "plan.toml",
         "pressure.svg",
         "scene.toml",

@@ -64,7 +64,7 @@ fn a_run_that_warns_is_4_with_strict() {
     assert_eq!((two.0, &two.3), (0, &whole));
     assert!(two.1.contains(told[0]), "{} is not in {}", told[0], two.1);
     for more in [&["--strict"][..], &["--strict", "--subdomains", "2"]] {
-        let (code, _, err, part) = run("strict", more);
+        let (code, _, err, part) = run("strict", &[more, &["--force"]].concat());
         assert!(code == 4 && err.contains("--strict, and the run warns at "), "{code} {err}");
         assert!(whole.starts_with(&part) && part.lines().count() == 2 && whole.lines().count() > 2, "{part}\n{whole}");
     }

@@ -21,7 +21,7 @@ pub struct SweepArguments {
     /// The folder for the results [default: results/<name of the scene file>-sweep]
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Write into a folder that holds more than an earlier sweep's results
+    /// Also replace a sweep of another scene or a run, and write beside what no sweep wrote
     #[arg(long)]
     pub force: bool,
     /// The device, by its index or PCI id in `corpuscle adapters` [default: the first]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::gpu::{Device, adapters};
+use crate::output::host_name;
 use crate::ranks::{self, Communicator, choose_device};
 use crate::scene::to_toml;
 use crate::simulation::Model;
@@ -61,9 +62,9 @@ pub fn map(device: &Device, comm: &dyn Communicator) -> Result<String, CliError>
         return Ok(String::new());
     }
     let adapter = device.adapter();
-    let place = format!("{}, rank {} of {} there", host(), comm.node_rank(), comm.node_size());
+    let place = format!("{}, rank {} of {} there", host_name(), comm.node_rank(), comm.node_size());
     let taken = format!("adapter {} {} {}", adapter.index, adapter.info.name, adapter.info.device_pci_bus_id);
-    let own = [host(), place, taken].join("\n");
+    let own = [host_name(), place, taken].join("\n");
     let (mut text, mut served) = (String::new(), BTreeMap::<(String, String), usize>::new());
     for (rank, line) in comm.gather(own.into_bytes())?.unwrap_or_default().into_iter().enumerate() {
         let line = String::from_utf8_lossy(&line).into_owned();
@@ -77,9 +78,4 @@ pub fn map(device: &Device, comm: &dyn Communicator) -> Result<String, CliError>
         tracing::warn!("{ranks} ranks of {host} share {taken}");
     }
     Ok(text)
-}
-
-fn host() -> String {
-    std::fs::read_to_string("/proc/sys/kernel/hostname")
-        .map_or_else(|_| "this machine".into(), |name| name.trim().into())
 }

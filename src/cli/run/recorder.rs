@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::output::{
     BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
-    SUBDOMAIN_CHART_FILE, SnapshotWriter, over_mean, subdomain_chart,
+    SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, over_mean, subdomain_chart,
 };
 use crate::simulation::{
     BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, Told, VentWatch, imbalance,
@@ -43,7 +43,7 @@ const DRAWN: usize = 4000;
 
 impl<'a> Recorder<'a> {
     /// Starts the files in the existing folder `dir`; the walls are written at once.
-    pub fn new(model: &'a Model, reference: Reference, dir: &Path, shown: bool) -> Result<Recorder<'a>, OutputError> {
+    pub fn new(model: &'a Model, reference: Reference, dir: &Path, shown: Shown) -> Result<Recorder<'a>, OutputError> {
         let history = HistoryWriter::create(dir, &columns(&model.scene))?;
         let snapshots = match model.scene.output.snapshots {
             0 => None,
@@ -53,7 +53,7 @@ impl<'a> Recorder<'a> {
                 Some(writer)
             }
         };
-        let progress = shown.then(|| Progress::new(model.plan.end_time));
+        let progress = Some(Progress::new(model.plan.end_time, shown));
         Ok(Recorder {
             model,
             reference,
@@ -90,7 +90,7 @@ impl<'a> Recorder<'a> {
         model: &'a Model,
         reference: Reference,
         dir: &Path,
-        shown: bool,
+        shown: Shown,
         state: &OutputState,
         totals: Totals,
     ) -> Result<Recorder<'a>, OutputError> {
@@ -104,7 +104,7 @@ impl<'a> Recorder<'a> {
             }
         };
         let Totals { time, steps, particle_steps } = totals;
-        let progress = shown.then(|| Progress::resume(model.plan.end_time, time, steps, particle_steps));
+        let progress = Some(Progress::new(model.plan.end_time, shown).resume(time, steps, particle_steps));
         Ok(Recorder {
             model,
             reference,
@@ -390,12 +390,12 @@ mod tests {
         let model = model();
         let totals = Totals { time: 0.0, steps: 0, particle_steps: 0 };
         let whole = tempfile::tempdir().unwrap();
-        let mut recorder = Recorder::new(&model, Reference::new(&model), whole.path(), false).unwrap();
+        let mut recorder = Recorder::new(&model, Reference::new(&model), whole.path(), Shown::No).unwrap();
         go_on(&mut recorder, 0, 10, &model);
         draw(&recorder, whole.path(), &model);
         for (cut, lost) in [(0, 4), (3, 0), (4, 3), (7, 1), (10, 0)] {
             let dir = tempfile::tempdir().unwrap();
-            let mut recorder = Recorder::new(&model, Reference::new(&model), dir.path(), false).unwrap();
+            let mut recorder = Recorder::new(&model, Reference::new(&model), dir.path(), Shown::No).unwrap();
             go_on(&mut recorder, 0, cut, &model);
             let state = recorder.state().unwrap();
             let bytes = postcard::to_stdvec(&state).unwrap();
@@ -405,7 +405,7 @@ mod tests {
             draw(&recorder, dir.path(), &model);
             drop(recorder);
             let reference = Reference::new(&model);
-            let mut resumed = Recorder::resume(&model, reference, dir.path(), false, &state, totals).unwrap();
+            let mut resumed = Recorder::resume(&model, reference, dir.path(), Shown::No, &state, totals).unwrap();
             go_on(&mut resumed, cut, 10, &model);
             draw(&resumed, dir.path(), &model);
             assert!(files(dir.path()) == files(whole.path()), "cut {cut}, lost {lost}");

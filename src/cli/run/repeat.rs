@@ -4,12 +4,14 @@ use std::time::Instant;
 
 use crate::cli::CliError;
 use crate::cli::settings::{RunSettings, model_of};
-use crate::cli::terminal::say;
-use crate::output::{HISTORY_FILE, HISTORY_MEAN_FILE, History, OutputFolder, SCENE_FILE, history_spread, seed_folder};
+use crate::cli::terminal::tell;
+use crate::output::{
+    Content, HISTORY_FILE, HISTORY_MEAN_FILE, History, SCENE_FILE, has_ended, history_spread, seed_folder,
+};
 use crate::ranks::Communicator;
 use crate::scene::{Method, to_toml};
 
-use super::{devices, launch};
+use super::{Ending, claim, devices, launch};
 
 /// Seeds are below this.
 const SEEDS: u64 = 1 << 56;
@@ -21,8 +23,8 @@ pub fn repeat(
     comm: &dyn Communicator,
     quiet: bool,
     started: Instant,
-) -> Result<(), CliError> {
-    let RunSettings { scene: file, model, folder: path, force, execution } = settings;
+) -> Result<Ending, CliError> {
+    let RunSettings { scene: file, model, folder: path, execution, .. } = &settings;
     let first = model.scene.seed;
     if model.plan.method == Method::ControlVolume {
         return Err(CliError::NothingToRepeat);
@@ -37,7 +39,8 @@ pub fn repeat(
     drop(devices::open(execution.gpu.as_deref(), comm)?);
     let seeds: Vec<u64> = (0..u64::from(times)).map(|k| first + k).collect();
     let folder = if comm.rank() == 0 {
-        let folder = OutputFolder::create(&path, force)?;
+        let folder = claim(&settings, Content::Seeds)?;
+        folder.clear()?;
         folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
         Some(folder)
     } else {
@@ -58,28 +61,29 @@ pub fn repeat(
             execution: execution.clone(),
         };
         let since = if index == 0 { started } else { Instant::now() };
-        launch(&of_seed, None, comm, quiet, since)?;
+        let ending = launch(&of_seed, None, comm, quiet, since)?;
         // A signal may have stopped it at a checkpoint: then it was meant for all of them.
-        let ended = comm.rank() == 0 && OutputFolder::open(&of_seed.folder)?.has_ended();
+        let ended = comm.rank() == 0 && has_ended(&of_seed.folder);
         if comm.broadcast(vec![u8::from(ended)])? != [1] {
             if comm.rank() == 0 {
                 tracing::warn!(
                     "seed {seed} was stopped before its end: the seeds after it are not run, there is no mean"
                 );
             }
-            return Ok(());
+            return Ok(ending);
         }
     }
-    let Some(folder) = folder else { return Ok(()) };
+    let Some(folder) = folder else { return Ok(Ending::Done) };
     let names: Vec<String> = seeds.iter().map(|&seed| seed_folder(seed)).collect();
     let histories: Vec<History> =
         names.iter().map(|name| History::read(&path.join(name).join(HISTORY_FILE))).collect::<Result<_, _>>()?;
     history_spread(&histories, &names)?.write_csv(&folder.path().join(HISTORY_MEAN_FILE))?;
     if !quiet {
-        say(&format!(
+        tell(&format!(
             "{times} runs, seeds {first} to {}: mean and spread in {HISTORY_MEAN_FILE}\n",
             first + u64::from(times) - 1
-        ))?;
+        ));
     }
-    say(&format!("{}\n", folder.path().display()))
+    tell(&format!("{}\n", folder.path().display()));
+    Ok(Ending::Done)
 }

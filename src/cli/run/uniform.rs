@@ -4,8 +4,10 @@ use std::time::Instant;
 
 use crate::cli::CliError;
 use crate::cli::settings::RunSettings;
-use crate::cli::terminal::say;
-use crate::output::{AdapterRecord, Environment, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, Timing};
+use crate::cli::terminal::{self, tell};
+use crate::output::{
+    AdapterRecord, Environment, LOG_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, Timing, meshes_of,
+};
 use crate::scene::to_toml;
 use crate::simulation::{audit_limits, run_uniform};
 
@@ -14,8 +16,8 @@ use super::command;
 use super::recorder::Recorder;
 use super::reference::Reference;
 
-pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), CliError> {
-    let RunSettings { model, folder, force, execution, .. } = settings;
+pub fn run(settings: &RunSettings, folder: &OutputFolder, quiet: bool, started: Instant) -> Result<(), CliError> {
+    let RunSettings { model, execution, .. } = settings;
     let checkpoints = execution.checkpoints;
     if execution.stop_after_steps.is_some() || checkpoints.every.is_some() || checkpoints.stop_after.is_some() {
         tracing::warn!("a control volume takes no steps: it is not stopped after some, and writes no checkpoints");
@@ -25,7 +27,11 @@ pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), 
             "a control volume runs on no device and is not shared out: it needs no --gpu, --batch or --subdomains"
         );
     }
-    let folder = OutputFolder::create(folder, *force)?;
+    folder.clear()?;
+    terminal::log_to(&folder.path().join(LOG_FILE));
+    for mesh in meshes_of(&model.scene)? {
+        mesh.keep(&mesh.path, folder)?;
+    }
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
     folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
     let none = AdapterRecord { name: "none: a control volume".to_owned(), ..AdapterRecord::default() };
@@ -44,10 +50,10 @@ pub fn run(settings: &RunSettings, quiet: bool, started: Instant) -> Result<(), 
     let vents = recorder.of_vents();
     folder.end(&format!("{}\n{:.4} ms as a control volume\n{vents}", audit.render(), 1e3 * model.plan.end_time))?;
     if !quiet {
-        say(&format!("{}: control volume\n\n{}\n{vents}", model.scene.title, audit.render()))?;
-        say(&format!("wall time {:.3} s\n", started.elapsed().as_secs_f64()))?;
+        tell(&format!("{}: control volume\n\n{}\n{vents}", model.scene.title, audit.render()));
+        tell(&format!("wall time {:.3} s\n", started.elapsed().as_secs_f64()));
     }
-    say(&format!("{}\n", folder.path().display()))?;
+    tell(&format!("{}\n", folder.path().display()));
     let failures = audit.verdict(&audit_limits(&model.plan));
     if failures.is_empty() { Ok(()) } else { Err(CliError::Audit { failures }) }
 }

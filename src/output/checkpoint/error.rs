@@ -37,12 +37,12 @@ pub enum CheckpointError {
         older: Option<PathBuf>,
     },
     #[error(
-        "the mesh {path} was changed since the run began: it has {found_bytes} bytes with checksum {found_crc32:08x}, \
-         it had {expected_bytes} with {expected_crc32:08x}",
-        path = path.display()
+        "the mesh {path} {found}, and the copy of it {copy} is not there as it was; the run began with {expected}",
+        path = path.display(),
+        copy = copy.display()
     )]
-    #[diagnostic(help("put the file of that run back"))]
-    Mesh { path: PathBuf, found_bytes: u64, found_crc32: u32, expected_bytes: u64, expected_crc32: u32 },
+    #[diagnostic(help("put one of the two back"))]
+    Mesh { path: PathBuf, copy: PathBuf, found: String, expected: String },
     #[error("this program plans the scene otherwise than {version} did: {found:?} where {expected:?} stood")]
     #[diagnostic(help("resume with version {version} of the program"))]
     OtherPlan { version: String, found: String, expected: String },
@@ -61,7 +61,7 @@ fn remedy(older: Option<&Path>) -> String {
 
 impl CheckpointError {
     /// For `map_err`: what was being done to which file.
-    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+    pub(in crate::output) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
         move |source| CheckpointError::Io { action, path: path.to_path_buf(), source }
     }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::CheckpointError;
 use super::{FORMAT, RECORD_BYTES, is_checkpoint_file};
-use crate::output::AdapterRecord;
+use crate::output::{AdapterRecord, MeshRecord};
 
 const FIRST_LINE: &str = "# corpuscle checkpoint, format ";
 const LAST_LINE: &str = "# crc32 of the lines above: ";
@@ -31,7 +31,7 @@ pub struct Manifest {
     pub adapter: Adapter,
     /// All files but the manifest.
     pub file: Vec<FileRecord>,
-    /// The meshes that the scene names; they are not in the checkpoint.
+    /// The meshes that the scene names, in the order of its walls; copies of them are in the run's folder.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mesh: Vec<MeshRecord>,
 }
@@ -53,15 +53,6 @@ pub struct FileRecord {
     pub crc32: u32,
     /// Particles in it; zero in other files.
     pub particles: u64,
-}
-
-/// One file beside the checkpoint.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshRecord {
-    pub path: PathBuf,
-    pub bytes: u64,
-    pub crc32: u32,
 }
 
 impl From<&AdapterRecord> for Adapter {

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `manifest.toml` | versions, moment, adapter, and the length and CRC-32 of every other file; its last line is its own CRC-32 |
-//! | `scene.toml`, `plan.toml` | as at the start of the run: a resume needs nothing else but the meshes that the scene names |
+//! | `scene.toml`, `plan.toml` | as at the start of the run: a resume needs nothing else but the copies of meshes that are in the folder of the run |
 //! | `state.bin` | all that is not particles, postcard in zstd |
 //! | `particles-0000.bin`, ... | records of [`RECORD_BYTES`], one file per rank, in zstd |
 //!
@@ -33,8 +33,9 @@ use super::error::PARTIAL_SUFFIX;
 use super::{HistoryState, SnapshotState};
 
 pub use error::CheckpointError;
-pub use manifest::{Adapter, FileRecord, Manifest, MeshRecord};
+pub use manifest::{Adapter, FileRecord, Manifest};
 pub use origin::Origin;
+pub(super) use origin::length_and_crc;
 pub use read::Checkpoint;
 pub use write::{CheckpointWriter, Moment, forget_after};
 
@@ -82,6 +83,12 @@ fn step_of(name: &str) -> Option<u64> {
 /// Complete, partial or about to be removed.
 pub(super) fn is_checkpoint_folder(name: &str) -> bool {
     step_of(name.trim_end_matches(PARTIAL_SUFFIX).trim_end_matches(REMOVED_SUFFIX)).is_some()
+}
+
+/// Of one that a kill has cut short.
+pub(super) fn is_left_over(name: &str) -> bool {
+    let unfinished = name.ends_with(PARTIAL_SUFFIX) || name.ends_with(REMOVED_SUFFIX);
+    unfinished && is_checkpoint_folder(name)
 }
 
 pub(super) fn is_checkpoint_file(name: &str) -> bool {

@@ -1,12 +1,11 @@
 //! What all checkpoints of a run share: where it came from and what computes it.
 
-use std::fs::File;
 use std::io::Read;
-use std::path::Path;
 
 use super::error::CheckpointError;
-use super::manifest::{Adapter, MeshRecord};
-use crate::scene::{Scene, Shape, to_toml};
+use super::manifest::Adapter;
+use crate::output::meshes::{MeshRecord, meshes_of};
+use crate::scene::{Scene, to_toml};
 
 /// Made once, at the start of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,40 +24,12 @@ impl Origin {
     /// # Errors
     /// If a mesh cannot be read.
     pub fn new(scene: &Scene, plan: String, adapter: Adapter) -> Result<Origin, CheckpointError> {
-        let meshes = scene.walls.iter().filter_map(|wall| match &wall.shape {
-            Shape::Mesh { path, .. } => Some(MeshRecord::of(path)),
-            _ => None,
-        });
-        Ok(Origin { scene: to_toml(scene), plan, meshes: meshes.collect::<Result<_, _>>()?, adapter })
-    }
-}
-
-impl MeshRecord {
-    fn of(path: &Path) -> Result<MeshRecord, CheckpointError> {
-        let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
-        let (bytes, crc32) = length_and_crc(&mut file).map_err(CheckpointError::io("read", path))?;
-        Ok(MeshRecord { path: path.to_path_buf(), bytes, crc32 })
-    }
-
-    /// # Errors
-    /// If the file is not the one of the record.
-    pub(super) fn check(&self) -> Result<(), CheckpointError> {
-        let found = MeshRecord::of(&self.path)?;
-        if found == *self {
-            return Ok(());
-        }
-        Err(CheckpointError::Mesh {
-            path: self.path.clone(),
-            found_bytes: found.bytes,
-            found_crc32: found.crc32,
-            expected_bytes: self.bytes,
-            expected_crc32: self.crc32,
-        })
+        Ok(Origin { scene: to_toml(scene), plan, meshes: meshes_of(scene)?, adapter })
     }
 }
 
 /// Of all that is left in `source`.
-pub(super) fn length_and_crc(source: &mut impl Read) -> std::io::Result<(u64, u32)> {
+pub(in crate::output) fn length_and_crc(source: &mut impl Read) -> std::io::Result<(u64, u32)> {
     let mut crc = crc32fast::Hasher::new();
     let mut chunk = vec![0; 1 << 16];
     let mut bytes = 0;

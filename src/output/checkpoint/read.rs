@@ -11,6 +11,7 @@ use super::error::CheckpointError;
 use super::manifest::{self, Adapter, FileRecord, Manifest};
 use super::origin::length_and_crc;
 use super::{ID_MASK, ID_OFFSET, MANIFEST, OutputState, PLAN, RECORD_BYTES, SCENE, STATE, complete};
+use crate::scene::{Scene, Shape};
 
 /// The state is far smaller: it does not grow with the particles.
 const MOST_STATE_BYTES: u64 = 1 << 30;
@@ -45,7 +46,7 @@ impl Checkpoint {
             older: older_than(path),
         })?;
         // The checkpoint is sound; what it needs beside it may not be.
-        checkpoint.manifest.mesh.iter().try_for_each(manifest::MeshRecord::check)?;
+        checkpoint.meshes()?;
         Ok(checkpoint)
     }
 
@@ -72,6 +73,48 @@ impl Checkpoint {
     /// If the file is not as it was written.
     pub fn scene(&self) -> Result<String, CheckpointError> {
         self.text(SCENE)
+    }
+
+    /// The scene, TOML, with paths of meshes where they are now: the copies in the run's folder, or else the originals. Without
+    /// meshes the same as [`Checkpoint::scene`].
+    ///
+    /// # Errors
+    /// If a file is not as it was written.
+    pub fn scene_here(&self) -> Result<String, CheckpointError> {
+        let text = self.scene()?;
+        let meshes = self.meshes()?;
+        if meshes.is_empty() {
+            return Ok(text);
+        }
+        let content = |problem: String| CheckpointError::Content { path: self.path.join(SCENE), problem };
+        let mut scene: toml::Table = text.parse().map_err(|error: toml::de::Error| content(error.to_string()))?;
+        let walls = scene.get_mut("wall").and_then(toml::Value::as_array_mut);
+        let files = walls.into_iter().flatten().filter_map(|wall| wall.get_mut("file"));
+        for (file, mesh) in files.zip(meshes) {
+            *file = toml::Value::String(mesh.to_string_lossy().into_owned());
+        }
+        toml::to_string(&scene).map_err(|error| content(error.to_string()))
+    }
+
+    /// Gives the meshes of `scene`, read from [`Checkpoint::scene_here`], the paths that the run knows them by.
+    pub fn name_meshes(&self, scene: &mut Scene) {
+        let paths = scene.walls.iter_mut().filter_map(|wall| match &mut wall.shape {
+            Shape::Mesh { path, .. } => Some(path),
+            _ => None,
+        });
+        for (path, record) in paths.zip(&self.manifest.mesh) {
+            path.clone_from(&record.path);
+        }
+    }
+
+    /// Where the meshes are now, in the order of the walls.
+    ///
+    /// # Errors
+    /// If one is nowhere as it was.
+    pub fn meshes(&self) -> Result<Vec<PathBuf>, CheckpointError> {
+        let whole = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());
+        let run = whole.ancestors().nth(2).unwrap_or(&whole);
+        self.manifest.mesh.iter().map(|record| record.find(run)).collect()
     }
 
     /// The plan, TOML.

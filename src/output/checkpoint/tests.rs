@@ -338,10 +338,11 @@ fn where_there_is_none_the_folder_is_named() {
     assert!(error.contains("no complete checkpoint") && error.contains("none"), "{error}");
 }
 
-/// A mesh is not in the checkpoint: it must be the one of the start.
+/// A mesh is not in the checkpoint: it must be the one of the start, where it was or as the copy in the run's folder.
 #[test]
 fn a_changed_mesh_is_refused() {
     let dir = tempfile::tempdir().unwrap();
+    let parent = dir.path().join("run/checkpoints");
     let mesh = dir.path().join("a.stl");
     fs::write(&mesh, "solid a").unwrap();
     let text = include_str!("../../../scenes/box.toml");
@@ -352,16 +353,27 @@ fn a_changed_mesh_is_refused() {
     };
     let origin = scene(&mesh).unwrap();
     assert_eq!(origin.meshes.len(), 1);
-    let writer = CheckpointWriter::new(dir.path(), 1);
+    let writer = CheckpointWriter::new(&parent, 1);
     let files = vec![writer.particles(0, &[]).unwrap()];
     let path = writer.commit(files, &moment(1, 0), &origin, &state(), &output()).unwrap();
-    Checkpoint::open(&path).unwrap();
+    assert_eq!(Checkpoint::open(&path).unwrap().meshes().unwrap(), [mesh.clone()]);
     fs::write(&mesh, "solid b").unwrap();
     let error = refusal(&path);
-    assert!(error.contains("a.stl was changed"), "{error}");
+    assert!(error.contains("a.stl has 7 bytes") && error.contains("the copy of it"), "{error}");
     fs::remove_file(&mesh).unwrap();
-    assert!(refusal(&path).contains("cannot read"));
+    assert!(refusal(&path).contains("a.stl cannot be read"));
     assert!(scene(&mesh).is_err());
+    let copy = origin.meshes[0].copy_in(&dir.path().join("run"));
+    fs::create_dir_all(copy.parent().unwrap()).unwrap();
+    fs::write(&copy, "solid a").unwrap();
+    let checkpoint = Checkpoint::open(&path).unwrap();
+    let text = checkpoint.scene_here().unwrap();
+    assert!(text.contains(copy.to_str().unwrap()) && !text.contains(mesh.to_str().unwrap()), "{text}");
+    let mut here = crate::scene::parse(&text, "scene.toml", Path::new("")).unwrap();
+    checkpoint.name_meshes(&mut here);
+    assert_eq!(crate::scene::to_toml(&here), checkpoint.scene().unwrap());
+    fs::write(&copy, "solid c").unwrap();
+    assert!(refusal(&path).contains("a.stl cannot be read"));
 }
 
 /// Another adapter or version may continue, and says so; another plan may not.

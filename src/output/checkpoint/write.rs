@@ -11,8 +11,8 @@ use super::manifest::{FileRecord, Manifest};
 use super::origin::Origin;
 use super::read::Checkpoint;
 use super::{
-    KEPT, MANIFEST, OutputState, PLAN, RECORD_BYTES, REMOVED_SUFFIX, SCENE, STATE, complete, folder_name,
-    is_checkpoint_folder, particle_file,
+    KEPT, MANIFEST, OutputState, PLAN, RECORD_BYTES, REMOVED_SUFFIX, SCENE, STATE, complete, folder_name, is_left_over,
+    particle_file,
 };
 use crate::output::error::PARTIAL_SUFFIX;
 
@@ -141,8 +141,7 @@ impl CheckpointWriter {
         for entry in fs::read_dir(&self.parent).map_err(CheckpointError::io("list", &self.parent))? {
             let path = entry.map_err(CheckpointError::io("list", &self.parent))?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let left_over = name.ends_with(PARTIAL_SUFFIX) || name.ends_with(REMOVED_SUFFIX);
-            if left_over && is_checkpoint_folder(&name) {
+            if is_left_over(&name) {
                 fs::remove_dir_all(&path).map_err(CheckpointError::io("remove", &path))?;
             }
         }

@@ -1,0 +1,106 @@
+//! The meshes of a run: what they were, and copies of them in its folder, so that it can go on wherever the originals are.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::checkpoint::CheckpointError;
+use super::error::{PARTIAL_SUFFIX, write_atomically};
+use super::{OutputError, OutputFolder};
+use crate::scene::{Scene, Shape};
+
+/// One file that a scene names.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshRecord {
+    pub path: PathBuf,
+    pub bytes: u64,
+    pub crc32: u32,
+}
+
+/// The meshes of a scene, in the order of its walls.
+///
+/// # Errors
+/// If one cannot be read.
+pub fn meshes_of(scene: &Scene) -> Result<Vec<MeshRecord>, CheckpointError> {
+    named(scene).map(|path| MeshRecord::of(path)).collect()
+}
+
+/// Their paths.
+pub fn mesh_paths(scene: &Scene) -> Vec<PathBuf> {
+    named(scene).cloned().collect()
+}
+
+fn named(scene: &Scene) -> impl Iterator<Item = &PathBuf> {
+    scene.walls.iter().filter_map(|wall| match &wall.shape {
+        Shape::Mesh { path, .. } => Some(path),
+        _ => None,
+    })
+}
+
+impl MeshRecord {
+    fn of(path: &Path) -> Result<MeshRecord, CheckpointError> {
+        let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
+        let (bytes, crc32) = super::checkpoint::length_and_crc(&mut file).map_err(CheckpointError::io("read", path))?;
+        Ok(MeshRecord { path: path.to_path_buf(), bytes, crc32 })
+    }
+
+    fn is_of(&self, path: &Path) -> bool {
+        MeshRecord::of(path).is_ok_and(|found| (found.bytes, found.crc32) == (self.bytes, self.crc32))
+    }
+
+    /// Where the copy is in a run's folder. Meshes of one name and different content have different copies.
+    pub fn copy_in(&self, folder: &Path) -> PathBuf {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        folder.join(super::folder::MESH_FOLDER).join(format!("{:08x}-{name}", self.crc32))
+    }
+
+    /// The file with this content: the copy in the folder `run`, or else the original.
+    ///
+    /// # Errors
+    /// If neither is there as it was.
+    pub fn find(&self, run: &Path) -> Result<PathBuf, CheckpointError> {
+        let copy = self.copy_in(run);
+        let found = [copy.clone(), self.path.clone()].into_iter().find(|path| self.is_of(path));
+        found.ok_or_else(|| {
+            let there = MeshRecord::of(&self.path).map(|found| (found.bytes, found.crc32));
+            CheckpointError::Mesh {
+                path: self.path.clone(),
+                found: there.map_or_else(
+                    |_| "cannot be read".to_owned(),
+                    |(bytes, crc32)| format!("has {bytes} bytes with checksum {crc32:08x}"),
+                ),
+                expected: format!("{} bytes with checksum {:08x}", self.bytes, self.crc32),
+                copy,
+            }
+        })
+    }
+
+    /// Copies `source`, which has this content, into the folder of a run.
+    ///
+    /// # Errors
+    /// If the system refuses, or the file was changed in between.
+    pub fn keep(&self, source: &Path, folder: &OutputFolder) -> Result<(), CheckpointError> {
+        let copy = self.copy_in(folder.path());
+        if self.is_of(&copy) {
+            return Ok(());
+        }
+        let parent = copy.parent().unwrap_or(folder.path());
+        fs::create_dir_all(parent).map_err(CheckpointError::io("create", parent))?;
+        let mut file = File::open(source).map_err(CheckpointError::io("read", source))?;
+        let copied = write_atomically(&copy, |out| std::io::copy(&mut file, out).map(|_| ()));
+        copied.map_err(|error| match error {
+            OutputError::Io { action, path, source } => CheckpointError::Io { action, path, source },
+            other => CheckpointError::Content { path: copy.clone(), problem: other.to_string() },
+        })?;
+        self.find(folder.path()).map(|_| ())
+    }
+}
+
+/// Whether a file of [`super::folder::MESH_FOLDER`] is a copy that a run has made, whole or not.
+pub(super) fn is_mesh_copy(name: &str) -> bool {
+    let name = name.trim_end_matches(PARTIAL_SUFFIX);
+    let hexadecimal = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    name.split_once('-').is_some_and(|(crc, rest)| crc.len() == 8 && hexadecimal(crc) && !rest.is_empty())
+}
