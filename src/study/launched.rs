@@ -338,7 +338,7 @@ mod tests {
             let words = std::iter::once(command.get_program()).chain(command.get_args());
             words.map(|word| word.to_str().unwrap().to_owned()).collect::<Vec<_>>().join(" ")
         };
-        let run = "run s.toml --out f --balance dynamic --halo-rounds 2 --quiet --steps 9";
+        let run = "run s.toml --force --out f --balance dynamic --halo-rounds 2 --quiet --steps 9";
         assert_eq!(words(&[]), format!("/p {run} --subdomains 4"));
         assert_eq!(words(&["mpirun", "--bind-to", "none"]), format!("mpirun --bind-to none -n 4 /p {run}"));
     }
