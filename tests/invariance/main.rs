@@ -10,6 +10,7 @@ mod alone;
 mod among;
 mod bits;
 mod faults;
+mod hashes;
 mod orders;
 mod ranks;
 mod scenes;
