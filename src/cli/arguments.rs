@@ -1,5 +1,6 @@
 //! The command line as typed. Help, completions and man pages all come from these types.
 
+mod counts;
 mod studies;
 
 use std::path::PathBuf;
@@ -11,6 +12,7 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum, ValueHin
 use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY};
 use crate::simulation::{CheckpointEvery, WallTime};
 
+pub use counts::count;
 pub use studies::{
     BenchArguments, EmulationArguments, ParetoArguments, StabilityArguments, SweepArguments, VerifyArguments,
 };
@@ -137,10 +139,10 @@ pub struct SceneArguments {
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
     /// Particles at the end of the run, initial and injected together
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..(1 << 28)))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
     pub particles: Option<u64>,
     /// Another seed is another sample of the same gas
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..(1 << 56)))]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count::<u64>(0..=(1 << 56) - 1))]
     pub seed: Option<u64>,
 }
 
@@ -149,16 +151,16 @@ pub struct SceneArguments {
 #[command(next_help_heading = "What the plan shall choose by")]
 pub struct WishArguments {
     /// Largest predicted error of a pressure, relative (0.02): the plan chooses the cheapest run that reaches it
-    #[arg(long, value_name = "ERROR", value_parser = accuracy)]
+    #[arg(long, value_name = "ERROR", allow_negative_numbers = true, value_parser = accuracy)]
     pub accuracy: Option<f64>,
     /// Device time that the run may take (90s, 10m, 2h): the plan chooses the most accurate run, if no accuracy is wished
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, allow_negative_numbers = true, value_name = "TIME")]
     pub time_budget: Option<WallTime>,
     /// The most particles that the plan may choose
-    #[arg(long, value_name = "N", conflicts_with = "particles", value_parser = clap::value_parser!(u64).range(1..(1 << 28)))]
+    #[arg(long, value_name = "N", conflicts_with = "particles", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
     pub particle_budget: Option<u64>,
     /// Million particle-steps per second of the device, for the predicted time [default: 3, lavapipe on two cores]
-    #[arg(long, value_name = "MILLIONS", value_parser = rate)]
+    #[arg(long, value_name = "MILLIONS", allow_negative_numbers = true, value_parser = rate)]
     pub device_rate: Option<f64>,
 }
 
@@ -189,7 +191,7 @@ pub struct RunArguments {
     pub force: bool,
     /// Run it with N seeds, the scene's and the N - 1 after it, each in a folder of its own; mean and spread of the
     /// histories in history_mean.csv
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with_all = ["steps", "checkpoint_every", "stop_after"])]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u32>(2..=1000), conflicts_with_all = ["steps", "checkpoint_every", "stop_after"])]
     pub repeat: Option<u32>,
     // Headings hold for all that follows: what has one goes last.
     #[command(flatten)]
@@ -215,19 +217,19 @@ pub struct ExecutionArguments {
     #[arg(long, value_name = "INDEX|PCI")]
     pub gpu: Option<String>,
     /// Steps per submission to the device; changes no result
-    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = count::<u32>(1..=u64::from(u32::MAX)))]
     pub batch: Option<u32>,
     /// Stop after that many steps since the start of the run, at the end of an interval
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>(1..=u64::MAX))]
     pub steps: Option<u64>,
     /// Stop at the first warning, of the plan or of the run, as an error
     #[arg(long)]
     pub strict: bool,
     /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
-    #[arg(long, value_name = "STEPS|WALLTIME")]
+    #[arg(long, allow_negative_numbers = true, value_name = "STEPS|WALLTIME")]
     pub checkpoint_every: Option<CheckpointEvery>,
     /// Write a checkpoint and stop before the program has run so long (3h50m, 3:50:00)
-    #[arg(long, value_name = "WALLTIME")]
+    #[arg(long, allow_negative_numbers = true, value_name = "WALLTIME")]
     pub stop_after: Option<WallTime>,
     #[command(flatten)]
     pub sharing: SharingArguments,
@@ -238,7 +240,7 @@ pub struct ExecutionArguments {
 #[command(next_help_heading = "Sharing the work (changes no result)")]
 pub struct SharingArguments {
     /// Subdomains in this one process, on one device (under mpirun each rank has one)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u32>(1..=4096))]
     pub subdomains: Option<u32>,
     /// Who owns which part of the space: equal boxes, boxes balanced at the start, or balanced as the gas moves
     #[arg(long, value_enum, default_value_t = Balance::Dynamic)]
@@ -252,16 +254,16 @@ pub struct SharingArguments {
 #[command(next_help_heading = "Sharing the work (changes no result)")]
 pub struct TuningArguments {
     /// Steps between two looks at the balance [default: 64]
-    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = count::<u64>(1..=u64::MAX))]
     pub balance_every: Option<u64>,
     /// The load of the fullest rank over the mean from which on the space is cut anew, if that pays [default: 1.1]
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, allow_negative_numbers = true, value_name = "RATIO")]
     pub balance_threshold: Option<f64>,
     /// What is balanced: the measured cost, or the number of particles
     #[arg(long, value_enum, default_value_t = BalanceBy::Cost)]
     pub balance_by: BalanceBy,
     /// Rounds of collisions between two exchanges of borders: more are fewer messages and wider borders [default: what proves fastest]
-    #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(1..=8))]
+    #[arg(long, value_name = "ROUNDS", allow_negative_numbers = true, value_parser = count::<u32>(1..=8))]
     pub halo_rounds: Option<u32>,
     /// Which particles of others choose partners here: those that an own one has chosen, or all within reach [default: what proves faster]
     #[arg(long, value_enum)]
@@ -294,7 +296,7 @@ pub struct RefineArguments {
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub from: PathBuf,
     /// How many particles each becomes
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(2..(1 << 28)))]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count::<u64>(2..=(1 << 28) - 1))]
     pub times: u64,
     /// The folder of the refined run [default: beside the run's, as <name>-x<K>]
     #[arg(short, long, value_name = "NEWDIR", value_hint = ValueHint::DirPath)]
@@ -375,6 +377,22 @@ mod tests {
         }
     }
 
+    /// A negative number is a value that is refused, and no unknown option.
+    #[test]
+    fn negative_numbers_are_refused_as_values() {
+        for (option, value, words) in [
+            ("--particles", "-3", "a whole number from 1 to 268435455, such as 2000, 2_000 or 2e3, is possible"),
+            ("--particles", "2.5", "a whole number from 1 to 268435455"),
+            ("--seed", "-1", "a whole number from 0 to 72057594037927935"),
+            ("--steps", "0", "a whole number from 1 on is possible"),
+            ("--accuracy", "-0.1", "a relative error from 0.0001 to 0.5"),
+            ("--checkpoint-every", "-5", "neither a number of steps"),
+        ] {
+            let error = Arguments::try_parse_from(["corpuscle", "run", "s.toml", option, value]).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+        }
+    }
+
     #[test]
     fn values_out_of_range_are_refused() {
         let parse =
@@ -389,12 +407,20 @@ mod tests {
             ("--checkpoint-every", "often"),
             ("--stop-after", "90"),
             ("--repeat", "1"),
+            ("--particles", "2.5"),
         ] {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }
-        for (option, value) in
-            [("--particles", "268435455"), ("--seed", "0"), ("--batch", "1"), ("--steps", "1"), ("--stop-after", "90s")]
-        {
+        for (option, value) in [
+            ("--particles", "268435455"),
+            ("--particles", "2e3"),
+            ("--steps", "1_000"),
+            ("--checkpoint-every", "5e3"),
+            ("--seed", "0"),
+            ("--batch", "1"),
+            ("--steps", "1"),
+            ("--stop-after", "90s"),
+        ] {
             assert!(parse(option, value).is_ok(), "{option} {value}");
         }
     }

@@ -75,13 +75,3 @@ fn scene_named(name: &str) -> Result<&'static BenchScene, CliError> {
     let unknown = || CliError::UnknownCase { asked: name.to_owned(), known: known() };
     SCENES.iter().find(|scene| scene.name == name).ok_or_else(unknown)
 }
-
-/// A whole number, also as `1e6`.
-pub fn count(text: &str) -> Result<u64, String> {
-    let number: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
-    if (1.0..=2e8).contains(&number) && number.fract() == 0.0 {
-        Ok(number as u64)
-    } else {
-        Err(format!("`{text}` is no whole number from 1 to 2e8"))
-    }
-}

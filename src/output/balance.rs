@@ -34,8 +34,8 @@ pub struct BalanceRow {
     pub rebalance_seconds: f64,
 }
 
-const HEADER: &str = "step,time_ms,ranks,imbalance_particles,imbalance_work,imbalance_seconds,rebalanced,\
-    weight_imbalance_before,weight_imbalance_after,moved,bytes,rebalance_seconds,\
+const HEADER: &str = "step,time_s,ranks,imbalance_particles,imbalance_work,imbalance_seconds,rebalanced,\
+    weight_imbalance_before,weight_imbalance_after,moved,bytes,rebalance_s,\
     owned_min,owned_mean,owned_max,ghosts_min,ghosts_mean,ghosts_max";
 
 /// Writes `balance.csv` as the run goes.
@@ -77,7 +77,7 @@ fn line(row: &BalanceRow) -> String {
     let owned: Vec<f64> = row.owned.iter().map(|&n| n as f64).collect();
     let mut fields = vec![
         row.step.to_string(),
-        number(1e3 * row.time),
+        number(row.time),
         row.owned.len().to_string(),
         number(over_mean(&owned)),
         number(row.imbalance_work),
@@ -126,14 +126,14 @@ mod tests {
     #[test]
     fn a_row_has_a_value_for_each_column_and_blanks_for_what_is_not_known() {
         assert_eq!(HEADER.split(',').count(), line(&row(32)).split(',').count());
-        assert_eq!(line(&row(32)), "32,0.032,2,1.5,1.25,,0,,,3,480,0,10,20,30,1,2.5,4\n");
+        assert_eq!(line(&row(32)), "32,3.2e-5,2,1.5,1.25,,0,,,3,480,0,10,20,30,1,2.5,4\n");
         let rebalanced = BalanceRow {
             rebalanced: Some([1.5, 1.01]),
             imbalance_seconds: Some(1.4),
             rebalance_seconds: 0.5,
             ..row(64)
         };
-        assert_eq!(line(&rebalanced), "64,0.064,2,1.5,1.25,1.4,1,1.5,1.01,3,480,0.5,10,20,30,1,2.5,4\n");
+        assert_eq!(line(&rebalanced), "64,6.4e-5,2,1.5,1.25,1.4,1,1.5,1.01,3,480,0.5,10,20,30,1,2.5,4\n");
     }
 
     /// A resumed run writes the rows of the steps that it does again once, not twice.

@@ -35,6 +35,8 @@ pub struct SnapshotWriter {
     written: Vec<Written>,
     /// So many of them are surely on the disc.
     flushed: usize,
+    /// By index.
+    gases: Vec<String>,
 }
 
 /// One snapshot.
@@ -60,7 +62,7 @@ impl SnapshotWriter {
     pub fn create(dir: &Path) -> Result<SnapshotWriter, OutputError> {
         let folder = dir.join(SNAPSHOT_FOLDER);
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
-        Ok(SnapshotWriter { folder, written: Vec::new(), flushed: 0 })
+        Ok(SnapshotWriter { folder, written: Vec::new(), flushed: 0, gases: Vec::new() })
     }
 
     /// Goes on with the snapshots in `dir`: those that were written after the state are removed, and the list of them
@@ -96,6 +98,11 @@ impl SnapshotWriter {
         Ok(writer)
     }
 
+    /// Names the gases, in the order of their indices, in each snapshot.
+    pub fn naming(self, gases: impl IntoIterator<Item = String>) -> SnapshotWriter {
+        SnapshotWriter { gases: gases.into_iter().collect(), ..self }
+    }
+
     /// How far they have got, all of them on the disc.
     pub fn state(&mut self) -> Result<SnapshotState, OutputError> {
         for index in self.flushed..self.written.len() {
@@ -125,7 +132,7 @@ impl SnapshotWriter {
         subdomains: Option<&[u32]>,
     ) -> Result<PathBuf, OutputError> {
         let path = self.folder.join(file_name(self.written.len()));
-        let mut data = particle_data(time, particles);
+        let mut data = particle_data(time, particles, &self.gases);
         if let Some(subdomains) = subdomains {
             let array = Array::new("subdomain", "UInt32", subdomains.iter(), |rank| [rank.to_le_bytes()]);
             data.sections[0].arrays.push(array);
@@ -137,7 +144,7 @@ impl SnapshotWriter {
         Ok(path)
     }
 
-    /// Writes the walls: `vertices` in m, `triangles` as vertex indices, and for each triangle the index of its wall.
+    /// Writes the walls: `vertices` in m, `triangles` as vertex indices, for each triangle the index of its wall, and their names.
     ///
     /// Errors: a triangle that names no vertex, or another number of wall indices than of triangles.
     pub fn write_walls(
@@ -145,6 +152,7 @@ impl SnapshotWriter {
         vertices: &[[f64; 3]],
         triangles: &[[u32; 3]],
         walls: &[u32],
+        names: &[String],
     ) -> Result<PathBuf, OutputError> {
         if walls.len() != triangles.len() {
             return Err(OutputError::WallIndexCount { triangles: triangles.len(), indices: walls.len() });
@@ -156,7 +164,7 @@ impl SnapshotWriter {
             }
         }
         let path = self.folder.join("walls.vtp");
-        let data = wall_data(vertices, triangles, walls);
+        let data = wall_data(vertices, triangles, walls, names);
         write_atomically(&path, |out| data.write(out))?;
         Ok(path)
     }
@@ -178,7 +186,7 @@ impl SnapshotWriter {
 /// VTK's number for a cell of one point.
 const VTK_VERTEX: u8 = 1;
 
-fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
+fn particle_data<'a>(time: f64, particles: &'a [ParticleRow], gases: &'a [String]) -> DataSet<'a> {
     let count = particles.len();
     let rows = || particles.iter();
     let index = |i: usize| (i as i64).to_le_bytes();
@@ -186,21 +194,24 @@ fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
         kind: "UnstructuredGrid",
         counts: format!(r#"NumberOfPoints="{count}" NumberOfCells="{count}""#),
         time: Some(time),
+        names: vec![("gas_names", gases)],
         sections: vec![
             Section {
                 element: "PointData",
                 attributes: r#" Scalars="gas" Vectors="velocity""#,
                 arrays: vec![
-                    Array::new("velocity", "Float32", rows(), |p| p.velocity.map(f32::to_le_bytes)),
+                    Array::new("velocity", "Float32", rows(), |p| p.velocity.map(f32::to_le_bytes)).in_unit("m/s"),
                     Array::new("gas", "UInt8", rows(), |p| [[p.gas]]),
-                    Array::new("spin_energy", "Float32", rows(), |p| [p.spin_energy.to_le_bytes()]),
+                    Array::new("spin_energy", "Float32", rows(), |p| [p.spin_energy.to_le_bytes()]).in_unit("J"),
                     Array::new("id", "UInt32", rows(), |p| [p.id.to_le_bytes()]),
                 ],
             },
             Section {
                 element: "Points",
                 attributes: "",
-                arrays: vec![Array::new("position", "Float64", rows(), |p| p.position.map(f64::to_le_bytes))],
+                arrays: vec![
+                    Array::new("position", "Float64", rows(), |p| p.position.map(f64::to_le_bytes)).in_unit("m"),
+                ],
             },
             Section {
                 element: "Cells",
@@ -215,7 +226,12 @@ fn particle_data(time: f64, particles: &[ParticleRow]) -> DataSet<'_> {
     }
 }
 
-fn wall_data<'a>(vertices: &'a [[f64; 3]], triangles: &'a [[u32; 3]], walls: &'a [u32]) -> DataSet<'a> {
+fn wall_data<'a>(
+    vertices: &'a [[f64; 3]],
+    triangles: &'a [[u32; 3]],
+    walls: &'a [u32],
+    names: &'a [String],
+) -> DataSet<'a> {
     DataSet {
         kind: "PolyData",
         counts: format!(
@@ -224,6 +240,7 @@ fn wall_data<'a>(vertices: &'a [[f64; 3]], triangles: &'a [[u32; 3]], walls: &'a
             triangles.len()
         ),
         time: None,
+        names: vec![("wall_names", names)],
         sections: vec![
             Section {
                 element: "CellData",
@@ -233,7 +250,10 @@ fn wall_data<'a>(vertices: &'a [[f64; 3]], triangles: &'a [[u32; 3]], walls: &'a
             Section {
                 element: "Points",
                 attributes: "",
-                arrays: vec![Array::new("position", "Float64", vertices.iter(), |vertex| vertex.map(f64::to_le_bytes))],
+                arrays: vec![
+                    Array::new("position", "Float64", vertices.iter(), |vertex| vertex.map(f64::to_le_bytes))
+                        .in_unit("m"),
+                ],
             },
             Section {
                 element: "Polys",
@@ -416,15 +436,20 @@ mod tests {
         let writer = SnapshotWriter::create(dir.path()).unwrap();
         let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let triangles = [[0, 2, 1], [0, 1, 3]];
-        let path = writer.write_walls(&vertices, &triangles, &[0, 7]).unwrap();
-        let arrays = appended_arrays(&std::fs::read(path).unwrap());
+        let names = ["box".to_owned(), "lid".to_owned()];
+        let path = writer.write_walls(&vertices, &triangles, &[0, 7], &names).unwrap();
+        let bytes = std::fs::read(path).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        let named = r#"Name="wall_names" NumberOfTuples="2" format="ascii">98 111 120 0 108 105 100 0 </Array>"#;
+        assert!(text.contains(named), "{text}");
+        let arrays = appended_arrays(&bytes);
         let corners = numbers(&arrays["connectivity"], "Int64", i64::from_le_bytes);
         assert_eq!(corners, [0, 2, 1, 0, 1, 3]);
         assert_eq!(numbers(&arrays["offsets"], "Int64", i64::from_le_bytes), [3, 6]);
         assert_eq!(numbers(&arrays["wall"], "UInt32", u32::from_le_bytes), [0, 7]);
         assert_eq!(numbers(&arrays["position"], "Float64", f64::from_le_bytes), vertices.as_flattened());
-        let error = writer.write_walls(&vertices, &[[0, 1, 4]], &[0]).unwrap_err().to_string();
+        let error = writer.write_walls(&vertices, &[[0, 1, 4]], &[0], &names).unwrap_err().to_string();
         assert_eq!(error, "triangle 0 of the walls names vertex 4, but there are 4");
-        assert!(writer.write_walls(&vertices, &triangles, &[0]).is_err());
+        assert!(writer.write_walls(&vertices, &triangles, &[0], &names).is_err());
     }
 }

@@ -16,10 +16,17 @@ pub(super) struct Array<'a> {
     kind: &'static str,
     components: usize,
     bytes: u64,
+    /// Empty of a pure number.
+    unit: &'static str,
     values: Values<'a>,
 }
 
 impl<'a> Array<'a> {
+    /// The same with its unit (`m/s`), which viewers show.
+    pub fn in_unit(self, unit: &'static str) -> Array<'a> {
+        Array { unit, ..self }
+    }
+
     /// `components` values of `N` bytes each for every item, through `encode`.
     pub fn new<T, const N: usize, const C: usize>(
         name: &'static str,
@@ -31,6 +38,7 @@ impl<'a> Array<'a> {
             name,
             kind,
             components: C,
+            unit: "",
             bytes: (items.len() * N * C) as u64,
             values: Box::new(move |out| {
                 for item in items.clone() {
@@ -57,6 +65,8 @@ pub(super) struct DataSet<'a> {
     pub counts: String,
     /// s, shown by viewers as the data's time.
     pub time: Option<f64>,
+    /// Lists of names as field data: what the indices in an array stand for.
+    pub names: Vec<(&'static str, &'a [String])>,
     pub sections: Vec<Section<'a>>,
 }
 
@@ -66,11 +76,24 @@ impl DataSet<'_> {
         writeln!(out, r#"<?xml version="1.0"?>"#)?;
         writeln!(out, r#"<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
         writeln!(out, "<{kind}>")?;
-        if let Some(time) = self.time {
-            writeln!(
-                out,
-                r#"<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time}</DataArray></FieldData>"#
-            )?;
+        if self.time.is_some() || self.names.iter().any(|(_, names)| !names.is_empty()) {
+            write!(out, "<FieldData>")?;
+            if let Some(time) = self.time {
+                write!(
+                    out,
+                    r#"<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time}</DataArray>"#
+                )?;
+            }
+            for (array, names) in self.names.iter().filter(|(_, names)| !names.is_empty()) {
+                // Characters by their numbers, each name with a zero at its end.
+                write!(out, r#"<Array type="String" Name="{array}" NumberOfTuples="{}" format="ascii">"#, names.len())?;
+                for name in *names {
+                    name.bytes().try_for_each(|byte| write!(out, "{byte} "))?;
+                    write!(out, "0 ")?;
+                }
+                write!(out, "</Array>")?;
+            }
+            writeln!(out, "</FieldData>")?;
         }
         writeln!(out, "<Piece {}>", self.counts)?;
         let mut offset = 0;
@@ -80,8 +103,11 @@ impl DataSet<'_> {
             for array in &section.arrays {
                 writeln!(
                     out,
-                    r#"<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{offset}"/>"#,
-                    array.kind, array.name, array.components
+                    r#"<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{offset}">{}</DataArray>"#,
+                    array.kind,
+                    array.name,
+                    array.components,
+                    unit_label(array.unit)
                 )?;
                 offset += size_of::<u64>() as u64 + array.bytes;
             }
@@ -94,4 +120,12 @@ impl DataSet<'_> {
         }
         write!(out, "\n</AppendedData>\n</VTKFile>\n")
     }
+}
+
+/// As VTK's own writers leave it.
+fn unit_label(unit: &str) -> String {
+    if unit.is_empty() {
+        return String::new();
+    }
+    format!(r#"<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>"#)
 }

@@ -17,6 +17,9 @@ const LONGEST_QUOTE: usize = 60;
 /// Why a scene was refused.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum SceneError {
+    #[error("the scene file {} is a link to {}, which does not exist", path.display(), target.display())]
+    #[diagnostic(help("mend the link, or give the path of the file itself"))]
+    Dangling { path: PathBuf, target: PathBuf },
     #[error("cannot read the scene file {}: {reason}", path.display())]
     #[diagnostic(help("give the path of a readable TOML file, for example scenes/tank.toml"))]
     Unreadable { path: PathBuf, reason: std::io::Error },
@@ -74,6 +77,8 @@ pub struct Problem {
     earlier: Option<SourceSpan>,
     #[help]
     hint: Option<Box<str>>,
+    /// It may well follow from another, and is told only where there is none.
+    follows: bool,
 }
 
 impl Problem {
@@ -87,6 +92,7 @@ impl Problem {
             label: found.into(),
             earlier: None,
             hint: None,
+            follows: false,
         }
     }
 
@@ -118,6 +124,12 @@ impl Problem {
         self
     }
 
+    /// One that probably follows from another problem.
+    pub(super) fn following(mut self) -> Problem {
+        self.follows = true;
+        self
+    }
+
     /// The place of the first one of two that clash.
     pub(super) fn clash(mut self, earlier: &Range<usize>) -> Problem {
         self.earlier = Some(earlier.clone().into());
@@ -138,6 +150,9 @@ impl Problem {
 impl SceneError {
     /// The report on `text` (called `name`) with these problems, in the order of their places in the file.
     pub(super) fn invalid(name: &str, text: &str, mut problems: Vec<Problem>) -> SceneError {
+        if problems.iter().any(|problem| !problem.follows) {
+            problems.retain(|problem| !problem.follows);
+        }
         problems.sort_by_key(|p| p.span.offset());
         problems.truncate(MOST_REPORTED);
         let document = DeTable::parse(text).ok();

@@ -156,7 +156,9 @@ pub(super) fn mixture(raw: &At<RawMixture>, gases: &Names) -> Result<Mixture, Pr
     parts.sort_by_key(|part| part.0);
     let sum: f64 = parts.iter().map(|part| part.1).sum();
     if (sum - 1.0).abs() > FRACTION_TOLERANCE {
-        return Err(Problem::value(&raw.span, format!("mole fractions that sum to {sum:.10}"), "a sum of 1"));
+        let problem = Problem::value(&raw.span, format!("mole fractions that sum to {sum:.10}"), "a sum of 1");
+        let per_cent = (sum / 100.0 - 1.0).abs() < 1e-3;
+        return Err(if per_cent { problem.hint("in per cent? 60 per cent are 0.6") } else { problem });
     }
     // Left alone where only rounding is off, so that a resolved scene reads back as it was.
     if (sum - 1.0).abs() > 1e-14 {

@@ -46,7 +46,12 @@ const MOST_BYTES: u64 = 16 << 20;
 /// # Errors
 /// The file cannot be read, is larger than 16 MiB, is not UTF-8, or does not describe a scene.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let unreadable = |reason| SceneError::Unreadable { path: path.to_path_buf(), reason };
+    let unreadable = |reason: std::io::Error| match std::fs::read_link(path) {
+        Ok(target) if reason.kind() == std::io::ErrorKind::NotFound => {
+            SceneError::Dangling { path: path.to_path_buf(), target }
+        }
+        _ => SceneError::Unreadable { path: path.to_path_buf(), reason },
+    };
     let file = std::fs::File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     // Devices and pipes have no length to ask for: read up to the limit and see.

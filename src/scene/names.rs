@@ -12,6 +12,8 @@ pub(super) struct Names<'a> {
     kind: &'static str,
     names: Vec<&'a str>,
     index: HashMap<&'a str, usize>,
+    /// A name of the list stands twice, so another that is looked for may be the one that it should have been.
+    doubled: bool,
 }
 
 impl<'a> Names<'a> {
@@ -21,7 +23,7 @@ impl<'a> Names<'a> {
         names: impl IntoIterator<Item = &'a At<String>>,
         problems: &mut Vec<Problem>,
     ) -> Names<'a> {
-        let mut all = Names { kind, names: Vec::new(), index: HashMap::new() };
+        let mut all = Names { kind, names: Vec::new(), index: HashMap::new(), doubled: false };
         let mut places: Vec<&Range<usize>> = Vec::new();
         for name in names {
             // A name with a fault still is known, so that what refers to it is not at fault too.
@@ -34,6 +36,7 @@ impl<'a> Names<'a> {
                     format!("a name that no other {kind} has"),
                 );
                 problems.push(problem.clash(places[first]));
+                all.doubled = true;
             }
             all.index.entry(&name.value).or_insert(all.names.len());
             all.names.push(&name.value);
@@ -49,12 +52,14 @@ impl<'a> Names<'a> {
 
     pub fn find_str(&self, name: &str, span: &Range<usize>) -> Result<usize, Problem> {
         self.index.get(name).copied().ok_or_else(|| {
-            let known = || self.names.iter().copied();
+            let once = |(place, name): (usize, &&'a str)| (self.index.get(*name) == Some(&place)).then_some(*name);
+            let known = || self.names.iter().enumerate().filter_map(once);
             let allowed = match self.names.len() {
                 0 => format!("the name of a {} (the scene has none)", self.kind),
                 _ => format!("the name of a {}: {}", self.kind, list(known())),
             };
-            Problem::value(span, quote(name), allowed).meant(name, known())
+            let problem = Problem::value(span, quote(name), allowed).meant(name, known());
+            if self.doubled { problem.following() } else { problem }
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Text to raw types: what TOML and serde complain about, said in the words of all other problems.
 
 use serde::Deserialize;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 use super::errors::{Problem, list, quote};
 use super::raw::RawScene;
@@ -10,9 +10,37 @@ use super::raw::RawScene;
 pub(super) fn read(text: &str) -> Result<RawScene, Problem> {
     let document = DeTable::parse(text).map_err(|error| {
         // A syntax error at the end of the text has an empty span there.
-        Problem::syntax(&error.span().unwrap_or(text.len()..text.len()), error.message())
+        let span = error.span().unwrap_or(text.len()..text.len());
+        let problem = Problem::syntax(&span, error.message());
+        match bare_value(text.get(span).unwrap_or_default()) {
+            Some(hint) => problem.hint(&hint),
+            None => problem,
+        }
     })?;
+    // Serde would read the fields of a table from a list in their order.
+    for key in ["model", "output"] {
+        if let Some(list) = document.get_ref().get(key).filter(|value| matches!(value.get_ref(), DeValue::Array(_))) {
+            let problem = Problem::value(&list.span(), "a list", format!("one table: [{key}]"));
+            return Err(problem.hint("double brackets begin an entry of a list, and of this table there is one"));
+        }
+    }
     RawScene::deserialize(toml::Deserializer::from(document)).map_err(|error| reworded(&error))
+}
+
+/// What is probably meant by a value that TOML cannot read: a text without its quotes, or a number with a unit.
+fn bare_value(value: &str) -> Option<String> {
+    let value = value.trim();
+    let number = value.split_whitespace().next()?;
+    let starts_as_number = number.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.'));
+    let is_word =
+        |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | ' ' | '.' | '/'));
+    if starts_as_number && value != number && number.parse::<f64>().is_ok() {
+        return Some(format!(
+            "a number has no unit here, so write {number}: `units` sets that of all numbers of the file"
+        ));
+    }
+    (value.starts_with(|c: char| c.is_ascii_alphabetic()) && is_word(value))
+        .then(|| format!("a text has quotes: \"{value}\""))
 }
 
 /// Serde's messages have fixed forms, which `serde::de::Error` documents by its default methods.
@@ -40,7 +68,16 @@ fn reworded(error: &toml::de::Error) -> Problem {
             let found = if prefix == "invalid length " { format!("an array of {found}") } else { plain(found) };
             let problem = Problem::value(&span, &found, plain(expected));
             let list_wanted = found == "a table" && expected.contains("sequence");
-            return if list_wanted { problem.hint("a list of tables has double brackets: [[...]]") } else { problem };
+            let whole = found.strip_prefix("the number ").filter(|_| expected == "i64");
+            let whole = whole.and_then(|number| number.parse::<f64>().ok()).filter(|number| number.fract() == 0.0);
+            return match whole {
+                Some(number) => problem.hint(&format!("without a point or an exponent: {number}")),
+                None if list_wanted => problem.hint("a list of tables has double brackets: [[...]]"),
+                None if expected.contains("sequence") => {
+                    problem.hint("a list has brackets; a curve is a list of points: [[0.0, 1.0], [0.01, 1.0]]")
+                }
+                None => problem,
+            };
         }
     }
     if message.starts_with("wanted exactly 1 element") {

@@ -251,7 +251,11 @@ fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Pat
     // Absolute, so that the resolved scene can be read from another folder.
     let path = std::path::absolute(&joined).unwrap_or_else(|_| joined.clone());
     if !path.is_file() {
-        let what = if path.is_dir() { "which is a folder" } else { "which does not exist" };
+        let what = match std::fs::read_link(&path) {
+            Ok(target) => format!("a link to {}, which does not exist", quote(&target.to_string_lossy())),
+            Err(_) if path.is_dir() => "which is a folder".to_string(),
+            Err(_) => "which does not exist".to_string(),
+        };
         let hint = format!("the path is relative to the folder of the scene file: {} was meant", joined.display());
         return Err(
             Problem::value(&file.span, format!("{}, {what}", quote(&file.value)), "an existing file").hint(&hint)

@@ -53,7 +53,7 @@ pub use refine::{RefineError, RefineReport, Refined, refine};
 pub use run::Simulation;
 pub use run::meter::{Done, Lists};
 pub use run_state::{Asked, RunState, StateError as RunStateError, particles_of};
-pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError};
+pub use schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError, whole_number};
 pub use setup::{Setup, Shuffle};
 pub use step::Sampling;
 pub use stock::{Initial, Stock, initial_particles};

@@ -52,10 +52,20 @@ impl FromStr for WallTime {
     }
 }
 
-/// Only digits, so no sign; a number too large is as good as the largest.
-fn whole(digits: &str) -> Option<u64> {
-    let sound = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-    sound.then(|| digits.parse().unwrap_or(u64::MAX))
+/// The whole number that a text stands for, as people write it: 2000, 2_000, 2e3. None of what has a fraction or a sign; a number of
+/// digits too large is as good as the largest.
+pub fn whole_number(text: &str) -> Option<u64> {
+    let digits = text.replace('_', "");
+    let apart = text.starts_with('_') || text.ends_with('_') || text.contains("__");
+    if apart || !digits.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    if digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Some(digits.parse().unwrap_or(u64::MAX));
+    }
+    // Exact below 2^53, and no count with an exponent is beyond.
+    let number: f64 = digits.parse().ok()?;
+    (number.fract() == 0.0 && number < 9e15).then_some(number as u64)
 }
 
 /// `hours:minutes:seconds` or `minutes:seconds`.
@@ -65,9 +75,9 @@ fn clock_seconds(text: &str) -> Result<u64, WallTimeError> {
     if !(2..=3).contains(&parts.len()) {
         return Err(form());
     }
-    let mut seconds = whole(parts[0]).ok_or_else(form)?;
+    let mut seconds = whole_number(parts[0]).ok_or_else(form)?;
     for part in &parts[1..] {
-        let own = whole(part).ok_or_else(form)?;
+        let own = whole_number(part).ok_or_else(form)?;
         if part.len() != 2 || own > 59 {
             return Err(WallTimeError::Sexagesimal { found: text.to_owned() });
         }
@@ -78,14 +88,14 @@ fn clock_seconds(text: &str) -> Result<u64, WallTimeError> {
 
 /// `2h`, `10m`, `90s`, or several in this order.
 fn unit_seconds(text: &str) -> Result<u64, WallTimeError> {
-    if whole(text).is_some() {
+    if whole_number(text).is_some() {
         return Err(WallTimeError::NoUnit { found: text.to_owned() });
     }
     let form = || WallTimeError::Form { found: text.to_owned() };
     let (mut rest, mut seconds, mut any) = (text, 0u64, false);
     for (unit, length) in [('h', 3600), ('m', 60), ('s', 1)] {
         if let Some((digits, after)) = rest.split_once(unit) {
-            seconds = seconds.saturating_add(whole(digits).ok_or_else(form)?.saturating_mul(length));
+            seconds = seconds.saturating_add(whole_number(digits).ok_or_else(form)?.saturating_mul(length));
             (rest, any) = (after, true);
         }
     }
@@ -96,7 +106,7 @@ impl FromStr for CheckpointEvery {
     type Err = WallTimeError;
 
     fn from_str(text: &str) -> Result<CheckpointEvery, WallTimeError> {
-        match whole(text) {
+        match whole_number(text) {
             Some(0) => Err(WallTimeError::Zero { found: text.to_owned() }),
             Some(steps) => Ok(CheckpointEvery::Steps(steps)),
             None => text.parse().map(CheckpointEvery::Wall).map_err(|error| match error {
@@ -231,6 +241,22 @@ mod tests {
             assert!(text.parse::<CheckpointEvery>().is_err(), "{text}");
         }
         assert!("often".parse::<CheckpointEvery>().unwrap_err().to_string().contains("number of steps"));
+    }
+
+    #[test]
+    fn whole_numbers_are_read_as_people_write_them() {
+        for (text, number) in
+            [("2000", 2000), ("2_000", 2000), ("2e3", 2000), ("2.5e3", 2500), ("1E6", 1_000_000), ("0", 0)]
+        {
+            assert_eq!(whole_number(text), Some(number), "{text}");
+        }
+        assert_eq!(whole_number("72057594037927935"), Some((1 << 56) - 1));
+        for text in
+            ["2.5", "-3", "", "two", "2e-3", "2e30", "_2", "2_", "2__0", "inf", "nan", "+2", "2,000", " 2", "0x10"]
+        {
+            assert_eq!(whole_number(text), None, "{text}");
+        }
+        assert!(matches!("1e3".parse(), Ok(CheckpointEvery::Steps(1000))));
     }
 
     /// The steps at which checkpoints are written do not depend on where the run was resumed.

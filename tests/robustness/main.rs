@@ -95,6 +95,14 @@ fn files_that_cannot_be_read_are_errors() {
     assert!(matches!(error, SceneError::Invalid(_)), "{}", text.len());
     let (text, error) = load("empty.toml", Some(b""));
     assert!(matches!(error, SceneError::Invalid(_)), "{text}");
+    #[cfg(unix)]
+    {
+        let link = folder.path().join("link.toml");
+        std::os::unix::fs::symlink("moved/away.toml", &link).unwrap();
+        let error = scene::load(&link).unwrap_err();
+        assert!(matches!(error, SceneError::Dangling { .. }), "{}", rendered(&error));
+        assert!(rendered(&error).contains("moved/away.toml, which does not exist"), "{}", rendered(&error));
+    }
     let error = scene::load(folder.path()).unwrap_err();
     assert!(matches!(error, SceneError::Unreadable { .. }), "{}", rendered(&error));
 }

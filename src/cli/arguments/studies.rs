@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{Balance, EXIT_CODES, MethodName, SceneArguments, TuningArguments};
+use super::{Balance, EXIT_CODES, MethodName, SceneArguments, TuningArguments, count};
 
 /// Counts of devices that the machine has are run, others can be emulated on one of its devices.
 #[derive(Debug, Args)]
@@ -13,7 +13,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// The counts of devices
-    #[arg(long, required = true, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, required = true, value_name = "N,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = count::<u32>(1..=4096))]
     pub devices: Vec<u32>,
     /// The ways to share the work out, each with every count
     #[arg(long, value_enum, value_name = "WAY,...", value_delimiter = ',', default_values_t = [Balance::Off, Balance::Dynamic])]
@@ -46,10 +46,10 @@ pub struct RealRunArguments {
     #[arg(long, value_name = "COMMAND")]
     pub launcher: Option<String>,
     /// Times that every count is run; medians are told [default: 3]
-    #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "TIMES", allow_negative_numbers = true, value_parser = count::<u32>(1..=1000))]
     pub repeat: Option<u32>,
     /// Stop each run after that many steps, at the end of an interval
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>(1..=u64::MAX))]
     pub steps: Option<u64>,
     /// So many times the particles on so many devices: hold the particles of each device
     #[arg(long)]
@@ -63,10 +63,10 @@ pub struct EmulationArguments {
     #[arg(long)]
     pub emulate: bool,
     /// Also run these counts, and set the model beside them; more than 1 needs --launcher
-    #[arg(long, requires = "emulate", value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, requires = "emulate", value_name = "N,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = count::<u32>(1..=4096))]
     pub validate: Vec<u32>,
     /// Intervals of three steps that are measured
-    #[arg(long, requires = "emulate", value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    #[arg(long, requires = "emulate", value_name = "N", default_value_t = 3, allow_negative_numbers = true, value_parser = count::<u32>(1..=10000))]
     pub intervals: u32,
     /// Assumed: microseconds of an exchange with all neighbours
     #[arg(long, requires = "emulate", value_name = "US", default_value_t = 5.0)]
@@ -101,7 +101,7 @@ pub struct VerifyArguments {
     #[arg(long)]
     pub full: bool,
     /// Cases that run at a time; changes no result
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", default_value_t = 3, allow_negative_numbers = true, value_parser = count::<u32>(1..=64))]
     pub jobs: u32,
     /// Only say which cases there are
     #[arg(long, conflicts_with_all = ["quick", "full", "markdown", "gpu"])]
@@ -128,7 +128,7 @@ pub struct ParetoArguments {
     #[arg(long, value_enum, value_name = "METHOD,...", value_delimiter = ',')]
     pub methods: Vec<MethodName>,
     /// Run every setting with so many seeds: means, with error bars
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<u32>(1..=1000))]
     pub repeat: u32,
     /// A few small settings, to see that it works
     #[arg(long, conflicts_with = "full")]
@@ -189,7 +189,7 @@ pub struct BenchArguments {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "box,tank,corner")]
     pub scene: Vec<String>,
     /// Particles at the end of the scene, initial and injected
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1e5", value_parser = crate::cli::bench::count)]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1e5", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
     pub particles: Vec<u64>,
     /// Methods of collision
     #[arg(
@@ -201,7 +201,7 @@ pub struct BenchArguments {
     )]
     pub methods: Vec<MethodName>,
     /// Steps of each run
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 64, allow_negative_numbers = true, value_parser = count::<u64>(1..=u64::MAX))]
     pub steps: u64,
     /// Also write all numbers into this file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -48,7 +48,7 @@ impl<'a> Recorder<'a> {
         let snapshots = match model.scene.output.snapshots {
             0 => None,
             _ => {
-                let writer = SnapshotWriter::create(dir)?;
+                let writer = SnapshotWriter::create(dir)?.naming(gas_names(model));
                 write_walls(&writer, model)?;
                 Some(writer)
             }
@@ -98,7 +98,7 @@ impl<'a> Recorder<'a> {
         let snapshots = match &state.snapshots {
             None => None,
             Some(snapshots) => {
-                let writer = SnapshotWriter::resume(dir, snapshots)?;
+                let writer = SnapshotWriter::resume(dir, snapshots)?.naming(gas_names(model));
                 write_walls(&writer, model)?;
                 Some(writer)
             }
@@ -228,7 +228,12 @@ fn write_walls(writer: &SnapshotWriter, model: &Model) -> Result<(), OutputError
     let triangles = &model.vessel.triangles;
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.vertices).collect();
     let walls: Vec<u32> = triangles.iter().map(|triangle| triangle.wall).collect();
-    writer.write_walls(&model.vessel.vertices, &corners, &walls).map(|_| ())
+    let names: Vec<String> = model.scene.walls.iter().map(|wall| wall.name.clone()).collect();
+    writer.write_walls(&model.vessel.vertices, &corners, &walls, &names).map(|_| ())
+}
+
+fn gas_names(model: &Model) -> Vec<String> {
+    model.scene.gases.iter().map(|gas| gas.name.clone()).collect()
 }
 
 fn balance_row(record: &BalanceRecord) -> BalanceRow {

@@ -1,8 +1,10 @@
 //! The columns of `history.csv` and their values.
 //!
-//! A column is called `owner:quantity`, for instance `inner:pressure_pa`. Names are unique among the
-//! chambers, the probes, the surfaces, the walls and the vents, each list for itself, and hold no colon; where two of the lists share a name
-//! its columns say which list they are of: `chamber:inner:pressure_pa`, `probe:inner:pressure_pa`.
+//! A column is called `owner:quantity`, for instance `inner:pressure_pa`. Names are unique among the chambers, the probes, the
+//! surfaces, the walls and the vents, each list for itself, and hold no colon. No quantity of a wall or of a vent is one of anything
+//! else, so these have their names whatever others are called. Chambers have theirs, too; a surface called like a chamber is
+//! `surface:NAME`, and a probe called like a chamber or a surface is `probe:NAME`. So no column of what is there is renamed by a key
+//! that is given, or by a probe or a surface that is added.
 
 use crate::output::Column;
 use crate::scene::Scene;
@@ -31,20 +33,20 @@ impl Owners {
         let walls: Vec<&str> = hot.map(|wall| wall.name.as_str()).collect();
         let vents: Vec<&str> = scene.vents.iter().map(|vent| vent.name.as_str()).collect();
         let moving: Vec<&str> = scene.motions.iter().map(|motion| scene.walls[motion.wall].name.as_str()).collect();
-        // A wall that is hot and moves has all its columns under its name.
-        let cold: Vec<&str> = moving.iter().copied().filter(|name| !walls.contains(name)).collect();
-        let lists = [&chambers, &probes, &surfaces, &walls, &vents, &cold];
-        let named = |kind: &str, own: &[&str]| -> Vec<String> {
-            let shared = |name: &str| lists.iter().filter(|list| list.contains(&name)).count() > 1;
-            own.iter().map(|name| if shared(name) { format!("{kind}:{name}") } else { (*name).to_owned() }).collect()
+        let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let apart = |kind: &str, own: &[&str], earlier: &[&str]| -> Vec<String> {
+            let named = |name: &&str| {
+                if earlier.contains(name) { format!("{kind}:{name}") } else { (*name).to_owned() }
+            };
+            own.iter().map(named).collect()
         };
         Owners {
-            chambers: named("chamber", &chambers),
-            probes: named("probe", &probes),
-            surfaces: named("surface", &surfaces),
-            walls: named("wall", &walls),
-            vents: named("vent", &vents),
-            motions: named("wall", &moving),
+            probes: apart("probe", &probes, &[chambers.as_slice(), &surfaces].concat()),
+            surfaces: apart("surface", &surfaces, &chambers),
+            chambers: owned(&chambers),
+            walls: owned(&walls),
+            vents: owned(&vents),
+            motions: owned(&moving),
         }
     }
 }
@@ -166,10 +168,34 @@ mod tests {
         let shared = text.replace("name = \"vent jet\"", "name = \"inner\"");
         assert_ne!(shared, text);
         let owners = Owners::of(&parse(&shared, "tank.toml", Path::new("")).unwrap());
-        assert_eq!(owners.chambers, ["chamber:inner", "tank"]);
+        assert_eq!(owners.chambers, ["inner", "tank"]);
         assert_eq!(owners.probes, ["probe:inner"]);
         assert_eq!(owners.surfaces, ["far wall"]);
-        assert_eq!(Owners::of(&scene("tank.toml")).chambers, ["inner", "tank"]);
+    }
+
+    /// Whatever else is given, the columns that were there are there: a temperature of a wall called like a chamber, a vent, a motion,
+    /// a probe, a second gas.
+    #[test]
+    fn no_column_is_renamed_by_another_key() {
+        let before = scene("tank.toml");
+        let heads = |scene: &Scene| columns(scene).iter().map(Column::header).collect::<Vec<_>>();
+        let [vents, pistons] = ["vent.toml", "piston.toml"].map(scene);
+        let mut more = before.clone();
+        let heat = vents.walls.iter().find_map(|wall| wall.heat);
+        more.walls.iter_mut().for_each(|wall| wall.heat = heat);
+        assert!(heat.is_some() && more.walls.iter().any(|wall| wall.name == before.chambers[1].name));
+        let probe = before.probes[0].clone();
+        for name in [&before.chambers[0].name, &before.surfaces[0].name, &before.walls[0].name] {
+            more.probes.push(crate::scene::Probe { name: name.clone(), ..probe.clone() });
+        }
+        more.vents.push(crate::scene::Vent { name: before.chambers[0].name.clone(), ..vents.vents[0].clone() });
+        more.motions.push(crate::scene::Motion { wall: 0, ..pistons.motions[0].clone() });
+        more.gases.push(crate::scene::Gas { name: "another".into(), ..before.gases[0].clone() });
+        let after = heads(&more);
+        for head in heads(&before) {
+            assert!(after.contains(&head), "{head} is not in {after:?}");
+        }
+        assert!(History::new(&columns(&more)).is_ok());
     }
 
     /// Whatever the names, the history takes the columns; without the list's name it would not.
