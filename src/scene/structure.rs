@@ -12,7 +12,8 @@ pub(super) fn read(text: &str) -> Result<RawScene, Problem> {
         // A syntax error at the end of the text has an empty span there.
         let span = error.span().unwrap_or(text.len()..text.len());
         let problem = Problem::syntax(&span, error.message());
-        match bare_value(text.get(span).unwrap_or_default()) {
+        let is_value = text.get(..span.start).is_some_and(|before| before.trim_end().ends_with('='));
+        match bare_value(text.get(span).unwrap_or_default()).filter(|_| is_value) {
             Some(hint) => problem.hint(&hint),
             None => problem,
         }
@@ -69,7 +70,9 @@ fn reworded(error: &toml::de::Error) -> Problem {
             let problem = Problem::value(&span, &found, plain(expected));
             let list_wanted = found == "a table" && expected.contains("sequence");
             let whole = found.strip_prefix("the number ").filter(|_| expected == "i64");
-            let whole = whole.and_then(|number| number.parse::<f64>().ok()).filter(|number| number.fract() == 0.0);
+            let whole = whole
+                .and_then(|number| number.parse::<f64>().ok())
+                .filter(|number| number.fract() == 0.0 && number.abs() < 9e15);
             return match whole {
                 Some(number) => problem.hint(&format!("without a point or an exponent: {number}")),
                 None if list_wanted => problem.hint("a list of tables has double brackets: [[...]]"),

@@ -237,7 +237,7 @@ mod tests {
     fn checkpoints_come_every_so_many_steps_or_so_much_time() {
         assert_eq!("5000".parse(), Ok(CheckpointEvery::Steps(5000)));
         assert_eq!("10m".parse(), Ok(CheckpointEvery::Wall(WallTime(600 * SECOND))));
-        for text in ["0", "0m", "often", "1e3", "1:99"] {
+        for text in ["0", "0m", "often", "1:99"] {
             assert!(text.parse::<CheckpointEvery>().is_err(), "{text}");
         }
         assert!("often".parse::<CheckpointEvery>().unwrap_err().to_string().contains("number of steps"));
