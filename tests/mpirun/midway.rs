@@ -20,7 +20,7 @@ struct Cutter {
 
 impl Observer for Cutter {
     fn request(&mut self, steps: u64) -> Request {
-        if steps >= self.after { Request::CheckpointAndStop } else { Request::None }
+        if steps >= self.after { Request::CheckpointAndStop(None) } else { Request::None }
     }
 
     fn checkpoint(&mut self, moment: &Moment<'_>) -> Result<(), SimulationError> {

@@ -32,7 +32,7 @@ struct Cutter {
 
 impl Observer for Cutter {
     fn request(&mut self, steps: u64) -> Request {
-        if steps >= self.steps { Request::CheckpointAndStop } else { Request::None }
+        if steps >= self.steps { Request::CheckpointAndStop(None) } else { Request::None }
     }
 
     fn checkpoint(&mut self, moment: &Moment<'_>) -> Result<(), SimulationError> {

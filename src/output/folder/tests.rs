@@ -17,7 +17,7 @@ fn finished_run(path: &Path) {
     }
     let mut snapshots = SnapshotWriter::create(folder.path()).unwrap();
     snapshots.write(0.0, &[]).unwrap();
-    snapshots.write_walls(&[], &[], &[]).unwrap();
+    snapshots.write_walls(&[], &[], &[], &[]).unwrap();
     folder.end("all is well").unwrap();
 }
 
