@@ -77,7 +77,7 @@ fn print(measured: &Measured) {
     println!("\n{particles} particles, {} steps: {:.3} M particle-steps/s", outcome.steps, rate / 1e6);
     let per_particle = outcome.collisions as f64 * 2.0 / outcome.particle_steps as f64;
     println!("{per_particle:.3} collisions per particle-step, energy error {:+.1e}", outcome.audit.energy_error());
-    print!("{}", outcome.phases.render());
+    print!("{}", outcome.phases.render(outcome.stepping_seconds));
 }
 
 /// One bar per phase, total and peer: M particle-steps per second, on a logarithmic axis.
