@@ -1,6 +1,7 @@
 //! One interval of steps: what it needs to run, and to run again. Its step size is fixed, its newborns are
 //! known, and its tallies are read one interval late.
 
+use std::cmp::Ordering;
 use std::time::Instant;
 
 use crate::gas::{Inflow, Newborn};
@@ -86,13 +87,12 @@ impl Interval {
     ) -> Result<Interval, SimulationError> {
         let dt = (end - start) / f64::from(steps);
         let scales = Scales::new(plan);
-        let every = |count: u64| count.is_multiple_of(u64::from(plan.tally_every));
         let born: Vec<Newborn> = inflow.take_until(end);
         let mut interval = Interval {
             dt,
             first_step,
             steps,
-            tallied: (first_step + 1..).take(steps as usize).map(every).collect(),
+            tallied: about_the_middle(steps, plan.tally_every),
             newborns_of: vec![0; steps as usize],
             entering: vec![0; steps as usize],
             newborns: Vec::with_capacity(born.len()),
@@ -135,13 +135,6 @@ impl Interval {
         Newborns { of_step: &self.newborns_of, list: &self.newborns, first_id: self.first_id, stride: self.stride }
     }
 
-    /// Adds the last step to the zones, whatever its number: the history ends where the run does.
-    pub fn tally_last(&mut self) {
-        if let Some(last) = self.tallied.last_mut() {
-            *last = true;
-        }
-    }
-
     /// The times at which its tallies of the zones are taken, s, of an interval that starts at `start`.
     pub fn tallied_at(&self, start: f64) -> impl Iterator<Item = f64> {
         (1u32..).zip(&self.tallied).filter(|(_, tallied)| **tallied).map(move |(k, _)| start + f64::from(k) * self.dt)
@@ -164,6 +157,30 @@ impl Interval {
         }
         (summed, brought)
     }
+}
+
+/// Which of so many steps add to the zones, at their end: one in `every`, at least one, and so that the mean of their times is the
+/// middle of the interval, as it is of what walls and vents tally in every step. (Of a single step it is its end.)
+fn about_the_middle(steps: u32, every: u32) -> Vec<bool> {
+    if every <= 1 {
+        return vec![true; steps as usize];
+    }
+    let mut tallied = vec![false; steps as usize];
+    let count = ((steps + every / 2) / every).min(steps / 2).max(1);
+    for k in 0..count {
+        // The middle of the k-th of as many equal parts, rounded towards the ends; that of all is the middle one's.
+        let (place, parts) = (steps * (2 * k + 1), 2 * count);
+        let (before, after) = (place / parts, place.div_ceil(parts));
+        let ends = match (2 * k + 1).cmp(&count) {
+            Ordering::Less => [before; 2],
+            Ordering::Equal => [before, after],
+            Ordering::Greater => [after; 2],
+        };
+        for end in ends.into_iter().filter(|&end| end > 0) {
+            tallied[end as usize - 1] = true;
+        }
+    }
+    tallied
 }
 
 impl Deal {
@@ -212,17 +229,26 @@ impl Machine<'_, '_> {
         // before, unless that is the first that is to be done, and of the last what that one has not.
         let early = self.subdomain.place().is_alone() && last > done + 1;
         let timed = if early { last - 1 } else { last };
-        let at_the_end: &[&'static str] = if interval.tallied[timed as usize] { &[BLOCKS] } else { &[TALLY, BLOCKS] };
+        // A tally is timed once, in the timed step or in the last that has one.
+        let sampled = interval.tallied.iter().rposition(|&tallied| tallied).filter(|_| !interval.tallied[timed as usize]);
+        let alone = |k: u32| -> &'static [&'static str] {
+            match (k == last, k == 0, Some(k as usize) == sampled) {
+                (true, _, true) => &[TALLY, BLOCKS],
+                (true, _, false) => &[BLOCKS],
+                (false, true, true) => &[LOST, TALLY],
+                (false, true, false) => &[LOST],
+                (false, false, true) => &[TALLY],
+                (false, false, false) => &[],
+            }
+        };
         let mut rec = Recording::new(device);
         let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in (done..).zip(slots) {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
             if k == timed {
                 rec.time(self.timer);
-            } else if k == last {
-                rec.time_alone(self.timer, at_the_end);
             } else {
-                rec.time_alone(self.timer.filter(|_| sampling.lost), &[LOST]);
+                rec.time_alone(self.timer.filter(|_| !alone(k).is_empty()), alone(k));
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
             step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
@@ -247,5 +273,35 @@ impl Machine<'_, '_> {
         self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();
         Ok(InFlight { before, tallies, phases, present, cells, traffic, interval })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The times of the tallies of the zones have the middle of the interval as their mean, whatever its length, and are as
+    /// many as asked.
+    #[test]
+    fn tallies_lie_about_the_middle() {
+        let of = |steps: u32, every: u32| -> Vec<u32> {
+            let tallied = about_the_middle(steps, every);
+            assert_eq!(tallied.len(), steps as usize);
+            (1..=steps).filter(|&k| tallied[k as usize - 1]).collect()
+        };
+        assert_eq!(of(32, 8), [4, 12, 20, 28]);
+        assert_eq!(of(16, 8), [4, 12]);
+        assert_eq!(of(5, 8), [2, 3]);
+        assert_eq!(of(1, 8), [1]);
+        assert_eq!(of(4, 1), [1, 2, 3, 4], "every one, whose mean is half a step late");
+        for every in 2..=8 {
+            for steps in 2..=70 {
+                let found = of(steps, every);
+                let mean = f64::from(found.iter().sum::<u32>()) / found.len() as f64;
+                assert!((mean - 0.5 * f64::from(steps)).abs() < 1e-9, "{steps}, {every}: {found:?}");
+                let wanted = f64::from(steps) / f64::from(every);
+                assert!((found.len() as f64 - wanted).abs() <= 1.5, "{steps}, {every}: {found:?}");
+            }
+        }
     }
 }

@@ -461,9 +461,6 @@ impl<'a> Simulation<'a> {
             Some(_) => Deal::All,
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
-        if self.clock.done() {
-            interval.tally_last();
-        }
         interval.tables = self.conditions.tables(start, end);
         interval.tables.shares = self.ladder.shares().to_vec();
         interval.tables.halvings = self.ladder.halvings(level);

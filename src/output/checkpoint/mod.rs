@@ -40,7 +40,7 @@ pub use read::Checkpoint;
 pub use write::{CheckpointWriter, Moment, forget_after};
 
 /// Of the files' layout and of what is in `state.bin`; another is refused.
-pub const FORMAT: u32 = 8;
+pub const FORMAT: u32 = 9;
 /// Complete checkpoints that stay.
 pub const KEPT: usize = 2;
 /// One particle.

@@ -108,7 +108,7 @@ impl Simulation<'_> {
         let told = self.guards.interval(&shown);
         self.tell(&told, observer)?;
         let span = [self.read_until - duration, self.read_until];
-        let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes);
+        let (seen, wanted) = self.conditions.see(&tallies, samples, span, &interval.volumes, &interval.tables.vents);
         self.watch_vents(self.read_until, observer);
         self.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
         self.averages.add_room(interval.dt, samples, &interval.volumes);
