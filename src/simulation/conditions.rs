@@ -394,10 +394,10 @@ mod tests {
     fn a_vent_learns_what_it_lets_out_and_repays() {
         for (eager, late) in [(1.08, 0.15), (0.88, 0.25), (1.0, 0.05)] {
             let [early, later] = [32, 120].map(|intervals| owed(eager, intervals));
-            println!("{eager}: {early:.3} after 32 intervals, {later:.3} after 120");
             assert!(early.abs() < late && later.abs() < 0.05, "{eager}: {early}, {later}");
         }
-        // The check can fail: it takes some intervals.
-        assert!(owed(1.08, 8).abs() > 0.2);
+        // The check can fail: before it has learnt it owes what leaves too much.
+        let at_once = owed(1.08, 2);
+        assert!(at_once.abs() > 0.1, "{at_once}");
     }
 }

@@ -215,8 +215,8 @@ fn each_fault_has_its_reason() {
     let manifest = String::from_utf8(whole[MANIFEST].clone()).unwrap();
     let foreign = altered(whole, MANIFEST, Some(b"[package]\nname = 1\n"));
     assert!(foreign.contains("no checkpoint's manifest") && foreign.contains("[package]"), "{foreign}");
-    let other = altered(whole, MANIFEST, Some(manifest.replace("format 8", "format 9").as_bytes()));
-    assert!(other.contains("checkpoint format 9, this program reads format 8"), "{other}");
+    let other = altered(whole, MANIFEST, Some(manifest.replace("format 9", "format 10").as_bytes()));
+    assert!(other.contains("checkpoint format 10, this program reads format 9"), "{other}");
     let edited = altered(whole, MANIFEST, Some(manifest.replace("step = 320", "step = 321").as_bytes()));
     assert!(edited.contains("truncated or altered"), "{edited}");
 }
