@@ -230,7 +230,8 @@ impl Machine<'_, '_> {
         let early = self.subdomain.place().is_alone() && last > done + 1;
         let timed = if early { last - 1 } else { last };
         // A tally is timed once, in the timed step or in the last that has one.
-        let sampled = interval.tallied.iter().rposition(|&tallied| tallied).filter(|_| !interval.tallied[timed as usize]);
+        let sampled =
+            interval.tallied.iter().rposition(|&tallied| tallied).filter(|_| !interval.tallied[timed as usize]);
         let alone = |k: u32| -> &'static [&'static str] {
             match (k == last, k == 0, Some(k as usize) == sampled) {
                 (true, _, true) => &[TALLY, BLOCKS],
