@@ -4,7 +4,11 @@
 //! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.software.wgsl` takes the place of `a.wgsl` in
 //! another source of each kernel that uses it, for software devices, and `a.gpu.wgsl` in one for GPUs. The result is
 //! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: all sources,
-//! entry point, and the bindings and override constants that the entry point uses.
+//! entry point, phases, and the bindings and override constants that the entry point uses.
+//!
+//! Each kernel begins with the numbers of `src/subdomain/registry.rs`. A declaration `var<storage, ..> NAME` or `var<uniform> NAME`
+//! gets the binding number of the buffer NAME from there; `//! binds: BUFFER as NAME` says that a kernel (or what uses a shared file)
+//! has another buffer by that name. `//! phase: choose lost` names the phases of the step in which a kernel is dispatched.
 //!
 //! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the last commit
 //! of the working tree that changed sources, marked where they are others; not set where there is none, or no git. It is found anew
@@ -16,6 +20,24 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, process};
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+#[path = "src/subdomain/registry.rs"]
+#[allow(dead_code)] // Most of it is for the host.
+mod registry;
+
+/// What all kernels of a folder have: numbers, and buffers whose places are their binding numbers.
+#[derive(Clone, Copy)]
+pub struct Registry<'a> {
+    pub numbers: &'a [&'a [(&'a str, u32)]],
+    pub buffers: &'a [&'a str],
+    /// The uniform of which each dispatch sees a part of its own.
+    pub stepped: &'a str,
+}
+
+/// That of the package.
+pub const REGISTRY: Registry<'static> =
+    Registry { numbers: &registry::NUMBERS, buffers: registry::BUFFERS, stepped: registry::STEPPED };
+const REGISTRY_PATH: &str = "src/subdomain/registry.rs";
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
@@ -35,11 +57,27 @@ pub struct Kernel {
     /// Those of the other forms, where they are others.
     pub forms: [Option<String>; FORMS.len()],
     pub entry_point: String,
-    /// Index, name, and variant of `Access`, of the buffers that the entry point uses.
-    pub bindings: Vec<(u32, String, &'static str)>,
+    /// Of the step.
+    pub phases: Vec<String>,
+    /// The buffers that the entry point uses.
+    pub bindings: Vec<Bound>,
     /// Override constants, and whether they have no default.
     pub overrides: Vec<(String, bool)>,
+    /// Buffers, and by what other names the shader has them.
+    aliases: Vec<(String, String)>,
     parts: Vec<Part>,
+}
+
+/// A buffer that an entry point uses.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Bound {
+    pub index: u32,
+    /// In the registry.
+    pub name: String,
+    /// Variant of `Access`.
+    pub access: &'static str,
+    /// Bytes that a dispatch sees, of the uniform of which it sees a part.
+    pub stepped: Option<u32>,
 }
 
 /// One file's place in the source of a kernel.
@@ -54,7 +92,7 @@ fn main() {
     for path in SOURCES {
         println!("cargo::rerun-if-changed={path}");
     }
-    let written = kernels(Path::new("shaders")).and_then(|(kernels, unused)| {
+    let written = kernels(Path::new("shaders"), REGISTRY).and_then(|(kernels, unused)| {
         for path in unused {
             println!("cargo::warning={} is used by no kernel", path.display());
         }
@@ -118,7 +156,7 @@ fn add_to(number: &mut u64, path: &Path) -> Result<(), String> {
 }
 
 /// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.
-pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
+pub fn kernels(folder: &Path, registry: Registry<'_>) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
     let mut kernels = Vec::new();
     let mut errors = Vec::new();
     let mut used = Vec::new();
@@ -127,7 +165,7 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
             errors.push(format!("{}: error: only files of shared/ have forms", path.display()));
             continue;
         }
-        match Kernel::with_forms(folder, &path, &mut used) {
+        match Kernel::with_forms(Files { folder, registry }, &path, &mut used) {
             Ok(kernel) => kernels.push(kernel),
             Err(error) => errors.push(error),
         }
@@ -144,29 +182,39 @@ pub fn kernels(folder: &Path) -> Result<(Vec<Kernel>, Vec<PathBuf>), String> {
 pub fn table(kernels: &[Kernel]) -> String {
     let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
     for kernel in kernels {
-        let Kernel { name, source, forms, entry_point, .. } = kernel;
-        rust += &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, bindings: &[");
-        for (index, variable, access) in &kernel.bindings {
-            rust += &format!("Binding {{ index: {index}, name: {variable:?}, access: Access::{access} }}, ");
+        let Kernel { name, source, forms, entry_point, phases, .. } = kernel;
+        rust +=
+            &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, phases: &{phases:?}, bindings: &[");
+        for Bound { index, name, access, stepped } in &kernel.bindings {
+            rust += &format!(
+                "Binding {{ index: {index}, name: {name:?}, access: Access::{access}, stepped: {stepped:?} }}, "
+            );
         }
         rust += &format!("], overrides: &{:?}, source: {source:?}, forms: {forms:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
 
+/// Where shaders are, and what they are made with.
+#[derive(Clone, Copy)]
+struct Files<'a> {
+    folder: &'a Path,
+    registry: Registry<'a>,
+}
+
 impl Kernel {
     /// A kernel with all of its sources, each of them valid. What files it uses is added to `used`.
-    fn with_forms(folder: &Path, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
-        let mut kernel = Kernel::assemble(folder, path, None)?;
-        kernel.validate(CAPABILITIES)?;
+    fn with_forms(files: Files<'_>, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
+        let mut kernel = Kernel::assemble(files, path, None)?;
+        kernel.validate(CAPABILITIES, files.registry)?;
         used.extend(kernel.parts.iter().map(|part| part.path.clone()));
         for (at, form) in FORMS.into_iter().enumerate() {
-            let mut other = Kernel::assemble(folder, path, Some(form))?;
+            let mut other = Kernel::assemble(files, path, Some(form))?;
             used.extend(other.parts.iter().map(|part| part.path.clone()));
             if other.source == kernel.source {
                 continue;
             }
-            other.validate(CAPABILITIES_OF_FORMS)?;
+            other.validate(CAPABILITIES_OF_FORMS, files.registry)?;
             let sorted = |mut overrides: Vec<(String, bool)>| {
                 overrides.sort();
                 overrides
@@ -181,58 +229,73 @@ impl Kernel {
         Ok(kernel)
     }
 
-    fn assemble(folder: &Path, path: &Path, form: Option<&str>) -> Result<Kernel, String> {
+    fn assemble(files: Files<'_>, path: &Path, form: Option<&str>) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
             forms: Default::default(),
             entry_point: String::new(),
+            phases: Vec::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
-            parts: Vec::new(),
+            aliases: Vec::new(),
+            parts: vec![Part { path: PathBuf::from(REGISTRY_PATH), start: 0 }],
         };
-        kernel.append(folder, path, form, &mut Vec::new())?;
+        for (name, value) in files.registry.numbers.iter().copied().flatten() {
+            kernel.source += &format!("const {name}: u32 = {value}u;\n");
+        }
+        let mut texts = Vec::new();
+        collect(files.folder, path, form, &mut Vec::new(), &mut texts)?;
+        // A kernel's own line goes before those of the files that it uses.
+        for (path, text) in texts.iter().rev() {
+            for (line, alias) in marked(text, "binds:") {
+                let words: Vec<&str> = alias.split_whitespace().collect();
+                let [buffer, "as", variable] = words[..] else {
+                    return Err(format!(
+                        "{}:{line}: error: found 'binds: {alias}', allowed: BUFFER as NAME",
+                        path.display()
+                    ));
+                };
+                if !kernel.aliases.iter().any(|(_, known)| known == variable) {
+                    kernel.aliases.push((buffer.to_owned(), variable.to_owned()));
+                }
+            }
+        }
+        for (path, text) in texts {
+            kernel.append(files.registry, path, &text)?;
+        }
+        let own = kernel.parts.last().map_or(0, |part| part.start);
+        let phases = marked(&kernel.source[own..], "phase:").flat_map(|(_, names)| names.split_whitespace());
+        kernel.phases = phases.map(str::to_owned).collect();
         Ok(kernel)
     }
 
-    /// Appends what `path` uses and is not there yet, then `path` itself. `visited` ends circles.
-    fn append(
-        &mut self,
-        folder: &Path,
-        path: &Path,
-        form: Option<&str>,
-        visited: &mut Vec<PathBuf>,
-    ) -> Result<(), String> {
-        visited.push(path.to_path_buf());
-        let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        for (line, used) in uses(&text) {
-            let mut shared = folder.join("shared").join(used);
-            let other = form.map(|form| shared.with_extension(format!("{form}.wgsl")));
-            if let Some(other) = other.filter(|other| other.is_file()) {
-                shared = other;
-            }
-            if visited.contains(&shared) {
-                continue;
-            }
-            if !shared.is_file() {
+    /// Appends a file, with the binding numbers of its buffers.
+    fn append(&mut self, registry: Registry<'_>, path: PathBuf, text: &str) -> Result<(), String> {
+        let start = self.source.len();
+        for (number, line) in text.lines().enumerate() {
+            if let Some(name) = declared(line) {
+                let buffer = self.aliases.iter().find(|(_, known)| known == name).map_or(name, |(buffer, _)| buffer);
+                let Some(binding) = registry.buffers.iter().position(|known| *known == buffer) else {
+                    let (path, line) = (path.display(), number + 1);
+                    return Err(format!("{path}:{line}: error: no buffer {buffer} in {REGISTRY_PATH}"));
+                };
+                self.source += &format!("@group(0) @binding({binding}) ");
+            } else if line.contains("@binding(") {
+                let (path, line) = (path.display(), number + 1);
                 return Err(format!(
-                    "{}:{line}: error: uses {used}, but there is no {}",
-                    path.display(),
-                    shared.display()
+                    "{path}:{line}: error: binding numbers are those of {REGISTRY_PATH}: leave it out"
                 ));
             }
-            self.append(folder, &shared, form, visited)?;
-        }
-        self.parts.push(Part { path: path.to_path_buf(), start: self.source.len() });
-        self.source += &text;
-        if !text.ends_with('\n') {
+            self.source += line;
             self.source.push('\n');
         }
+        self.parts.push(Part { path, start });
         Ok(())
     }
 
-    fn validate(&mut self, capabilities: Capabilities) -> Result<(), String> {
+    fn validate(&mut self, capabilities: Capabilities, registry: Registry<'_>) -> Result<(), String> {
         let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
             let labels = error.labels().map(|(span, label)| (span, label.to_owned())).collect();
             let notes = error.notes().map(str::to_owned).collect();
@@ -265,7 +328,9 @@ impl Kernel {
                 naga::AddressSpace::Storage { .. } => "Read",
                 _ => return Err(self.report(&format!("unexpected binding {name}"), Vec::new(), Vec::new())),
             };
-            self.bindings.push((binding.binding, name.clone(), access));
+            let buffer = registry.buffers.get(binding.binding as usize).copied().unwrap_or(name);
+            let stepped = (buffer == registry.stepped).then(|| module.types[global.ty].inner.size(module.to_ctx()));
+            self.bindings.push(Bound { index: binding.binding, name: buffer.to_owned(), access, stepped });
         }
         self.bindings.sort();
         let named = module.overrides.iter().filter_map(|(_, o)| Some((o.name.clone()?, o.init.is_none())));
@@ -301,13 +366,49 @@ impl Kernel {
     }
 }
 
-/// The files that the leading `//!` lines name, with their line numbers.
-fn uses(text: &str) -> impl Iterator<Item = (usize, &str)> {
+/// Collects the files that `path` uses and that are not there yet, then `path` itself. `visited` ends circles.
+fn collect(
+    folder: &Path,
+    path: &Path,
+    form: Option<&str>,
+    visited: &mut Vec<PathBuf>,
+    texts: &mut Vec<(PathBuf, String)>,
+) -> Result<(), String> {
+    visited.push(path.to_path_buf());
+    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    for (line, used) in
+        marked(&text, "uses:").flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
+    {
+        let mut shared = folder.join("shared").join(used);
+        let other = form.map(|form| shared.with_extension(format!("{form}.wgsl")));
+        if let Some(other) = other.filter(|other| other.is_file()) {
+            shared = other;
+        }
+        if visited.contains(&shared) {
+            continue;
+        }
+        if !shared.is_file() {
+            return Err(format!("{}:{line}: error: uses {used}, but there is no {}", path.display(), shared.display()));
+        }
+        collect(folder, &shared, form, visited, texts)?;
+    }
+    texts.push((path.to_path_buf(), text));
+    Ok(())
+}
+
+/// What the leading `//!` lines say behind a mark, with their line numbers.
+fn marked<'a>(text: &'a str, mark: &'static str) -> impl Iterator<Item = (usize, &'a str)> {
     text.lines()
         .enumerate()
         .map_while(|(i, line)| Some((i + 1, line.strip_prefix("//!")?)))
-        .filter_map(|(line, comment)| Some((line, comment.trim_start().strip_prefix("uses:")?)))
-        .flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
+        .filter_map(move |(line, comment)| Some((line, comment.trim_start().strip_prefix(mark)?.trim())))
+}
+
+/// The variable that a line declares, if it is a buffer.
+fn declared(line: &str) -> Option<&str> {
+    let (space, rest) = line.strip_prefix("var<")?.split_once('>')?;
+    let is_buffer = space.starts_with("storage") || space.starts_with("uniform");
+    rest.split_once(':').map(|(name, _)| name.trim()).filter(|_| is_buffer)
 }
 
 /// In order of name; none if the folder is missing.

@@ -74,7 +74,7 @@ impl Bench {
                 let submission = rec.submit();
                 self.device.wait(&submission)?;
                 for (kernel, groups) in &way.dispatches {
-                    kernel.dispatch(rec.phase("way"), 0, *groups);
+                    kernel.dispatch(&mut rec.phase(kernel.phases().first().unwrap_or(&"way")), 0, *groups);
                 }
                 let start = Instant::now();
                 let submission = rec.submit();
@@ -326,6 +326,7 @@ fn source(
         index,
         name,
         access: if read.contains(name) { Access::Read } else { Access::ReadWrite },
+        stepped: None,
     };
     let bindings: Vec<Binding> = (0..).zip(names).map(binding).collect();
     let overrides: Vec<(&'static str, bool)> = constants.iter().map(|(name, _)| (*name, true)).collect();
@@ -333,6 +334,7 @@ fn source(
     Box::leak(Box::new(KernelSource {
         name: entry_point,
         entry_point,
+        phases: &[],
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,

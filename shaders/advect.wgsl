@@ -1,4 +1,5 @@
 //! uses: step.wgsl lists.wgsl advected.wgsl
+//! phase: advect
 // Flies the particles that meet no wall to the end of the step, without collisions the newborns too, which it puts behind the others; and on a
 // device alone counts the particles of the cells for the step that follows in the interval, and puts its newborns behind the others.
 //
@@ -6,8 +7,8 @@
 // those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
 // particle, which writes its own slot, for each of those newborns, and as many as there are stretches of cells.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(26) var<storage, read_write> bouncing: array<u32>;
+var<uniform> step: Step;
+var<storage, read_write> bouncing: array<u32>;
 
 fn meet_walls(s: u32) {
     bouncing[append(bounces_of(step.slot))] = s;

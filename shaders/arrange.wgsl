@@ -1,14 +1,15 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl drawn.wgsl cell_gas.wgsl members.wgsl lay.wgsl
+//! phase: sort
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
 // order by itself; those of other cells are listed. A particle lies in the cell of its bin, so its place tells which that is.
 //
 // Reads `bins`, `cell_start`, `particles`, `cell_volume`, `motions` and `wall_list`; writes `sorted` (lay.wgsl), of cells of more than MEMBERS and of
 // the listed `slots`, and appends to `crowded`. One thread per particle as they lie in `particles`.
 
-@group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(9) var<storage, read_write> slots: array<u32>;
-@group(0) @binding(25) var<storage, read_write> crowded: array<u32>;
+var<storage, read> bins: array<vec2<u32>>;
+var<storage, read> cell_start: array<u32>;
+var<storage, read_write> slots: array<u32>;
+var<storage, read_write> crowded: array<u32>;
 
 // Walls part the gas of some cell.
 override PARTED_GAS: bool = true;

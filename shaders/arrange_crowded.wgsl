@@ -1,4 +1,5 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl walls.wgsl cell_gas.wgsl lay.wgsl
+//! phase: sort
 // Sort of the method `cell`, in cells that `collide` does not put in order: their particles by id, and where walls at rest part the gas the part
 // of each.
 //
@@ -7,12 +8,12 @@
 // Reads `crowded`, `bins`, `cell_start`, `slots`, `particles`, `cell_volume`, `cell_parts` and the walls; writes `sorted` and `layers` (lay.wgsl). One thread
 // per entry of `crowded`.
 
-@group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
+var<storage, read> bins: array<vec2<u32>>;
+var<storage, read> cell_start: array<u32>;
 // Four slots each.
-@group(0) @binding(9) var<storage, read> slots: array<vec4<u32>>;
-@group(0) @binding(25) var<storage, read> crowded: array<u32>;
-@group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
+var<storage, read> slots: array<vec4<u32>>;
+var<storage, read> crowded: array<u32>;
+var<storage, read> cell_parts: array<Part>;
 
 // Walls part the gas of some cell.
 override PARTED_GAS: bool = true;

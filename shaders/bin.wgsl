@@ -1,4 +1,6 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl entering.wgsl held.wgsl flown.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl entering.wgsl flown.wgsl
+//! binds: cell_counts as cell_start
+//! phase: bin
 // Puts the newborns behind the particles, counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
 // are then), and finds those that other devices need.
 //
@@ -6,16 +8,16 @@
 // owned here nor lies in the halo) and the counts (`cell_start`, the buffer in which `scan_cells` finds them, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
 // within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is held
-// (held.wgsl) nobody is in any cell, and nobody enters.
+// (HELD) nobody is in any cell, and nobody enters.
 
 override ROUNDS_OF_PAIRS: bool = true;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read> held: array<u32>;
-@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
-@group(0) @binding(8) var<storage, read_write> cell_start: array<atomic<u32>>;
-@group(0) @binding(33) var<storage, read_write> border: array<vec2<u32>>;
+var<uniform> step: Step;
+var<storage, read> held: array<u32>;
+var<storage, read_write> particles: array<Packed>;
+var<storage, read_write> bins: array<vec2<u32>>;
+var<storage, read_write> cell_start: array<atomic<u32>>;
+var<storage, read_write> border: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn bin(thread: Thread) {

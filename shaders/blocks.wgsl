@@ -1,4 +1,6 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl counters.wgsl add64.wgsl coarse.wgsl held.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl gas.wgsl add64.wgsl coarse.wgsl
+//! binds: block_sums as sums
+//! phase: blocks
 // The local state that sets the step size: number and kinetic energy in coarse blocks of cells, and how
 // many particles would cross more than a cell at each step of the ladder.
 //
@@ -14,12 +16,12 @@ override LEVELS: u32;
 // Kinetic energy over reference mass to tally units.
 override BLOCK_ENERGY_SCALE: f32;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read> held: array<u32>;
-@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
-@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
-@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+var<uniform> step: Step;
+var<storage, read> held: array<u32>;
+var<uniform> gases: array<Gas, 16>;
+var<storage, read> particles: array<Particle>;
+var<storage, read_write> counters: array<atomic<u32>>;
+var<storage, read_write> sums: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn blocks(thread: Thread) {
@@ -32,20 +34,20 @@ fn blocks(thread: Thread) {
         return;
     }
     let cell = nearest_cell(particle.position);
-    let slot = block_of(cell) * 4u;
+    let slot = block_of(cell) * BLOCK_WORDS;
     let speed2 = dot(particle.velocity, particle.velocity);
     let energy = 0.5 * gases[kind_of(particle.tag)].mass * speed2 * BLOCK_ENERGY_SCALE;
     if (energy >= 4.29e9) {
         atomicAdd(&counters[TALLY_OVERFLOW], 1u);
         return;
     }
-    add64(slot, 1u, 0u);
-    add64(slot + 2u, rounded_unsigned(energy), 0u);
+    add64(slot + BLOCK_NUMBER, 1u, 0u);
+    add64(slot + BLOCK_ENERGY, rounded_unsigned(energy), 0u);
     // Too fast at level l if |v| TIME_STEP / 2^l is more than a cell.
     var reach = sqrt(speed2) * TIME_STEP * QUANTA / f32(1u << CELL_BITS);
     var level = 0u;
     while (reach > 1.0 && level < LEVELS) {
-        atomicAdd(&sums[4u * BLOCKS + level], 1u);
+        atomicAdd(&sums[BLOCK_WORDS * BLOCKS + level], 1u);
         reach *= 0.5;
         level++;
     }

@@ -5,7 +5,7 @@
 
 override LOOPS: u32 = 256;
 
-@group(0) @binding(1) var<storage, read_write> copy_to: array<vec4<u32>>;
+var<storage, read_write> copy_to: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn ceiling_arithmetic(thread: Thread) {

@@ -3,8 +3,8 @@
 //
 // Reads `copy_from`, writes `copy_to`. One thread per four words.
 
-@group(0) @binding(0) var<storage, read> copy_from: array<vec4<u32>>;
-@group(0) @binding(1) var<storage, read_write> copy_to: array<vec4<u32>>;
+var<storage, read> copy_from: array<vec4<u32>>;
+var<storage, read_write> copy_to: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn ceiling_copy(thread: Thread) {

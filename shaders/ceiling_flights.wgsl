@@ -6,7 +6,7 @@
 // Per metre, as in grid.wgsl.
 override QUANTA: f32 = 1048576.0;
 
-@group(0) @binding(1) var<storage, read_write> copy_to: array<Packed>;
+var<storage, read_write> copy_to: array<Packed>;
 
 @compute @workgroup_size(WORKGROUP)
 fn ceiling_flights(thread: Thread) {

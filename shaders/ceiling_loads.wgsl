@@ -9,8 +9,8 @@ override LOOPS: u32 = 64;
 // Words, a power of two: 16 KiB, which every device has in its nearest cache.
 const TABLE: u32 = 4096;
 
-@group(0) @binding(0) var<storage, read> copy_from: array<u32>;
-@group(0) @binding(1) var<storage, read_write> copy_to: array<vec4<u32>>;
+var<storage, read> copy_from: array<u32>;
+var<storage, read_write> copy_to: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn ceiling_loads(thread: Thread) {

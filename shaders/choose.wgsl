@@ -1,4 +1,6 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl stretches.wgsl emptying.wgsl
+//! binds: asked_dispatches as dispatches
+//! phase: choose lost
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
@@ -13,15 +15,15 @@
 // Rigid spheres, the method `hard-sphere`.
 override RIGID: bool = false;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
-@group(0) @binding(11) var<storage, read> flights: array<vec4<u32>>;
-@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
-@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
+var<uniform> step: Step;
+var<storage, read> sorted: array<Packed>;
+var<storage, read> flights: array<vec4<u32>>;
+var<storage, read> neighbour_count: array<u32>;
+var<storage, read_write> choices: array<vec2<u32>>;
 
-@group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
+var<storage, read_write> layers: array<atomic<u32>>;
 
-@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
+var<storage, read_write> cell_start: array<vec4<u32>>;
 
 // The share of a thread of so many: after the search nobody on a device alone asks where the cells start.
 fn empty_cells(thread: u32, threads: u32) {

@@ -1,4 +1,5 @@
 //! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl drawn.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
+//! phase: collide
 // The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //
 // The particles of a bin lie in its cell, so the first one's place tells which it is.
@@ -8,10 +9,10 @@
 // number of a cell's candidates with its first particle, in `neighbour_count`, for the balance. One thread per cell; each works on its
 // own particles, in order of their ids, in which these need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
 
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(51) var<storage, read_write> parted: array<u32>;
-@group(0) @binding(54) var<storage, read_write> moved: array<u32>;
-@group(0) @binding(62) var<storage, read_write> crowds: array<u32>;
+var<storage, read_write> neighbour_count: array<u32>;
+var<storage, read_write> parted: array<u32>;
+var<storage, read_write> moved: array<u32>;
+var<storage, read_write> crowds: array<u32>;
 
 // The numbers of a cell's particles by their ids, the first eight and the others.
 var<private> by_id: vec2<u32>;

@@ -1,4 +1,5 @@
 //! uses: step.wgsl grid.wgsl local.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
+//! phase: collide
 // The collisions of the method `cell`, in cells of more than MEMBERS particles that no wall parts.
 //
 // Reads `crowds`, `cell_start`, `cell_volume` and `slots`; writes `order_by_id`; reads and writes `sorted`, and among other devices
@@ -6,12 +7,12 @@
 // its own particles, in order of their ids, in which those of up to CROWD slots need not lie where NETWORKS are (crowds.wgsl); elsewhere all do, and neither
 // `slots` nor `order_by_id` is touched.
 
-@group(0) @binding(62) var<storage, read> crowds: array<u32>;
+var<storage, read> crowds: array<u32>;
 // Four ids each.
-@group(0) @binding(9) var<storage, read> slots: array<vec4<u32>>;
+var<storage, read> slots: array<vec4<u32>>;
 // The places of a cell's particles by their ids.
-@group(0) @binding(63) var<storage, read_write> order_by_id: array<u32>;
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
+var<storage, read_write> order_by_id: array<u32>;
+var<storage, read_write> neighbour_count: array<u32>;
 
 const ROWS: u32 = CROWD / 4u;
 

@@ -1,4 +1,5 @@
 //! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl parts.wgsl cell_gas.wgsl
+//! phase: collide
 // The collisions of the method `cell`, in cells that walls which move may touch in this step: each part of the gas by
 // itself, with the volumes of the moment.
 //
@@ -17,8 +18,8 @@
 // (a software device gives up loops that are too long); the first of them collides. Each works on its own cell; what is
 // shared are sets and sums of integers, which have no order.
 
-@group(0) @binding(54) var<storage, read> moved: array<u32>;
-@group(0) @binding(55) var<storage, read> still_gas: array<StillGas>;
+var<storage, read> moved: array<u32>;
+var<storage, read> still_gas: array<StillGas>;
 
 // The points of a cell, a rank-1 lattice, at most 96.
 override CELL_POINTS: u32;

@@ -1,4 +1,5 @@
 //! uses: step.wgsl grid.wgsl local.wgsl walls.wgsl parts.wgsl cell_gas.wgsl
+//! phase: collide
 // The collisions of the method `cell`, in cells that walls part: each part of the gas by itself.
 //
 // Pairs that a wall parts do not collide (where the gas of a part is not convex; the volumes allow for it).
@@ -6,8 +7,8 @@
 // Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns`, the part of each particle in `layers` (arrange_crowded.wgsl) and the
 // walls; reads and writes `sorted`, and of its own cell `order_by_id`. One thread per entry of `parted`; each works on its own cell.
 
-@group(0) @binding(51) var<storage, read> parted: array<u32>;
-@group(0) @binding(52) var<storage, read> cell_parts: array<Part>;
+var<storage, read> parted: array<u32>;
+var<storage, read> cell_parts: array<Part>;
 
 fn hidden(s: u32, t: u32) -> bool {
     return blocked(sorted[s].place.xyz, sorted[t].place.xyz, 0.0);

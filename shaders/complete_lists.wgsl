@@ -1,4 +1,5 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl held.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl
+//! phase: neighbours choose lost
 // Completes what `order` and `neighbours` have left incomplete: the flights that may meet a wall, of which it finds when they do; the lists longer than DIRECT, which are
 // searched once more, with a tail; and those near walls, from which it takes who stands behind a wall where the flights start.
 //
@@ -6,18 +7,18 @@
 // entry of the list that these have left, or per ghost that was asked and has its list yet to be completed.
 //
 // Where a tail is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
-// has, and the room that was wanted is kept for the host. A device alone is held (held.wgsl): it leaves `sorted` as it is, from which the
+// has, and the room that was wanted is kept for the host. A device alone is held (HELD): it leaves `sorted` as it is, from which the
 // host goes on with more room. Among others, of whom one alone may be short of room, the interval is run again.
 //
 // When ghosts are asked rounds may have changed flights, and so the start of the step is taken from `firsts` and `newborns`. The test of a pair
 // takes the lower id first, and only pairs near walls are tested, whoever else is in the list: so both sides agree.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(44) var<storage, read> firsts: array<Particle>;
-@group(0) @binding(64) var<storage, read> incomplete: array<u32>;
-@group(0) @binding(65) var<storage, read_write> held: array<atomic<u32>>;
+var<uniform> step: Step;
+var<storage, read> sorted: array<Particle>;
+var<storage, read_write> layers: array<u32>;
+var<storage, read> firsts: array<Particle>;
+var<storage, read> incomplete: array<u32>;
+var<storage, read_write> held: array<atomic<u32>>;
 
 // Gives a list a tail; false where there is no room for it.
 fn lengthen(s: u32) -> bool {

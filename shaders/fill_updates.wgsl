@@ -1,15 +1,16 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl sendings.wgsl
+//! phase: update
 // Update, part 3: what the rounds did to each particle, to its place in the message to its peer.
 //
 // Reads `sendings`, `peer_starts`, `sorted`, `flights`, `cells`; writes `updates_out`. One thread per sending that
 // found room.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(11) var<storage, read> flights: array<vec4<u32>>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
-@group(0) @binding(38) var<storage, read_write> updates_out: array<Update>;
-@group(0) @binding(57) var<storage, read> peer_starts: array<u32>;
+var<uniform> step: Step;
+var<storage, read> sorted: array<Particle>;
+var<storage, read> flights: array<vec4<u32>>;
+var<storage, read> cells: array<u32>;
+var<storage, read_write> updates_out: array<Update>;
+var<storage, read> peer_starts: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn fill_updates(thread: Thread) {

@@ -1,4 +1,5 @@
-//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl chooser.wgsl held.wgsl mutual.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl mutual.wgsl
+//! phase: settle lost
 // Settle, part 1: the pairs whose choices are mutual.
 //
 // Reads `choices`, `sorted`, `layers`; writes `pairs` (indices, lower id first) and their count in `counters`.
@@ -8,11 +9,11 @@
 // Rounds of the plan: the round of this number is the extra one.
 override ROUNDS: u32;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read> held: array<u32>;
-@group(0) @binding(10) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(16) var<storage, read_write> pairs: array<vec2<u32>>;
-@group(0) @binding(32) var<storage, read> layers: array<u32>;
+var<uniform> step: Step;
+var<storage, read> held: array<u32>;
+var<storage, read> sorted: array<Particle>;
+var<storage, read_write> pairs: array<vec2<u32>>;
+var<storage, read> layers: array<u32>;
 
 fn mark_of(s: u32) -> u32 {
     return layers[s];

@@ -1,12 +1,13 @@
 //! uses: step.wgsl shares.wgsl
+//! phase: exchange update
 // Exchange and update, part 2: where each peer's message begins among all that is sent.
 //
 // Reads `peer_counts` and leaves zeros there; writes their exclusive prefix sums and, behind them, the sum of all to
 // `peer_starts`. One workgroup; each thread takes one contiguous share of the peers.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(56) var<storage, read_write> peer_counts: array<u32>;
-@group(0) @binding(57) var<storage, read_write> peer_starts: array<u32>;
+var<uniform> step: Step;
+var<storage, read_write> peer_counts: array<u32>;
+var<storage, read_write> peer_starts: array<u32>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn message_starts(@builtin(local_invocation_index) thread: u32) {

@@ -1,4 +1,6 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: neighbours
 // The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
 // are short (search.wgsl).
 //
@@ -14,9 +16,9 @@ const FEWEST_TURNS: u32 = 4;
 // Pairs that a thread keeps until it writes them.
 const KEPT: u32 = 4;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(15) var<storage, read_write> choices: array<vec2<u32>>;
-@group(0) @binding(64) var<storage, read_write> incomplete: array<u32>;
+var<uniform> step: Step;
+var<storage, read_write> choices: array<vec2<u32>>;
+var<storage, read_write> incomplete: array<u32>;
 
 // Who has a list: of all its neighbours, or only of those who have it in theirs.
 struct Listed {

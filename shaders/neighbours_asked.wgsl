@@ -1,11 +1,12 @@
 //! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl
+//! phase: choose lost
 // The neighbour lists of the ghosts that were asked (asked.wgsl), as far as they are short (search.wgsl).
 //
 // Reads what the search does; reads and writes `layers`; writes `neighbours` and `neighbour_count`. One thread per ghost that was asked, which writes its
 // own list: the others, who may be searching as well, leave it alone.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+var<uniform> step: Step;
+var<storage, read_write> layers: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn neighbours_asked(thread: Thread) {

@@ -1,4 +1,6 @@
 //! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl newborn.wgsl walls.wgsl lists.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: sort
 // Sort: the particles to the places of their cells, in the order in which `bin` has counted them.
 //
 // Reads `bins`, `cell_start`, `particles`, `newborns`, `shares`, the classes of the cells and their clearances; writes
@@ -6,17 +8,17 @@
 // `firsts`, marks those that may meet a wall and appends them to `incomplete`, for `complete_lists`, and clears what the search and the rounds use. One thread per particle as they lie in
 // `particles`. In which order the particles of a cell lie is a matter of the order of the threads; nothing that follows asks for it.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Packed>;
-@group(0) @binding(5) var<storage, read> bins: array<vec2<u32>>;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
-@group(0) @binding(12) var<storage, read_write> middles: array<u32>;
-@group(0) @binding(27) var<storage, read_write> cells: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(44) var<storage, read_write> firsts: array<Packed>;
-@group(0) @binding(64) var<storage, read_write> incomplete: array<u32>;
+var<uniform> step: Step;
+var<storage, read> particles: array<Packed>;
+var<storage, read> bins: array<vec2<u32>>;
+var<storage, read> cell_start: array<u32>;
+var<storage, read_write> sorted: array<Packed>;
+var<storage, read_write> middles: array<u32>;
+var<storage, read_write> cells: array<u32>;
+var<storage, read_write> layers: array<u32>;
+var<storage, read_write> neighbour_count: array<u32>;
+var<storage, read_write> firsts: array<Packed>;
+var<storage, read_write> incomplete: array<u32>;
 
 // The fewest links, at least so many, of a chain from an own particle to a ghost; `step.depth` also where there is none.
 fn links_away(middle: u32, cell: vec3<u32>, least: u32) -> u32 {

@@ -1,14 +1,16 @@
-//! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: exchange
 // Exchange, part 1: which particles go to which devices: to every one that owns their cell or needs them as ghosts.
 //
 // Reads `border`, `particles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
 // buffer's end: the host then makes it larger and packs again) and adds to `peer_counts`. One thread per entry of
 // `border`. The order of what is sent depends on the order of the threads; the receiver sorts.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
-@group(0) @binding(33) var<storage, read> border: array<vec2<u32>>;
-@group(0) @binding(56) var<storage, read_write> peer_counts: array<atomic<u32>>;
+var<uniform> step: Step;
+var<storage, read> particles: array<Particle>;
+var<storage, read> border: array<vec2<u32>>;
+var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack(thread: Thread) {

@@ -1,4 +1,5 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! phase: update
 // Update, part 1: the particles that the rounds since the last exchange have changed, to every device
 // that needs them as ghosts. (It may have others near its border, as newborns or as its own of the step before: no chain
 // leads to those, so what becomes of them changes nothing.)
@@ -7,12 +8,12 @@
 // buffer's end: the host then makes it larger and packs again), adds to `peer_counts` and clears the marks in `layers`.
 // One thread per entry of `changed`. The receiver finds the ghost by cell and id, so order does not matter.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(12) var<storage, read> middles: array<u32>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(37) var<storage, read> changed: array<u32>;
-@group(0) @binding(56) var<storage, read_write> peer_counts: array<atomic<u32>>;
+var<uniform> step: Step;
+var<storage, read> middles: array<u32>;
+var<storage, read> cells: array<u32>;
+var<storage, read_write> layers: array<u32>;
+var<storage, read> changed: array<u32>;
+var<storage, read_write> peer_counts: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn pack_updates(thread: Thread) {

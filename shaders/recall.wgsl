@@ -1,12 +1,13 @@
 //! uses: step.wgsl particle.wgsl newborn.wgsl
-// Puts the particles back as they were before a step that was held after its search (held.wgsl), on a device alone.
+//! phase: lists
+// Puts the particles back as they were before a step that was held after its search (HELD), on a device alone.
 //
 // Reads `sorted`; writes `particles`, where those that entered in this step leave dead slots: they enter again. One thread per
 // particle, which writes its own slot.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+var<uniform> step: Step;
+var<storage, read_write> particles: array<Packed>;
+var<storage, read> sorted: array<Packed>;
 
 @compute @workgroup_size(WORKGROUP)
 fn recall(thread: Thread) {

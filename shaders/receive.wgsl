@@ -1,4 +1,6 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl counters.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl listed.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl listed.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: update
 // Update, part 2: what the owners of the ghosts did to them.
 //
 // Reads `updates_in`, `cell_start`, `layers`, the lists of neighbours behind the flights, `middles`; writes `sorted` and `flights`, and lets the ghost choose
@@ -6,12 +8,12 @@
 // One thread per update, each of another ghost, which is found in its cell by its id; one that is not there
 // is counted, and the host stops the run.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
-@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
-@group(0) @binding(12) var<storage, read> middles: array<u32>;
-@group(0) @binding(39) var<storage, read> updates_in: array<Update>;
+var<uniform> step: Step;
+var<storage, read> cell_start: array<u32>;
+var<storage, read_write> sorted: array<Packed>;
+var<storage, read_write> flights: array<vec4<u32>>;
+var<storage, read> middles: array<u32>;
+var<storage, read> updates_in: array<Update>;
 
 // Those who choose and may have a particle in their lists that has none itself, or not all of it.
 fn touch_around(s: u32, cell: vec3<u32>, thread: u32) {

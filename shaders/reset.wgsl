@@ -1,4 +1,6 @@
-//! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl
+//! uses: step.wgsl lists.wgsl emptied.wgsl
+//! binds: cell_counts as cell_start
+//! phase: bin advect
 // Empties the lists, and the cells, whatever is in them: before the first step of an interval, and among other devices before each. The other steps
 // begin with what `scan_sums` and `advect` have emptied, and of cells `choose`, `scan_cells` or a clear.
 //
@@ -8,9 +10,9 @@
 // Fours of cells that a thread empties.
 const FOURS: u32 = 4;
 
-@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
-@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
-@group(0) @binding(43) var<storage, read_write> asked_dispatches: array<atomic<u32>>;
+var<storage, read_write> cell_start: array<vec4<u32>>;
+var<storage, read_write> stretch_sums: array<u32>;
+var<storage, read_write> asked_dispatches: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn reset(thread: Thread) {

@@ -1,17 +1,19 @@
-//! uses: step.wgsl held.wgsl stretches.wgsl starts.wgsl
+//! uses: step.wgsl stretches.wgsl starts.wgsl
+//! binds: counts_apart as cell_counts
+//! phase: scan
 // Scan, part 3: where each cell's particles start, in place of how many they are.
 //
 // Reads `chunk_sums` and `stretch_sums`, of few stretches the sums themselves, of more what `scan_stretches` made of them; reads counts and writes
 // starts in `cell_start`, by fours, up to a whole chunk (counts that lie apart, COUNTS_APART, are in `cell_counts`, and zero afterwards); writes PRESENT. One thread per chunk. Where a vessel is thin in its box, or gas only here and there, most chunks have no particle: of these no
 // count is read, but where threads do their chunks together (starts.gpu.wgsl).
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read_write> held: array<u32>;
-@group(0) @binding(7) var<storage, read> chunk_sums: array<vec4<u32>>;
-@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
-@group(0) @binding(29) var<storage, read> stretch_sums: array<vec4<u32>>;
+var<uniform> step: Step;
+var<storage, read_write> held: array<u32>;
+var<storage, read> chunk_sums: array<vec4<u32>>;
+var<storage, read_write> cell_start: array<vec4<u32>>;
+var<storage, read> stretch_sums: array<vec4<u32>>;
 
-@group(0) @binding(66) var<storage, read_write> cell_counts: array<vec4<u32>>;
+var<storage, read_write> cell_counts: array<vec4<u32>>;
 
 const FOUR: vec4<u32> = vec4<u32>(0u, 1u, 2u, 3u);
 

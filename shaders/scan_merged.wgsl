@@ -1,13 +1,15 @@
-//! uses: step.wgsl shares.wgsl counters.wgsl lists.wgsl emptied.wgsl held.wgsl stretches.wgsl starts_of_chunk.wgsl
+//! uses: step.wgsl shares.wgsl lists.wgsl emptied.wgsl stretches.wgsl starts_of_chunk.wgsl
+//! binds: counts_apart as cell_counts
+//! phase: scan
 // Scan in one, of few cells (merged.wgsl): where each cell's particles start, in place of how many they are; and on a device alone empties the lists of
 // the step before.
 //
 // Reads counts and writes starts as `scan_cells` does; writes PRESENT. One workgroup; each thread takes one contiguous share, by fours.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read_write> held: array<u32>;
-@group(0) @binding(8) var<storage, read_write> cell_start: array<vec4<u32>>;
-@group(0) @binding(66) var<storage, read_write> cell_counts: array<vec4<u32>>;
+var<uniform> step: Step;
+var<storage, read_write> held: array<u32>;
+var<storage, read_write> cell_start: array<vec4<u32>>;
+var<storage, read_write> cell_counts: array<vec4<u32>>;
 
 @compute @workgroup_size(SCAN_THREADS)
 fn scan_merged(@builtin(local_invocation_index) thread: u32) {

@@ -1,10 +1,11 @@
 //! uses: step.wgsl shares.wgsl stretches.wgsl
+//! phase: scan
 // Scan, part 2, where there are more than a few stretches: their sums become exclusive prefix sums.
 //
 // Reads and writes `stretch_sums`. One workgroup; each thread takes one contiguous share.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
+var<uniform> step: Step;
+var<storage, read_write> stretch_sums: array<u32>;
 
 // Four sums from `k` on, zero from `end` on, where others' are: read together, since each read would wait for what was written before it.
 fn four_from(k: u32, end: u32) -> vec4<u32> {

@@ -1,13 +1,15 @@
-//! uses: step.wgsl counters.wgsl lists.wgsl emptied.wgsl stretches.wgsl emptying.wgsl
+//! uses: step.wgsl lists.wgsl emptied.wgsl stretches.wgsl emptying.wgsl
+//! binds: cell_counts as cell_start
+//! phase: scan
 // Scan, part 1: how many particles each chunk of cells has, and each stretch; and on a device alone empties the lists of the step before.
 //
 // Reads the counts in `cell_start`, the buffer that `bin` counts in, by fours; writes `chunk_sums`, and adds to `stretch_sums` (zero before). One thread per chunk. The cell
 // behind the last, and those up to a whole chunk, are counted as ones without particles. Of the lists those are left that `bin` and `advect` have to do with.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(7) var<storage, read_write> chunk_sums: array<u32>;
-@group(0) @binding(8) var<storage, read> cell_start: array<vec4<u32>>;
-@group(0) @binding(29) var<storage, read_write> stretch_sums: array<atomic<u32>>;
+var<uniform> step: Step;
+var<storage, read_write> chunk_sums: array<u32>;
+var<storage, read> cell_start: array<vec4<u32>>;
+var<storage, read_write> stretch_sums: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn scan_sums(thread: Thread) {

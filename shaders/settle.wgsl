@@ -1,12 +1,14 @@
-//! uses: step.wgsl local.wgsl counters.wgsl lists.wgsl settled.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl settled.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: settle
 // Settle, part 2: the collisions of this round (settled.wgsl).
 //
 // Reads `pairs`, and what a collision wants; writes what that changes. One thread per pair. Pairs are
 // disjoint and random numbers are keyed on (step, round, ids), so order does not matter.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
-@group(0) @binding(16) var<storage, read> pairs: array<vec2<u32>>;
+var<uniform> step: Step;
+var<storage, read> choices: array<vec2<u32>>;
+var<storage, read> pairs: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn settle(thread: Thread) {

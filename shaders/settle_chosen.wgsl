@@ -1,4 +1,6 @@
-//! uses: step.wgsl local.wgsl counters.wgsl lists.wgsl held.wgsl together.wgsl mutual.wgsl settled.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl together.wgsl mutual.wgsl settled.wgsl
+//! binds: rechoose_dispatches as dispatches
+//! phase: settle
 // Settle in one, of few particles (merged.wgsl): the pairs whose choices are mutual, and their collisions.
 //
 // Does what `match_pairs` and `settle` do one after the other, but for the list between. Reads `rechoose`, `choices`, and what a collision wants; writes what that changes,
@@ -6,8 +8,8 @@
 // Meanwhile others collide, and of what they change the match asks nothing: they let particles choose in the next round, have
 // collided with others, and keep their tags, which are written again as they were.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read> held: array<u32>;
+var<uniform> step: Step;
+var<storage, read> held: array<u32>;
 
 fn mark_of(s: u32) -> u32 {
     return atomicLoad(&layers[s]);

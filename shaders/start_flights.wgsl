@@ -1,13 +1,14 @@
 //! uses: step.wgsl grid.wgsl middle.wgsl coarse.wgsl first_flight.wgsl
+//! phase: sort
 // The flights with which the particles start the step, where their diameters are capped, which the search asks them for; else the search starts them.
 //
 // Reads `sorted`, `newborns`, `shares`, the number of particles behind `cell_start`; writes `flights`. One thread per particle, which writes
 // its own flight. Flights are where the particles were from which they have been sorted, so `order` cannot write them.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
-@group(0) @binding(53) var<storage, read> shares: array<u32>;
+var<uniform> step: Step;
+var<storage, read> cell_start: array<u32>;
+var<storage, read_write> flights: array<vec4<u32>>;
+var<storage, read> shares: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn start_flights(thread: Thread) {

@@ -1,4 +1,6 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl counters.wgsl add64.wgsl motions.wgsl held.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl add64.wgsl motions.wgsl
+//! binds: zone_sums as sums
+//! phase: tally
 // Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
 // probes).
 //
@@ -39,18 +41,17 @@ override VELOCITY_SCALE: f32;
 override ENERGY_SCALE: f32;
 override CHUNK_LOOPS: u32 = 32;
 
-const WORDS: u32 = 12;
 const ENERGY_RANGE: f32 = 4.29e9;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(65) var<storage, read> held: array<u32>;
-@group(0) @binding(2) var<storage, read> particles: array<Packed>;
-@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
-@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
-@group(0) @binding(18) var<storage, read> zones: array<Zone>;
+var<uniform> step: Step;
+var<storage, read> held: array<u32>;
+var<storage, read> particles: array<Packed>;
+var<storage, read_write> counters: array<atomic<u32>>;
+var<storage, read_write> sums: array<atomic<u32>>;
+var<storage, read> zones: array<Zone>;
 
 // Of one gas, then of the other.
-var<workgroup> shared_sums: array<atomic<u32>, 2u * WORDS>;
+var<workgroup> shared_sums: array<atomic<u32>, 2u * ZONE_WORDS>;
 
 struct Sums {
     number: u32,
@@ -135,13 +136,13 @@ fn added(sums: Sums, velocity: vec3<i32>, kinetic: u32, spin: u32) -> Sums {
 
 fn share(gas: u32, sums: Sums) {
     if (sums.number > 0u) {
-        let slot = gas * WORDS;
-        share64(slot, vec2<u32>(sums.number, 0u));
-        share64(slot + 2u, sums.x);
-        share64(slot + 4u, sums.y);
-        share64(slot + 6u, sums.z);
-        share64(slot + 8u, sums.kinetic);
-        share64(slot + 10u, sums.spin);
+        let slot = gas * ZONE_WORDS;
+        share64(slot + ZONE_NUMBER, vec2<u32>(sums.number, 0u));
+        share64(slot + ZONE_VELOCITY, sums.x);
+        share64(slot + ZONE_VELOCITY + 2u, sums.y);
+        share64(slot + ZONE_VELOCITY + 4u, sums.z);
+        share64(slot + ZONE_KINETIC, sums.kinetic);
+        share64(slot + ZONE_SPIN, sums.spin);
     }
 }
 
@@ -155,7 +156,7 @@ fn tally(
     if (zone == CHAMBERS && chambers_have_all) {
         return;
     }
-    if (thread < 2u * WORDS) {
+    if (thread < 2u * ZONE_WORDS) {
         atomicStore(&shared_sums[thread], 0u);
     }
     workgroupBarrier();
@@ -205,15 +206,15 @@ fn tally(
         share(1u, sums_of_second);
     }
     workgroupBarrier();
-    let gas = first_gas + thread / (WORDS / 2u);
-    if (thread < WORDS && gas < GASES) {
+    let gas = first_gas + thread / (ZONE_WORDS / 2u);
+    if (thread < ZONE_WORDS && gas < GASES) {
         let low = atomicLoad(&shared_sums[2u * thread]);
         let high = atomicLoad(&shared_sums[2u * thread + 1u]);
-        let word = 2u * (thread % (WORDS / 2u));
-        add64((zone * GASES + gas) * WORDS + word, low, high);
+        let word = 2u * (thread % (ZONE_WORDS / 2u));
+        add64((zone * GASES + gas) * ZONE_WORDS + word, low, high);
         if (chambers_have_all && zone < CHAMBERS) {
             let left = select(negated(vec2<u32>(low, high)), vec2<u32>(low, high), zone == 0u);
-            add64((CHAMBERS * GASES + gas) * WORDS + word, left.x, left.y);
+            add64((CHAMBERS * GASES + gas) * ZONE_WORDS + word, left.x, left.y);
         }
     }
 }

@@ -1,4 +1,6 @@
-//! uses: step.wgsl local.wgsl particle.wgsl counters.wgsl add64.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl add64.wgsl
+//! binds: histogram as sums
+//! phase: blocks weigh
 // Where the work of the last step was: sums of the particles' weights over the planes of cells of the boxes
 // that are to be cut (recursive coordinate bisection), and the entries of all neighbour lists, those of ghosts apart.
 //
@@ -17,16 +19,16 @@ struct Weights {
 
 const OPEN: u32 = 3;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
-@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
-@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
-@group(0) @binding(32) var<storage, read> layers: array<u32>;
-@group(0) @binding(40) var<uniform> weights: Weights;
+var<uniform> step: Step;
+var<storage, read_write> counters: array<atomic<u32>>;
+var<storage, read> neighbour_count: array<u32>;
+var<storage, read_write> sums: array<atomic<u32>>;
+var<storage, read> cells: array<u32>;
+var<storage, read> layers: array<u32>;
+var<uniform> weights: Weights;
 // A cut: axis, plane, the entries below and above. An open box: OPEN, the axis to cut, its lowest plane, its
 // place in the histogram. A part: OPEN + 1.
-@group(0) @binding(41) var<storage, read> cuts: array<vec4<u32>>;
+var<storage, read> cuts: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn weigh(thread: Thread) {

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use std::mem::offset_of;
 
 use corpuscle::gpu::{KERNELS, KernelSource};
+use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
     CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, HELD_INTERVAL, LIST_PARTS, MEMBERS, PART_WORDS,
-    PARTS_OF_LISTS,
+    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -209,10 +209,7 @@ fn constants_of_kernels_are_those_of_the_host() {
             _ => panic!("{name} is no number"),
         }
     };
-    let of_lists = [("LIST_PARTS", LIST_PARTS), ("PART_WORDS", PART_WORDS), ("PARTS_OF_LISTS", PARTS_OF_LISTS)]
-        .map(|(name, words)| (name, words as u32));
-    let held = [("INTERVAL", HELD_INTERVAL)];
-    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)].into_iter().chain(of_lists).chain(held) {
+    for (name, of_host) in [("MEMBERS", MEMBERS), ("CROWD", CROWD)] {
         let found: Vec<u32> = modules().iter().filter_map(|(_, module)| value(module, name)).collect();
         assert!(
             !found.is_empty() && found.iter().all(|&value| value == of_host),
@@ -225,4 +222,62 @@ fn constants_of_kernels_are_those_of_the_host() {
 #[test]
 fn workgroups_have_whole_subgroups() {
     assert!(corpuscle::subdomain::WORKGROUP.is_multiple_of(corpuscle::gpu::WORKGROUP_DIVISOR));
+}
+
+/// What is wrong with a table of buffers that are reused, held against the kernels of the phases in which it is which.
+fn clashes(reused: &[&[Use]]) -> Vec<String> {
+    let at = |phase: &str| PHASES.iter().position(|known| *known == phase).expect("a phase");
+    let phases = |used: &Use| -> Vec<usize> {
+        let (from, to) = (at(used.from), at(used.to));
+        let count = (to + PHASES.len() - from) % PHASES.len();
+        (0..=count).map(|k| (from + k) % PHASES.len()).collect()
+    };
+    let mut found = Vec::new();
+    for uses in reused {
+        for (k, used) in uses.iter().enumerate() {
+            let own = phases(used);
+            for other in &uses[k + 1..] {
+                let apart = used.runs != other.runs && used.runs != Runs::All && other.runs != Runs::All;
+                let others = phases(other);
+                let hands_over = |phase: usize| {
+                    [(used, other), (other, used)].iter().any(|(a, b)| at(a.to) == phase && at(b.from) == phase)
+                };
+                let both = own.iter().filter(|phase| others.contains(phase) && !hands_over(**phase));
+                found.extend(
+                    both.filter(|_| !apart)
+                        .map(|&phase| format!("in {} it is {:?} and {:?}", PHASES[phase], used.names, other.names)),
+                );
+            }
+            for kernel in KERNELS.iter().filter(|kernel| !used.idle.contains(&kernel.name)) {
+                let bound = kernel.bindings.iter().any(|binding| used.names.contains(&binding.name));
+                let outside = kernel.phases.iter().filter(|phase| bound && !own.contains(&at(phase)));
+                found.extend(outside.map(|phase| format!("{} has {:?} in {phase}", kernel.name, used.names)));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_buffer_under_several_names_is_one_at_a_time() {
+    assert_eq!(clashes(REUSED), Vec::<String>::new());
+    // Each kernel of the step has its phases.
+    for kernel in KERNELS.iter().filter(|kernel| !kernel.name.starts_with("ceiling")) {
+        assert!(!kernel.phases.is_empty(), "{}: no line '//! phase: ..'", kernel.name);
+    }
+}
+
+/// The check can fail: a stretch that is too short, one that is too long, and a name of another buffer.
+#[test]
+fn a_wrong_reuse_is_found() {
+    let uses = REUSED.iter().find(|uses| uses[0].names == ["bins"]).expect("the buffer");
+    let changed = |change: fn(&mut Vec<Use>)| {
+        let mut uses = uses.to_vec();
+        change(&mut uses);
+        clashes(&[&uses])
+    };
+    assert!(changed(|_| ()).is_empty());
+    assert_eq!(changed(|uses| uses[0].to = "scan").len(), 3, "order, arrange and arrange_crowded read the bins");
+    assert!(changed(|uses| uses[0].to = "neighbours").iter().any(|clash| clash.contains("in collide it is")));
+    assert!(!changed(|uses| uses[2].names = &["slots"]).is_empty());
 }

@@ -7,8 +7,11 @@ mod build;
 
 use std::path::Path;
 
-const KERNEL: &str = "//! Doubles a value.\n//! uses: double.wgsl\n\
-    @group(0) @binding(0) var<storage, read_write> values: array<u32>;\n\
+const REGISTRY: build::Registry<'static> =
+    build::Registry { numbers: &[&[("ONE", 1)]], buffers: &["values", "more"], stepped: "more" };
+
+const KERNEL: &str = "//! Doubles a value.\n//! uses: double.wgsl\n//! phase: advect\n\
+    var<storage, read_write> values: array<u32>;\n\
     @compute @workgroup_size(64)\n\
     fn main(@builtin(global_invocation_id) id: vec3<u32>) {\n    values[id.x] = double(values[id.x]);\n}\n";
 const DOUBLE: &str = "//! Shared arithmetic.\n//! uses: two.wgsl\nfn double(x: u32) -> u32 {\n    return TWO * x;\n}\n";
@@ -25,7 +28,7 @@ fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
 
 fn error(files: &[(&str, &str)]) -> String {
     let dir = folder(files);
-    match build::kernels(dir.path()) {
+    match build::kernels(dir.path(), REGISTRY) {
         Ok(_) => panic!("accepted"),
         Err(message) => message.replace(&dir.path().display().to_string(), "shaders"),
     }
@@ -40,24 +43,25 @@ fn a_kernel_holds_what_it_uses_once_and_before_it() {
         ("shared/idle.wgsl", TWO),
         ("notes.txt", "not a shader"),
     ]);
-    let (kernels, unused) = build::kernels(dir.path()).unwrap();
+    let (kernels, unused) = build::kernels(dir.path(), REGISTRY).unwrap();
     assert_eq!(kernels.len(), 1);
     assert_eq!(kernels[0].name, "advect");
     let source = &kernels[0].source;
     assert_eq!(source.matches(TWO).count(), 1);
     assert!(source.find(TWO) < source.find("fn double") && source.find("fn double") < source.find("fn main"));
     assert_eq!(unused, [dir.path().join("shared/idle.wgsl")]);
-    assert_eq!(kernels[0].bindings, [(0, "values".to_string(), "ReadWrite")]);
+    let values = build::Bound { index: 0, name: "values".into(), access: "ReadWrite", stepped: None };
+    assert_eq!(kernels[0].bindings, [values]);
     let table = build::table(&kernels);
     let start = "pub static KERNELS: &[KernelSource] = &[\nKernelSource { name: \"advect\", entry_point: \"main\", \
-        bindings: &[Binding { index: 0, name: \"values\", access: Access::ReadWrite }, ], overrides: &[], \
-        source: \"const TWO = 2u;\\n";
+        phases: &[\"advect\"], bindings: &[Binding { index: 0, name: \"values\", access: Access::ReadWrite, \
+        stepped: None }, ], overrides: &[], source: \"const ONE: u32 = 1u;\\nconst TWO = 2u;\\n";
     assert!(table.starts_with(start), "{table}");
 }
 
 #[test]
 fn without_shaders_the_table_is_empty() {
-    let (kernels, unused) = build::kernels(Path::new("no/such/folder")).unwrap();
+    let (kernels, unused) = build::kernels(Path::new("no/such/folder"), REGISTRY).unwrap();
     assert!(unused.is_empty());
     assert_eq!(build::table(&kernels), "pub static KERNELS: &[KernelSource] = &[\n];\n");
 }
@@ -81,7 +85,7 @@ fn a_fault_is_reported_with_its_own_file_and_line() {
         ("shared/double.wgsl", DOUBLE),
         ("shared/two.wgsl", TWO),
     ]);
-    assert!(in_kernel.contains("shaders/advect.wgsl:6:"), "{in_kernel}");
+    assert!(in_kernel.contains("shaders/advect.wgsl:7:"), "{in_kernel}");
 }
 
 #[test]
@@ -116,7 +120,7 @@ fn files_that_use_each_other_end() {
         ("shared/double.wgsl", DOUBLE),
         ("shared/two.wgsl", &format!("//! uses: double.wgsl\n{TWO}")),
     ]);
-    assert_eq!(build::kernels(dir.path()).unwrap().0.len(), 1);
+    assert_eq!(build::kernels(dir.path(), REGISTRY).unwrap().0.len(), 1);
 }
 
 /// Another form of a shared file makes another source of the kernels that use it, as valid as the first.
@@ -133,7 +137,7 @@ fn a_form_of_a_shared_file_makes_another_source() {
         ])
     };
     let dir = second(&twice);
-    let (kernels, unused) = build::kernels(dir.path()).unwrap();
+    let (kernels, unused) = build::kernels(dir.path(), REGISTRY).unwrap();
     assert!(unused.is_empty(), "{unused:?}");
     assert!(kernels[0].source.contains("TWO * x") && !kernels[0].source.contains("x + x"));
     let [for_software, for_gpus] = &kernels[0].forms;
@@ -144,12 +148,32 @@ fn a_form_of_a_shared_file_makes_another_source() {
 
     let kernel = error(&[("advect.software.wgsl", "fn main() {}\n")]);
     assert!(kernel.contains("shaders/advect.software.wgsl: error: only files of shared/ have forms"), "{kernel}");
-    let broken = |text: &str| build::kernels(second(text).path()).err().expect("an error");
+    let broken = |text: &str| build::kernels(second(text).path(), REGISTRY).err().expect("an error");
     let named = broken(&twice.replace("x + x", "x + y"));
     assert!(named.contains("double.software.wgsl:4:"), "{named}");
-    let bound = "@group(0) @binding(1) var<storage, read_write> more: array<u32>;\n".to_owned();
+    let bound = "var<storage, read_write> more: array<u32>;\n".to_owned();
     let other = broken(&(bound + &twice.replace("x + x", "x + more[0]")));
     assert!(other.contains("other bindings or constants"), "{other}");
+}
+
+/// A buffer has the binding number of its place in the registry, whatever a shader calls it.
+#[test]
+fn buffers_are_bound_by_the_registry() {
+    let kernel = |head: &str, declared: &str| {
+        format!("{head}{declared}@compute @workgroup_size(1)\nfn main() {{\n    sums[0] = ONE;\n}}\n")
+    };
+    let declared = "var<storage, read_write> sums: array<u32>;\n";
+    let dir = folder(&[("tally.wgsl", &kernel("//! binds: more as sums\n", declared))]);
+    let (kernels, _) = build::kernels(dir.path(), REGISTRY).unwrap();
+    let bound = build::Bound { index: 1, name: "more".into(), access: "ReadWrite", stepped: Some(4) };
+    assert_eq!(kernels[0].bindings, [bound]);
+    assert!(kernels[0].source.contains("@group(0) @binding(1) var<storage, read_write> sums"));
+    let unknown = error(&[("tally.wgsl", &kernel("", declared))]);
+    assert_eq!(unknown, "shaders/tally.wgsl:1: error: no buffer sums in src/subdomain/registry.rs");
+    let numbered = error(&[("tally.wgsl", &kernel("", &format!("@group(0) @binding(1) {declared}")))]);
+    assert!(numbered.starts_with("shaders/tally.wgsl:1: error: binding numbers are those of"), "{numbered}");
+    let wrong = error(&[("tally.wgsl", &kernel("//! binds: more = sums\n", declared))]);
+    assert_eq!(wrong, "shaders/tally.wgsl:1: error: found 'binds: more = sums', allowed: BUFFER as NAME");
 }
 
 /// The kernels that only a bench compiles are as valid as the step's.

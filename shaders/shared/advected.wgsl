@@ -1,8 +1,8 @@
-//! uses: step.wgsl grid.wgsl local.wgsl counters.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl held.wgsl flying.wgsl binned.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl flying.wgsl binned.wgsl
 // The flight of a particle to the end of the step. (Those that meet walls, or may, are left to `meet_walls` of what uses this.)
 
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(29) var<storage, read_write> stretch_sums: array<u32>;
+var<storage, read_write> layers: array<u32>;
+var<storage, read_write> stretch_sums: array<u32>;
 
 // The list that the step before has filled.
 fn empty_bounces() {

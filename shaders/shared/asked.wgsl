@@ -6,7 +6,7 @@
 // ever asked in this step choose (both by the same pipelines, so that no driver rounds otherwise). A choice is a function of the state, so
 // it does not matter when, or whether, it is made.
 
-@group(0) @binding(42) var<storage, read_write> asked: array<u32>;
+var<storage, read_write> asked: array<u32>;
 
 // Whether a particle of this layer waits until it is asked.
 fn waits(layer: u32) -> bool {

@@ -1,11 +1,11 @@
-//! uses: step.wgsl local.wgsl held.wgsl flown.wgsl
+//! uses: step.wgsl local.wgsl flown.wgsl
 // Counting the particles of the cells where they fly, for the step that follows, on a device alone. (`bin` counts those of the first step of an interval.)
 
 override COLLISIONS: bool = true;
 
-@group(0) @binding(5) var<storage, read_write> bins: array<vec2<u32>>;
+var<storage, read_write> bins: array<vec2<u32>>;
 // Zero before the first of a step: emptied by the first of `choose` or a clear, or where they lie apart from the starts by `scan_cells`.
-@group(0) @binding(66) var<storage, read_write> cell_counts: array<atomic<u32>>;
+var<storage, read_write> cell_counts: array<atomic<u32>>;
 
 fn bins_next() -> bool {
     return COLLISIONS && step.slot + 1u < held[INTERVAL];

@@ -1,4 +1,5 @@
-//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl counters.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
+//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
+//! binds: surface_sums as sums
 // The flight of a particle that meets walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
@@ -27,18 +28,10 @@ override WORKS_AT: u32 = 0;
 override COPIES: u32 = 1;
 override COPY_WORDS: u32 = 0;
 
-// Words of a surface's tally, two each: three impulse components, normal impulse, hits.
-const SURFACE_WORDS: u32 = 10;
-// Of a coat's: energy that it took, and that energy times the tallies of the zones that followed.
-const COAT_WORDS: u32 = 4;
-// Of a moving wall's: the same, of the work that the gas did on it.
-// Of a vent's: energy that left, and times the tallies, as above; hits; hits whose probability was clipped to one;
-// then, one word each, the particles of each gas that left.
-const VENT_WORDS: u32 = 24;
 const ENERGY_RANGE: f32 = 4.29e9;
 
-@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
-@group(0) @binding(17) var<storage, read_write> sums: array<atomic<u32>>;
+var<uniform> gases: array<Gas, 16>;
+var<storage, read_write> sums: array<atomic<u32>>;
 
 // Where the copy of this thread's workgroup starts.
 var<private> copy: u32;
@@ -52,9 +45,9 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
     let whole = vec4<i32>(round(scaled));
     for (var axis = 0u; axis < 4u; axis++) {
         let word = bitcast<u32>(whole[axis]);
-        add64(copy + surface * SURFACE_WORDS + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
+        add64(copy + surface * SURFACE_WORDS + SURFACE_IMPULSE + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
-    add64(copy + surface * SURFACE_WORDS + 8u, 1u, 0u);
+    add64(copy + surface * SURFACE_WORDS + SURFACE_HITS, 1u, 0u);
 }
 
 // Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
@@ -74,9 +67,9 @@ fn tally_energy(slot: u32, energy: f32) {
         once = negated(once);
         left = negated(left);
     }
-    add64(copy + slot, once.x, once.y);
+    add64(copy + slot + WALL_ENERGY, once.x, once.y);
     if ((left.x | left.y) != 0u) {
-        add64(copy + slot + 2u, left.x, left.y);
+        add64(copy + slot + WALL_TALLIED, left.x, left.y);
     }
 }
 
@@ -88,15 +81,15 @@ fn energy_of(particle: Particle, mass: f32) -> f32 {
 fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
     let slot = VENTS_AT + vents[v].index * VENT_WORDS;
     let probability = vents[v].beta * mass * speed;
-    add64(copy + slot + 4u, 1u, 0u);
+    add64(copy + slot + VENT_HITS, 1u, 0u);
     if (probability > 1.0) {
-        add64(copy + slot + 6u, 1u, 0u);
+        add64(copy + slot + VENT_CLIPPED, 1u, 0u);
     }
     if (unit_interval(word) >= probability) {
         return false;
     }
     tally_energy(slot, energy_of(particle, mass));
-    atomicAdd(&sums[copy + slot + 8u + gas_of(particle.tag)], 1u);
+    atomicAdd(&sums[copy + slot + VENT_LEFT + gas_of(particle.tag)], 1u);
     return true;
 }
 

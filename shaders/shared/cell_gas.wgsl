@@ -17,7 +17,7 @@ struct StillGas {
     volume: f32,
 }
 
-@group(0) @binding(50) var<storage, read> cell_volume: array<u32>;
+var<storage, read> cell_volume: array<u32>;
 
 // Where in a particle's word of `layers` its part is.
 const PART_SHIFT: u32 = 16;

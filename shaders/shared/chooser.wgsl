@@ -2,7 +2,7 @@
 // Who chooses in a round: those of `rechoose`, in the first the particles that may collide at all (neighbours.wgsl), in later ones
 // those that a collision may have made choose otherwise; in a second pass, if ghosts wait until they are asked, those that were.
 
-@group(0) @binding(29) var<storage, read> rechoose: array<u32>;
+var<storage, read> rechoose: array<u32>;
 
 // The particle of a thread, or NOBODY.
 fn chooser(thread: u32) -> u32 {

@@ -26,8 +26,8 @@ struct Vent {
     pad2: u32,
 }
 
-@group(0) @binding(45) var<storage, read> coats: array<Coat>;
-@group(0) @binding(46) var<storage, read> vents: array<Vent>;
+var<storage, read> coats: array<Coat>;
+var<storage, read> vents: array<Vent>;
 
 // Key of the draws at walls: as SEED_HIGH, with their purpose.
 override WALL_SEED_HIGH: u32;

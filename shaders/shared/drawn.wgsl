@@ -4,7 +4,7 @@
 
 // Of the walls at rest the triangles of the cells near walls (walls.wgsl), behind them those of each moving wall, first the triangles,
 // then of each cell where these begin, in words of this list; and the same of its rows of cells along x.
-@group(0) @binding(21) var<storage, read> wall_list: array<u32>;
+var<storage, read> wall_list: array<u32>;
 
 // The cells in which a moving wall is drawn that the box around a way in its frame touches, from the first of them on; maybe none.
 struct DrawnCells {

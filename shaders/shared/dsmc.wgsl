@@ -1,4 +1,4 @@
-//! uses: step.wgsl particle.wgsl newborn.wgsl counters.wgsl lists.wgsl turns.wgsl spin.wgsl
+//! uses: step.wgsl particle.wgsl newborn.wgsl lists.wgsl turns.wgsl spin.wgsl
 // The collisions of the method `cell` in one part of a cell (direct simulation Monte Carlo without a time
 // counter, specification, section 2).
 //
@@ -16,9 +16,9 @@ override CROSS_SECTION: f32;
 // The upper half of the key of these draws: seed and purpose, as SEED_HIGH.
 override CELL_SEED_HIGH: u32;
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
+var<uniform> step: Step;
+var<storage, read> cell_start: array<u32>;
+var<storage, read_write> sorted: array<Packed>;
 
 // More candidates than this in one part (only at volumes that mean nothing) are counted as lost, and left out. Fewer than any device ends
 // a loop after (turns.wgsl).

@@ -1,7 +1,7 @@
-//! uses: counters.wgsl lists.wgsl list_parts.wgsl
+//! uses: lists.wgsl list_parts.wgsl
 // Lists as they are before the first entry, for those who empty them.
 
-@group(0) @binding(30) var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
+var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
 
 fn empty_list(list: u32) {
     atomicStore(&counters[list], 0u);

@@ -1,11 +1,11 @@
 //! uses: particle.wgsl newborn.wgsl cap.wgsl
 // The flight with which a particle starts the step, of which no wall is known yet.
 
-@group(0) @binding(10) var<storage, read> sorted: array<Packed>;
+var<storage, read> sorted: array<Packed>;
 
 fn first_flight(s: u32, share: u32) -> vec4<u32> {
     var start = 0.0;
-    // Whether any enter: of every slot it is the same, but no branch asks a uniform alone for what changes (held.wgsl).
+    // Whether any enter: of every slot it is the same, but no branch asks a uniform alone for what changes (INTERVAL in src/subdomain/registry.rs).
     if (s < step.total * min(step.newborns, 1u)) {
         start = birth_time(id_of(sorted[s].place.w));
     }

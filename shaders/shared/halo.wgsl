@@ -8,7 +8,7 @@
 // settled n links away is known to n + 2. Mid-step points are those of the search, in integers, so all devices agree.
 
 // What is left of the cross-section in each coarse block.
-@group(0) @binding(53) var<storage, read> shares: array<u32>;
+var<storage, read> shares: array<u32>;
 
 // The least integer of which the square is at least x.
 fn root_up(x: i32) -> i32 {

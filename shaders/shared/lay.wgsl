@@ -1,10 +1,10 @@
 // What the sort of the method `cell` leaves of a particle: its state, and among other devices its cell and its marks.
 
-@group(0) @binding(0) var<uniform> step: Step;
-@group(0) @binding(2) var<storage, read> particles: array<Packed>;
-@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
-@group(0) @binding(27) var<storage, read_write> cells: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
+var<uniform> step: Step;
+var<storage, read> particles: array<Packed>;
+var<storage, read_write> sorted: array<Packed>;
+var<storage, read_write> cells: array<u32>;
+var<storage, read_write> layers: array<u32>;
 
 fn lay(i: u32, place: u32, cell: u32) {
     sorted[place] = particles[i];

@@ -1,7 +1,4 @@
-//! uses: counters.wgsl
 // They have several.
-
-const LIST_PARTS: u32 = 16;
 
 fn length_of_part(part: u32, list: u32) -> u32 {
     return PARTS_OF_LISTS + part * PART_WORDS + list;

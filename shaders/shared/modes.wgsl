@@ -10,7 +10,7 @@ override INVERSE_THERMAL: f32 = 1.0;
 
 // Of each gas, 32 apart: ln(h_K T_ref^K / Gamma(nu0+K+2)), K, 1/beta, 1/(beta+1). Modes that are not there have no weight.
 // Then, from THERMAL_MODES on: ln(h_K T_ref^K), K, beta.
-@group(0) @binding(60) var<uniform> modes: array<vec4<f32>, 1024>;
+var<uniform> modes: array<vec4<f32>, 1024>;
 const THERMAL_MODES: u32 = 512;
 
 // The mode, of those from `first` on, that the uniform `draw` picks at an energy, exp(ln) k T_ref.

@@ -27,7 +27,7 @@ override MOVING: bool = false;
 override MOTIONS: u32 = 0;
 // Motions of a step, at most.
 const MOST_MOTIONS: u32 = 4;
-@group(0) @binding(61) var<uniform> motions: array<Motion, 128>;
+var<uniform> motions: array<Motion, 128>;
 
 fn motion_of(m: u32) -> Motion {
     return motions[step.slot * MOST_MOTIONS + m];

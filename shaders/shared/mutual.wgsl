@@ -1,7 +1,7 @@
 //! uses: step.wgsl local.wgsl particle.wgsl
 // Whether a choice is mutual, of one that has just chosen. (What uses this has `mark_of`, `tag_of` and `among_others`.)
 
-@group(0) @binding(15) var<storage, read> choices: array<vec2<u32>>;
+var<storage, read> choices: array<vec2<u32>>;
 
 struct Mutual {
     // The lower id first.

@@ -6,7 +6,7 @@ struct Newborn {
     start: f32,
 }
 
-@group(0) @binding(3) var<storage, read> newborns: array<Newborn>;
+var<storage, read> newborns: array<Newborn>;
 
 // Whether particles enter anywhere.
 override ORIFICES: bool = true;

@@ -1,4 +1,4 @@
-//! uses: step.wgsl counters.wgsl together.wgsl list_parts.wgsl
+//! uses: step.wgsl together.wgsl list_parts.wgsl
 // The same in LIST_PARTS parts, each with a length of its own: a GPU counts up one word for one group of threads that run together after the other. Threads of one group must have numbers
 // of one workgroup. Workgroups of those who append take turns, and so do those of the parts' entries in the list. A part has room for its share of the
 // entries; what it has no room for goes to the next that has, and is not counted where it came from. (All together have more room than there are entries, so each finds a place: one that does not is told of.)

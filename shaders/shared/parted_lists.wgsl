@@ -1,4 +1,4 @@
-//! uses: step.wgsl counters.wgsl together.wgsl
+//! uses: step.wgsl together.wgsl
 // Lists that many threads append to: of those that choose, and of pairs. A list has one part, or several (the form for GPUs).
 
 // A thread over a list has the entry of its own place; its number in its part, and how many the part has. `most` is how many entries the list has

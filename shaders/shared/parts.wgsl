@@ -2,9 +2,9 @@
 // Cells whose gas is in parts, each of which collides by itself: the part of each particle is kept in the upper half of its
 // word in `layers` (the lower half is the halo's), and while a part collides its members' places are in those of the cell in `order_by_id`.
 
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<u32>;
-@group(0) @binding(63) var<storage, read_write> order_by_id: array<u32>;
+var<storage, read_write> neighbour_count: array<u32>;
+var<storage, read_write> layers: array<u32>;
+var<storage, read_write> order_by_id: array<u32>;
 
 // The particles begin .. end of a bin, by id, that can collide.
 fn last_of(begin: u32, bin_end: u32) -> u32 {

@@ -6,12 +6,12 @@
 //
 // Reads `middles`, `cells`, `cell_start`, where the diameter is capped the flights in `neighbours`; writes lists in `neighbours`.
 
-@group(0) @binding(8) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(12) var<storage, read> middles: array<u32>;
+var<storage, read> cell_start: array<u32>;
+var<storage, read> middles: array<u32>;
 // By fours, for the sake of flights. (Threads write other words of one four, each by the component alone, as SPIR-V has it.)
-@group(0) @binding(13) var<storage, read_write> neighbours: array<vec4<u32>>;
-@group(0) @binding(14) var<storage, read_write> neighbour_count: array<atomic<u32>>;
-@group(0) @binding(27) var<storage, read> cells: array<u32>;
+var<storage, read_write> neighbours: array<vec4<u32>>;
+var<storage, read_write> neighbour_count: array<atomic<u32>>;
+var<storage, read> cells: array<u32>;
 
 struct Found {
     count: u32,

@@ -11,4 +11,4 @@ struct Sending {
     place: u32,
 }
 
-@group(0) @binding(36) var<storage, read_write> sendings: array<Sending>;
+var<storage, read_write> sendings: array<Sending>;

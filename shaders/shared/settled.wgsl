@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl counters.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl gas.wgsl lists.wgsl touch.wgsl touch_neighbours.wgsl philox.wgsl spin.wgsl walls.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
 // The collision of a pair that has chosen each other.
 //
 // Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
@@ -15,9 +15,9 @@ override RIGID: bool = false;
 // The square of the relative speed of the plan's fastest pairs, (m/s)^2.
 override FASTEST2: f32;
 
-@group(0) @binding(10) var<storage, read_write> sorted: array<Packed>;
-@group(0) @binding(11) var<storage, read_write> flights: array<vec4<u32>>;
-@group(0) @binding(37) var<storage, read_write> changed: array<u32>;
+var<storage, read_write> sorted: array<Packed>;
+var<storage, read_write> flights: array<vec4<u32>>;
+var<storage, read_write> changed: array<u32>;
 
 // A unit vector perpendicular to the unit vector u.
 fn perpendicular(u: vec3<f32>) -> vec3<f32> {

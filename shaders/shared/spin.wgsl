@@ -5,7 +5,7 @@
 
 override SPIN: bool = true;
 
-@group(0) @binding(1) var<uniform> gases: array<Gas, 16>;
+var<uniform> gases: array<Gas, 16>;
 
 // The relative speed and the spins after the exchange.
 struct Exchanged {
@@ -54,7 +54,7 @@ struct Pair {
 // How much of a change of the relative velocity each of two gases takes, mu/m_i and mu/m_j, 16 apart: of i the upper
 // twelve bits and the rest of it, of j the same. One word's rounding has a sign that every collision of two gases repeats,
 // and the two shares would not sum up to one: energy would grow or fall as collisions go on.
-@group(0) @binding(67) var<uniform> mass_shares: array<vec4<f32>, 256>;
+var<uniform> mass_shares: array<vec4<f32>, 256>;
 
 fn shares_of(tag_i: u32, tag_j: u32) -> vec4<f32> {
     if (GASES == 1u) {

@@ -1,4 +1,3 @@
-//! uses: counters.wgsl
 // The same on a GPU, which does atomic operations on one word one after the other: one for all threads that come
 // here together. The word must be the same for all of them. That they are still together when the first has counted, in loops and branches of some of them, too, is what drivers do and no
 // standard promises: it is seen, and told of.

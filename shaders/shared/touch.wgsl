@@ -2,8 +2,8 @@
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
-@group(0) @binding(29) var<storage, read_write> rechoose: array<u32>;
-@group(0) @binding(32) var<storage, read_write> layers: array<atomic<u32>>;
+var<storage, read_write> rechoose: array<u32>;
+var<storage, read_write> layers: array<atomic<u32>>;
 
 // Marks a particle as one that chooses in a round; 1 if it is to be entered in the list.
 fn marked(s: u32, round: u32) -> u32 {

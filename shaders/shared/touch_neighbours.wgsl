@@ -1,7 +1,7 @@
 //! uses: turns.wgsl
 // Lets those choose again who have a particle in their lists of neighbours: they are in its own list.
 
-@group(0) @binding(14) var<storage, read> neighbour_count: array<u32>;
+var<storage, read> neighbour_count: array<u32>;
 
 // How many entries of a list a turn reads: in the first those that are not in the tail, then four of it at a time.
 fn read_of(listed: u32, turn: u32) -> u32 {

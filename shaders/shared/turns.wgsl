@@ -1,4 +1,3 @@
-//! uses: counters.wgsl
 // Loops that the device has ended too soon: some software devices end all loops of a thread, and of those that run with it, once they have
 // turned so often (Mesa's lavapipe of 22.3 after 65,535 turns). What such a thread does is wrong, so it is told.
 

@@ -18,7 +18,7 @@ struct Peer {
     pad2: u32,
 }
 
-@group(0) @binding(34) var<storage, read> peers: array<Peer>;
+var<storage, read> peers: array<Peer>;
 
 fn owns(peer: Peer, c: vec3<i32>, around: i32) -> bool {
     return all(c >= peer.low - around) && all(c < peer.high + around);

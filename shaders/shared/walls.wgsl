@@ -61,14 +61,14 @@ override TOLERANCE: f32;
 
 // Of each cell near walls: where its triangles start in `wall_list`, and its clearance, a plane, or SEVERAL and the number of the first of two entries
 // that have up to three.
-@group(0) @binding(20) var<storage, read> wall_start: array<vec2<u32>>;
-@group(0) @binding(22) var<storage, read> triangles: array<Triangle>;
+var<storage, read> wall_start: array<vec2<u32>>;
+var<storage, read> triangles: array<Triangle>;
 // The classes of sixteen cells, two bits each, and how many cells before these are near walls: cut, or beside one that is.
-@group(0) @binding(23) var<storage, read> cell_class: array<vec2<u32>>;
+var<storage, read> cell_class: array<vec2<u32>>;
 
 // A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
 // (The surface of a convex cavity cannot.)
-@group(0) @binding(31) var<storage, read> parting: array<u32>;
+var<storage, read> parting: array<u32>;
 
 fn may_part(c: vec3<u32>) -> bool {
     let cell = cell_index(c);

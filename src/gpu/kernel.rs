@@ -21,6 +21,8 @@ pub struct Binding {
     pub index: u32,
     pub name: &'static str,
     pub access: Access,
+    /// Bytes that a dispatch sees, of a uniform whose offset is chosen at each dispatch.
+    pub stepped: Option<u32>,
 }
 
 /// One file of `shaders/`, with the shared files it uses.
@@ -28,6 +30,8 @@ pub struct Binding {
 pub struct KernelSource {
     pub name: &'static str,
     pub entry_point: &'static str,
+    /// In which it is dispatched, by name; of one that is not in the table none.
+    pub phases: &'static [&'static str],
     pub bindings: &'static [Binding],
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
@@ -109,9 +113,6 @@ impl Form {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// The name of the uniform whose offset is chosen at each dispatch.
-const DYNAMIC: &str = "step";
-
 /// Values of override constants by name; a kernel takes those it declares.
 pub type Constants = [(&'static str, f64)];
 
@@ -157,8 +158,15 @@ impl Kept {
     }
 }
 
+/// Where dispatches of a phase go.
+pub struct Pass<'a> {
+    pub(super) pass: &'a mut wgpu::ComputePass<'static>,
+    pub(super) phase: &'static str,
+}
+
 /// A kernel with its buffers.
 pub struct BoundKernel {
+    source: &'static KernelSource,
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     dynamic: bool,
@@ -242,14 +250,13 @@ impl Kernel {
                 kernel: self.source.name.into(),
                 reason: format!("no buffer for the binding {}", binding.name),
             })?;
-            let resource = if binding.name == DYNAMIC {
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            let resource = match binding.stepped {
+                Some(bytes) => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                     buffer: found,
                     offset: 0,
-                    size: wgpu::BufferSize::new(STEP_BYTES),
-                })
-            } else {
-                found.as_entire_binding()
+                    size: wgpu::BufferSize::new(bytes.into()),
+                }),
+                None => found.as_entire_binding(),
             };
             entries.push(wgpu::BindGroupEntry { binding: binding.index, resource });
         }
@@ -268,17 +275,14 @@ impl Kernel {
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(GpuError::Kernel { kernel: self.source.name.into(), reason: error.to_string() });
         }
-        let dynamic = self.source.bindings.iter().any(|binding| binding.name == DYNAMIC);
-        Ok(BoundKernel { pipeline: self.compiled.pipeline.clone(), group, dynamic })
+        let dynamic = self.source.bindings.iter().any(|binding| binding.stepped.is_some());
+        Ok(BoundKernel { source: self.source, pipeline: self.compiled.pipeline.clone(), group, dynamic })
     }
 }
 
-/// Bytes of the uniform `step` that a dispatch sees.
-pub const STEP_BYTES: u64 = 176;
-
 fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     let ty = match binding.access {
-        Access::Uniform => return uniform_entry(binding.index, binding.name == DYNAMIC),
+        Access::Uniform => return uniform_entry(binding.index, binding.stepped.is_some()),
         Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
         Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
     };
@@ -299,31 +303,39 @@ fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: b
 }
 
 impl BoundKernel {
-    /// One dispatch over `groups` workgroups; `offset` is that of the `step` uniform.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, groups: [u32; 3]) {
+    /// In which it may be dispatched: those of [`KernelSource::phases`].
+    pub fn phases(&self) -> &'static [&'static str] {
+        self.source.phases
+    }
+
+    /// One dispatch over `groups` workgroups; `offset` is that of the stepped uniform.
+    ///
+    /// # Panics
+    /// If the phase is none of the kernel's.
+    pub fn dispatch(&self, pass: &mut Pass<'_>, offset: u32, groups: [u32; 3]) {
         if groups.contains(&0) {
             return;
         }
         self.set(pass, offset);
-        pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
+        pass.pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
     }
 
     /// One dispatch over the workgroups that kernels wrote into entry `item` of `arguments`.
-    pub fn dispatch_indirect(
-        &self,
-        pass: &mut wgpu::ComputePass<'_>,
-        offset: u32,
-        arguments: &wgpu::Buffer,
-        item: u32,
-    ) {
+    ///
+    /// # Panics
+    /// If the phase is none of the kernel's.
+    pub fn dispatch_indirect(&self, pass: &mut Pass<'_>, offset: u32, arguments: &wgpu::Buffer, item: u32) {
         self.set(pass, offset);
-        pass.dispatch_workgroups_indirect(arguments, u64::from(item) * 12);
+        pass.pass.dispatch_workgroups_indirect(arguments, u64::from(item) * 12);
     }
 
-    fn set(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32) {
-        pass.set_pipeline(&self.pipeline);
+    fn set(&self, pass: &mut Pass<'_>, offset: u32) {
+        // What buffers are reused for goes by what the shader says of its phases.
+        let known = self.phases().is_empty() || self.phases().contains(&pass.phase);
+        assert!(known, "{} in the phase {}, it says {:?}", self.source.name, pass.phase, self.phases());
+        pass.pass.set_pipeline(&self.pipeline);
         let offsets = [offset];
-        pass.set_bind_group(0, &self.group, if self.dynamic { &offsets } else { &[] });
+        pass.pass.set_bind_group(0, &self.group, if self.dynamic { &offsets } else { &[] });
     }
 }
 
@@ -342,6 +354,7 @@ mod tests {
     static PROBE: KernelSource = KernelSource {
         name: "probe",
         entry_point: "probe",
+        phases: &[],
         bindings: &[],
         overrides: &[("EDGE", true), ("LOOPS", false)],
         source: "override EDGE: f32;\noverride LOOPS: u32 = 1;\nvar<workgroup> product: f32;\n\

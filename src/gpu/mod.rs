@@ -9,7 +9,7 @@ mod timer;
 
 pub use buffer::Readback;
 pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
-pub use kernel::{Access, Binding, BoundKernel, Constants, Form, KERNELS, Kernel, KernelSource, STEP_BYTES, fold};
+pub use kernel::{Access, Binding, BoundKernel, Constants, Form, KERNELS, Kernel, KernelSource, Pass, fold};
 pub use operations::{Operations, Stretch};
 pub use timer::{PhaseTimer, Recording};
 

@@ -84,7 +84,15 @@ mod tests {
     use crate::gpu::{Form, KERNELS};
 
     fn kernel(source: &'static str) -> KernelSource {
-        KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, forms: [None; 2] }
+        KernelSource {
+            name: "probe",
+            entry_point: "probe",
+            phases: &[],
+            bindings: &[],
+            overrides: &[],
+            source,
+            forms: [None; 2],
+        }
     }
 
     const PROBE: &str = "override EDGE: f32;\noverride CELLS: u32 = 1;\noverride FLAG: bool = true;\n\

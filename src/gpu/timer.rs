@@ -1,7 +1,7 @@
 //! Device time of named phases. A timed pass is split at every phase, which costs a little; so only a
 //! few steps are timed, and the others run in one pass.
 
-use super::{Device, GpuError};
+use super::{Device, GpuError, Pass};
 
 /// Room for the phases of one timed step.
 const SLOTS: u32 = 128;
@@ -95,7 +95,7 @@ impl<'a> Recording<'a> {
     }
 
     /// The pass in which the dispatches of `name` go; a phase goes on until another is named.
-    pub fn phase(&mut self, name: &'static str) -> &mut wgpu::ComputePass<'static> {
+    pub fn phase(&mut self, name: &'static str) -> Pass<'_> {
         let slot = self.names.len() as u32;
         let timer = self.timer.filter(|_| slot < SLOTS && self.alone.is_none_or(|alone| alone.contains(&name)));
         let goes_on = self.open == Some(name) || (self.open.is_none() && timer.is_none());
@@ -105,7 +105,7 @@ impl<'a> Recording<'a> {
         }
         let device = self.device;
         let encoder = self.encoder.get_or_insert_with(|| device.encoder());
-        self.pass.get_or_insert_with(|| {
+        let pass = self.pass.get_or_insert_with(|| {
             let timestamp_writes = timer.map(|timer| {
                 self.names.push(name);
                 wgpu::ComputePassTimestampWrites {
@@ -116,7 +116,8 @@ impl<'a> Recording<'a> {
             });
             let descriptor = wgpu::ComputePassDescriptor { label: timer.map(|_| name), timestamp_writes };
             encoder.begin_compute_pass(&descriptor).forget_lifetime()
-        })
+        });
+        Pass { pass, phase: name }
     }
 
     /// For commands outside passes.

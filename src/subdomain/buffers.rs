@@ -6,9 +6,10 @@ use super::cell_table::CellTable;
 use super::constants::{Features, WORKGROUP};
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuTriangle, GpuUpdate, GpuVent,
+    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
     GpuWeights, GpuZone,
 };
+use super::registry;
 use super::state::share_table;
 use super::walls::Walls;
 
@@ -29,19 +30,10 @@ pub fn choose_empties(form: Form, bins: u64) -> bool {
 }
 /// Cells that a thread empties, at most (`shaders/reset.wgsl`).
 pub const EMPTIED_CELLS: u64 = 16;
-/// Words per zone and gas (`shaders/tally.wgsl`).
-pub const ZONE_WORDS: usize = 12;
-/// Words per surface (`shaders/shared/bounced.wgsl`).
-pub const SURFACE_WORDS: usize = 10;
 /// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
 pub const SURFACE_COPIES: usize = 16;
-/// Words per coat and per vent (`shaders/shared/bounced.wgsl`).
-pub const COAT_WORDS: usize = 4;
-pub const VENT_WORDS: usize = 24;
 /// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
 pub const MOTION_ENTRIES: usize = 128;
-/// Words per block (`shaders/blocks.wgsl`).
-pub const BLOCK_WORDS: usize = 4;
 
 /// Words of a particle's record, its flight and the first entries of its neighbour list (`shaders/shared/neighbour_list.wgsl`): the room
 /// of a particle.
@@ -124,16 +116,11 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
-/// Whether a device is held, how many particles it has then, how many are in cells, and `INTERVAL`.
-pub const HELD_WORDS: usize = 4;
-/// The last of them (`INTERVAL`).
-pub const HELD_INTERVAL: u32 = 3;
-
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
     pub counters: wgpu::Buffer,
-    /// Of the words of `shaders/shared/held.wgsl`.
+    /// Of the words `HELD_WORDS` of the registry.
     pub held: wgpu::Buffer,
     pub zone_sums: wgpu::Buffer,
     pub surface_sums: wgpu::Buffer,
@@ -167,13 +154,13 @@ impl FixedBuffers {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
             counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
-            held: device.storage::<u32>("held", HELD_WORDS as u64)?,
+            held: device.storage::<u32>("held", registry::HELD_WORDS.into())?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
-            dispatches: device.indirect("dispatches", counters::LISTS as u64)?,
-            rechoose_dispatches: device.indirect("rechoose_dispatches", counters::LISTS as u64)?,
-            asked_dispatches: device.indirect("asked_dispatches", counters::LISTS as u64)?,
+            dispatches: device.indirect("dispatches", registry::LISTS.into())?,
+            rechoose_dispatches: device.indirect("rechoose_dispatches", registry::LISTS.into())?,
+            asked_dispatches: device.indirect("asked_dispatches", registry::LISTS.into())?,
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
             coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
             vents: device.storage::<GpuVent>("vents", vents.max(1))?,
@@ -188,7 +175,7 @@ impl FixedBuffers {
 /// Distance of two `step` uniforms, bytes.
 pub fn step_stride(device: &Device) -> u64 {
     let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
-    crate::gpu::STEP_BYTES.next_multiple_of(alignment.max(1))
+    (size_of::<GpuStep>() as u64).next_multiple_of(alignment.max(1))
 }
 
 /// Bytes of these buffers for each bin, with the counts apart from the starts or in their place.
@@ -413,69 +400,65 @@ pub struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// The buffer that a shader calls `name`. Five kernels call their own tally `sums`.
-    pub fn by_name(&self, kernel: &str, name: &str) -> Option<&'a wgpu::Buffer> {
+    /// The buffer that shaders call `name`.
+    pub fn by_name(&self, name: &str) -> Option<&'a wgpu::Buffer> {
         let Buffers { domain, fixed, cell, particle, exchange } = *self;
-        Some(match (kernel, name) {
-            ("tally", "sums") => &fixed.zone_sums,
-            ("bounce" | "fly", "sums") => &fixed.surface_sums,
-            ("blocks", "sums") => &fixed.block_sums,
-            ("weigh", "sums") => &exchange.histogram,
-            (_, "step") => &fixed.step,
-            (_, "gases") => &domain.gases,
-            (_, "modes") => &domain.modes,
-            (_, "mass_shares") => &domain.mass_shares,
-            (_, "counters") => &fixed.counters,
-            (_, "held") => &fixed.held,
-            (_, "stretch_sums") => &cell.stretch_sums,
-            (_, "chunk_sums") => &cell.chunk_sums,
-            ("bin" | "scan_sums" | "reset", "cell_start") => cell.counts(),
-            ("scan_cells" | "scan_merged", "cell_counts") => &cell.cell_counts,
-            (_, "cell_counts") => cell.counts(),
-            (_, "cell_start") => &cell.cell_start,
-            (_, "wall_start") => &domain.wall_start,
-            (_, "wall_list") => &domain.wall_list,
-            (_, "triangles") => &domain.triangles,
-            (_, "cell_class") => &domain.cell_class,
-            (_, "parting") => &domain.parting,
-            ("settle" | "settle_chosen" | "pack" | "order" | "neighbours" | "receive", "dispatches")
-            | (_, "rechoose_dispatches") => &fixed.rechoose_dispatches,
-            // The pass over those that were asked asks nobody, and may not write what it takes its size from.
-            ("choose_asked", "dispatches") => &fixed.rechoose_dispatches,
-            ("choose", "dispatches") | (_, "asked_dispatches") => &fixed.asked_dispatches,
-            (_, "dispatches") => &fixed.dispatches,
-            (_, "weights") => &fixed.weights,
-            (_, "coats") => &fixed.coats,
-            (_, "vents") => &fixed.vents,
-            (_, "motions") => &fixed.motions,
-            (_, "zones") => &domain.zones,
-            (_, "cell_volume") => &domain.cell_volume,
-            (_, "cell_parts") => &domain.cell_parts,
-            (_, "still_gas") => &domain.still_gas,
-            (_, "shares") => &fixed.shares,
-            (_, "parted") => &fixed.parted,
-            (_, "moved") => &fixed.moved,
-            (_, "particles" | "flights" | "neighbours") => &particle.particles,
-            (_, "newborns") => &particle.newborns,
-            (_, "bins" | "crowds" | "choices") => &particle.bins,
-            (_, "border" | "slots" | "incomplete" | "pairs") => &particle.slots,
-            (_, "crowded" | "order_by_id" | "rechoose" | "bouncing") => &particle.rare,
-            (_, "sorted") => &particle.sorted,
-            (_, "middles") => &particle.middles,
-            (_, "neighbour_count") => &particle.neighbour_count,
-            (_, "cells") => &particle.cells,
-            (_, "layers") => &particle.layers,
-            (_, "changed") => &particle.changed,
-            (_, "asked") => &particle.asked,
-            (_, "firsts") => &particle.firsts,
-            (_, "peers") => &exchange.peers,
-            (_, "sendings") => &exchange.sendings,
-            (_, "peer_counts") => &exchange.peer_counts,
-            (_, "peer_starts") => &exchange.peer_starts,
-            (_, "outbox") => &exchange.outbox,
-            (_, "updates_out") => &exchange.updates_out,
-            (_, "updates_in") => &exchange.updates_in,
-            (_, "cuts") => &exchange.cuts,
+        Some(match registry::made_as(name) {
+            "step" => &fixed.step,
+            "gases" => &domain.gases,
+            "modes" => &domain.modes,
+            "mass_shares" => &domain.mass_shares,
+            "motions" => &fixed.motions,
+            "weights" => &fixed.weights,
+            "counters" => &fixed.counters,
+            "dispatches" => &fixed.dispatches,
+            "rechoose_dispatches" => &fixed.rechoose_dispatches,
+            "asked_dispatches" => &fixed.asked_dispatches,
+            "held" => &fixed.held,
+            "zone_sums" => &fixed.zone_sums,
+            "surface_sums" => &fixed.surface_sums,
+            "block_sums" => &fixed.block_sums,
+            "histogram" => &exchange.histogram,
+            "coats" => &fixed.coats,
+            "vents" => &fixed.vents,
+            "shares" => &fixed.shares,
+            "zones" => &domain.zones,
+            "wall_start" => &domain.wall_start,
+            "wall_list" => &domain.wall_list,
+            "triangles" => &domain.triangles,
+            "cell_class" => &domain.cell_class,
+            "parting" => &domain.parting,
+            "cell_volume" => &domain.cell_volume,
+            "cell_parts" => &domain.cell_parts,
+            "still_gas" => &domain.still_gas,
+            "chunk_sums" => &cell.chunk_sums,
+            "stretch_sums" => &cell.stretch_sums,
+            "cell_counts" => cell.counts(),
+            "counts_apart" => &cell.cell_counts,
+            "cell_start" => &cell.cell_start,
+            "particles" => &particle.particles,
+            "newborns" => &particle.newborns,
+            "bins" => &particle.bins,
+            "slots" => &particle.slots,
+            "crowded" => &particle.rare,
+            "sorted" => &particle.sorted,
+            "middles" => &particle.middles,
+            "neighbour_count" => &particle.neighbour_count,
+            "cells" => &particle.cells,
+            "layers" => &particle.layers,
+            "changed" => &particle.changed,
+            "asked" => &particle.asked,
+            "firsts" => &particle.firsts,
+            "parted" => &fixed.parted,
+            "moved" => &fixed.moved,
+            "peers" => &exchange.peers,
+            "sendings" => &exchange.sendings,
+            "peer_counts" => &exchange.peer_counts,
+            "peer_starts" => &exchange.peer_starts,
+            "outbox" => &exchange.outbox,
+            "updates_out" => &exchange.updates_out,
+            "updates_in" => &exchange.updates_in,
+            "cuts" => &exchange.cuts,
             _ => return None,
         })
     }

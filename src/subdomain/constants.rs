@@ -6,8 +6,9 @@ use crate::gpu::{Device, Form};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::{CHUNK, COAT_WORDS, FEW_STRETCHES, SURFACE_COPIES, SURFACE_WORDS, VENT_WORDS};
+use super::buffers::{CHUNK, FEW_STRETCHES, SURFACE_COPIES};
 use super::nearness;
+use super::registry::{COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
 use super::walls::Walls;
 
@@ -128,13 +129,13 @@ pub struct Patches {
 impl Patches {
     /// Words of the tallies of surfaces, of these and the coats, and of these and the vents.
     pub(super) fn ends(&self) -> [usize; 3] {
-        let surfaces = self.surfaces.max(1) * SURFACE_WORDS;
-        let coats = surfaces + self.coats * COAT_WORDS;
-        [surfaces, coats, coats + self.vents * VENT_WORDS]
+        let surfaces = self.surfaces.max(1) * SURFACE_WORDS as usize;
+        let coats = surfaces + self.coats * COAT_WORDS as usize;
+        [surfaces, coats, coats + self.vents * VENT_WORDS as usize]
     }
 
     pub(super) fn words(&self) -> usize {
-        self.ends()[2] + self.motions * COAT_WORDS
+        self.ends()[2] + self.motions * COAT_WORDS as usize
     }
 
     /// Words of a copy of these tallies: no two copies share a line of a cache.

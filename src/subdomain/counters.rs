@@ -1,32 +1,12 @@
-//! The counters of `shaders/shared/counters.wgsl`, read once per step interval.
+//! The counters of the registry, read once per step interval.
 
 use super::constants::WORKGROUP;
+use super::registry::*;
 
 /// Words that are read: all of them.
-pub const WORDS: usize = PARTS_OF_LISTS + PART_WORDS * LIST_PARTS;
-/// Collisions in cells, in so many parts of two words.
-const CELL_COLLISIONS: usize = 53;
-const COLLISION_COUNTS: usize = 32;
-/// The lengths of lists that are in parts (`shaders/shared/parted_lists.gpu.wgsl`), each part's so far behind those before.
-pub const PARTS_OF_LISTS: usize = 128;
-pub const PART_WORDS: usize = 64;
-pub const LIST_PARTS: usize = 16;
+pub const WORDS: usize = COUNTER_WORDS as usize;
 /// Entries for which a list in parts has room beyond the most that it may have: each part's is a whole number of workgroups.
 pub const FREE_ENTRIES: u64 = WORKGROUP as u64 * LIST_PARTS as u64;
-/// The words of the lists of a step (`shaders/shared/lists.wgsl`), of which the host reads these.
-pub const LISTS: usize = 32;
-pub const NEAR_WALLS: usize = 9;
-/// The lists of those that choose, by round, of a device that has them in one part.
-const RECHOOSE: usize = 16;
-pub const MOST_ROUNDS: usize = 10;
-pub const BORDER: usize = 12;
-pub const CHANGED: usize = 13;
-pub const OUTBOX: usize = 14;
-pub const UPDATES: usize = 15;
-pub const DROPPED: usize = 31;
-/// Entries of the tails of neighbour lists in a step.
-pub const TAILS: usize = 29;
-pub const TAILS_WANTED: usize = 36;
 
 /// Places among which a list in parts has its entries, of which it has so many at most (`shaders/shared/parted_lists.gpu.wgsl`).
 pub const fn places_in_parts(most: u64) -> u64 {
@@ -71,40 +51,41 @@ pub struct Counters {
     /// Entries of lists that found no place, and threads that were parted while they counted together.
     pub misplaced: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
-    pub choosers: [u32; MOST_ROUNDS],
+    pub choosers: [u32; MOST_ROUNDS as usize],
 }
 
 impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
-        let two_words = |words: &[u32]| u64::from(words[0]) | (u64::from(words[1]) << 32);
-        let in_cells: u64 =
-            words[CELL_COLLISIONS..CELL_COLLISIONS + 2 * COLLISION_COUNTS].chunks_exact(2).map(two_words).sum();
+        let word = |at: u32| words[at as usize];
+        let two_words = |at: u32| u64::from(word(at)) | (u64::from(word(at + 1)) << 32);
+        let in_cells: u64 = (0..COLLISION_COUNTS).map(|part| two_words(CELL_COLLISIONS + 2 * part)).sum();
         Counters {
             // Less those that another device counts.
-            collisions: two_words(&words[32..34]) + in_cells - u64::from(words[44]),
-            lost: words[34],
-            sampled: words[35],
-            tails_wanted: words[TAILS_WANTED],
-            outside: words[37],
-            overshoot: words[38],
-            truncated: words[39],
-            tally_overflow: words[40],
-            capacity_failed: words[41],
-            bounces: words[42],
-            blocked: words[43],
-            strays: words[45],
-            missing: words[46],
-            moved: words[48],
-            fast_pairs: words[49],
-            candidates: words[47],
-            near_walls: words[NEAR_WALLS],
-            ghost_candidates: words[50],
-            ghost_walls: words[51],
-            cut_short: words[52],
-            misplaced: words[117],
+            collisions: two_words(COLLISIONS_LOW) + in_cells - u64::from(word(FOREIGN)),
+            lost: word(LOST),
+            sampled: word(SAMPLED),
+            tails_wanted: word(TAILS_WANTED),
+            outside: word(OUTSIDE),
+            overshoot: word(OVERSHOOT),
+            truncated: word(TRUNCATED),
+            tally_overflow: word(TALLY_OVERFLOW),
+            capacity_failed: word(CAPACITY_FAILED),
+            bounces: word(BOUNCES),
+            blocked: word(BLOCKED),
+            strays: word(STRAYS),
+            missing: word(MISSING),
+            moved: word(MOVED),
+            fast_pairs: word(FAST_PAIRS),
+            candidates: word(CANDIDATES),
+            near_walls: word(LIST_NEAR_WALLS),
+            ghost_candidates: word(GHOST_CANDIDATES),
+            ghost_walls: word(GHOST_WALLS),
+            cut_short: word(CUT_SHORT),
+            misplaced: word(MISPLACED),
             choosers: std::array::from_fn(|round| {
-                let parts = words[PARTS_OF_LISTS..].chunks_exact(PART_WORDS).map(|part| part[RECHOOSE + round]);
-                words[RECHOOSE + round] + parts.sum::<u32>()
+                let list = LIST_RECHOOSE + round as u32;
+                let parts = (0..LIST_PARTS).map(|part| word(PARTS_OF_LISTS + part * PART_WORDS + list));
+                word(list) + parts.sum::<u32>()
             }),
         }
     }

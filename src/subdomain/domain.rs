@@ -3,11 +3,12 @@
 use crate::gpu::{Device, Form, GpuError};
 use crate::plan::Plan;
 
-use super::buffers::{BLOCK_WORDS, DomainBuffers, SURFACE_COPIES, TallyWords, ZONE_WORDS};
+use super::buffers::{DomainBuffers, SURFACE_COPIES, TallyWords};
 use super::cell_table::CellTable;
 use super::constants::{Features, Patches, block_counts, constants, merges, numbers_read, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
+use super::registry::{BLOCK_WORDS, ZONE_WORDS};
 use super::scales::Scales;
 use super::state::{gas_table, mode_table};
 use super::walls::{Drawn, Walls};
@@ -78,9 +79,9 @@ impl Domain {
         };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
-            zones: input.zones.len() * plan.gases.len() * ZONE_WORDS,
+            zones: input.zones.len() * plan.gases.len() * ZONE_WORDS as usize,
             surfaces: SURFACE_COPIES * input.patches.copy_words(),
-            blocks: blocks * BLOCK_WORDS + plan.ladder_levels as usize,
+            blocks: blocks * BLOCK_WORDS as usize + plan.ladder_levels as usize,
         };
         let tally_loops = tally_loops(device, plan);
         let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);

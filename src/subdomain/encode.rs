@@ -1,31 +1,25 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
-use crate::gpu::{BoundKernel, Device, Form, Recording, fold};
+use crate::gpu::{BoundKernel, Device, Form, Pass, Recording, fold};
 use crate::plan::Plan;
 use crate::scene::MOST_MOTIONS;
 
-use super::buffers::{
-    CHUNK, CellBuffers, EMPTIED_CELLS, HELD_INTERVAL, RECORD, STRETCH, choose_empties, few_stretches, step_stride,
-};
+use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, STRETCH, choose_empties, few_stretches, step_stride};
 use super::constants::{Features, MEMBERS, WORKGROUP};
 use super::counters;
 use super::kernels::Flights;
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::place::Cells;
+use super::registry::{
+    COUNT_DROPPED, INTERVAL, LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_INCOMPLETE, LIST_MOVED,
+    LIST_PARTED, LIST_TAILS,
+};
 use super::step_slot::{Newborns, StepSlot, Steps, Tables};
 use super::{GpuError, Kept, Remembered, Subdomain};
 
-/// The lists of `shaders/shared/lists.wgsl` that have a dispatch of their own; lower ones are the rounds'.
-const LIST_PARTED: u32 = 0;
-const LIST_MOVED: u32 = 1;
-const LIST_CROWDED: u32 = 2;
-const LIST_CROWDS: u32 = 3;
-const LIST_INCOMPLETE: u32 = 10;
-/// Of steps at even and at odd places in their interval.
-const LIST_BOUNCE: [u32; 2] = [11, 27];
-pub(super) const LIST_RECHOOSE: u32 = 16;
-pub(super) const LIST_ASKED: u32 = 26;
+/// Those that meet walls, of steps at even and at odd places in their interval.
+const BOUNCES: [u32; 2] = [LIST_BOUNCE, LIST_BOUNCE_ODD];
 
 /// The most cells that one workgroup scans, where kernels are merged.
 const FEW_CELLS: u64 = 1 << 16;
@@ -102,7 +96,7 @@ impl Subdomain {
         }
         device.write(&self.fixed.step, 0, &bytes);
         let counted = if flies_to_bins { done + slots.len() as u32 } else { 0 };
-        device.write(&self.fixed.held, 4 * u64::from(HELD_INTERVAL), &[counted]);
+        device.write(&self.fixed.held, 4 * u64::from(INTERVAL), &[counted]);
         Ok(slots)
     }
 
@@ -137,15 +131,15 @@ impl Subdomain {
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
         let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
         if let Kept::Held = before.kept {
-            self.recall(device, self.count - words[counters::DROPPED], &nobody, 0);
+            self.recall(device, self.count - words[COUNT_DROPPED as usize], &nobody, 0);
         } else {
             self.restore(device, before, &nobody)?;
         }
         // Where particles lie outside of the own cells and the halo, `sorted` has gaps: then the intervals tell.
-        if words[counters::DROPPED] > 0 {
+        if words[COUNT_DROPPED as usize] > 0 {
             return Ok(());
         }
-        self.make_room_for_tails(device, words[counters::TAILS].into(), 0.5)
+        self.make_room_for_tails(device, words[LIST_TAILS as usize].into(), 0.5)
     }
 
     /// Starts a step of a device among others, whose number of particles is known only now.
@@ -273,7 +267,7 @@ impl Subdomain {
         if !self.emptied {
             let groups = threads(rec.device(), cells.div_ceil(EMPTIED_CELLS));
             let phase = if self.kernels.sort.is_some() { "bin" } else { "advect" };
-            self.kernels.reset.dispatch(rec.phase(phase), 0, groups);
+            self.kernels.reset.dispatch(&mut rec.phase(phase), 0, groups);
         }
     }
 
@@ -288,7 +282,7 @@ impl Subdomain {
     pub(super) fn bin_slots(&self, rec: &mut Recording<'_>, step: &StepSlot, slots: u64) {
         if let Some(kernels) = &self.kernels.sort {
             let device = rec.device();
-            kernels.bin.dispatch(rec.phase("bin"), self.offset(device, step, 0), threads(device, slots));
+            kernels.bin.dispatch(&mut rec.phase("bin"), self.offset(device, step, 0), threads(device, slots));
         }
     }
 
@@ -297,7 +291,7 @@ impl Subdomain {
             let device = rec.device();
             let chunks = threads(device, self.bins() / CHUNK + 1);
             let offset = self.offset(device, step, 0);
-            let pass = rec.phase("scan");
+            let pass = &mut rec.phase("scan");
             if let Some(scan) = kernels.scan_merged.as_ref().filter(|_| self.bins() <= FEW_CELLS) {
                 return scan.dispatch(pass, offset, [1, 1, 1]);
             }
@@ -314,14 +308,14 @@ impl Subdomain {
         let offset = self.offset(device, step, 0);
         let slots = threads(device, u64::from(step.count) + u64::from(step.newborns) + u64::from(step.arrivals));
         if let Some(kernels) = &self.kernels.collisions {
-            let pass = rec.phase("sort");
+            let pass = &mut rec.phase("sort");
             kernels.order.dispatch(pass, offset, slots);
             if let Some(start_flights) = &kernels.start_flights {
                 start_flights.dispatch(pass, offset, all(device, step));
             }
         }
         if let Some(kernels) = &self.kernels.cells {
-            let pass = rec.phase("sort");
+            let pass = &mut rec.phase("sort");
             kernels.arrange.dispatch(pass, offset, slots);
             let arguments = (&self.fixed.dispatches, LIST_CROWDED);
             self.over_list(&kernels.arrange_crowded, (device, pass), offset, arguments, step.total.into());
@@ -332,7 +326,7 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             let device = rec.device();
             let offset = self.offset(device, step, 0);
-            let pass = rec.phase("neighbours");
+            let pass = &mut rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
             let arguments = (&self.fixed.rechoose_dispatches, LIST_INCOMPLETE);
             self.over_list(&kernels.complete_lists, (device, pass), offset, arguments, step.total.into());
@@ -344,7 +338,7 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.cells {
             let device = rec.device();
             let offset = self.offset(device, step, 0);
-            let pass = rec.phase("collide");
+            let pass = &mut rec.phase("collide");
             kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
             // (Each has several particles.)
             let arguments = (&self.fixed.dispatches, LIST_CROWDS);
@@ -372,7 +366,7 @@ impl Subdomain {
     pub(super) fn over_list(
         &self,
         kernel: &BoundKernel,
-        (device, pass): (&Device, &mut wgpu::ComputePass<'_>),
+        (device, pass): (&Device, &mut Pass<'_>),
         offset: u32,
         (arguments, item): (&wgpu::Buffer, u32),
         places: u64,
@@ -405,12 +399,12 @@ impl Subdomain {
         let entering = u64::from(step.next.unwrap_or(0));
         let stretches = if self.kernels.sort.is_some() { self.bins() / STRETCH + 1 } else { 0 };
         let groups = threads(device, (u64::from(step.total) + entering).max(stretches));
-        let pass = rec.phase("advect");
+        let pass = &mut rec.phase("advect");
         match &self.kernels.flights {
             Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
             Flights::Parted { advect, bounce } => {
                 advect.dispatch(pass, offset, groups);
-                let arguments = (&self.fixed.dispatches, LIST_BOUNCE[step.slot as usize % 2]);
+                let arguments = (&self.fixed.dispatches, BOUNCES[step.slot as usize % 2]);
                 self.over_list(bounce, (device, pass), offset, arguments, step.total.into());
             }
         }
@@ -427,13 +421,13 @@ impl Subdomain {
         let pairs = (self.domain.plan.gases.len() as u32).div_ceil(2);
         let groups = [self.domain.zones as u32, chunks, pairs];
         let offset = self.offset(rec.device(), step, 0);
-        self.kernels.tally.dispatch(rec.phase("tally"), offset, groups);
+        self.kernels.tally.dispatch(&mut rec.phase("tally"), offset, groups);
     }
 
     /// The blocks that the choice of the step size needs.
     pub fn tally_blocks(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         let device = rec.device();
-        self.kernels.blocks.dispatch(rec.phase("blocks"), self.offset(device, step, 0), all(device, step));
+        self.kernels.blocks.dispatch(&mut rec.phase("blocks"), self.offset(device, step, 0), all(device, step));
     }
 }
 

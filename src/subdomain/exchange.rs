@@ -8,9 +8,9 @@
 use crate::gpu::{Device, Readback, Recording};
 
 use super::buffers::{ExchangeBuffers, ExchangeRoom};
-use super::counters;
 use super::encode::threads;
 use super::layout::{GpuParticle, GpuUpdate, GpuWeights};
+use super::registry::{self, COUNT_DROPPED, LIST_BORDER, LIST_CHANGED, LIST_OUTBOX, LIST_UPDATES};
 use super::step_slot::StepSlot;
 use super::{GpuError, Subdomain};
 
@@ -46,7 +46,7 @@ pub type Messages = Vec<Vec<u8>>;
 /// Room that every message has behind it, for what its sender may add.
 const SPARE: usize = 16;
 /// The lengths of the lists, and behind them where each message begins.
-const LISTS: u64 = 4 * counters::LISTS as u64;
+const LISTS: u64 = 4 * registry::LISTS as u64;
 const PARTICLE: u64 = size_of::<GpuParticle>() as u64;
 const UPDATE: u64 = size_of::<GpuUpdate>() as u64;
 
@@ -89,10 +89,10 @@ impl Subdomain {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             let offset = self.offset(device, step, 0);
-            let pass = rec.phase("exchange");
-            kernels.pack.dispatch_indirect(pass, offset, &self.fixed.dispatches, counters::BORDER as u32);
+            let pass = &mut rec.phase("exchange");
+            kernels.pack.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_BORDER);
             kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
-            kernels.fill.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, counters::OUTBOX as u32);
+            kernels.fill.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_OUTBOX);
         }
         let entries = self.outbox_guess.0.min(self.exchange.room);
         let staging = self.copy_outbox(rec, entries, PARTICLE, |exchange| &exchange.outbox)?;
@@ -132,19 +132,19 @@ impl Subdomain {
         let read = |bytes: &[u8]| Header::and_messages(bytes, peers, PARTICLE);
         let ((header, messages), staging) = outgoing.readback.finish(device, read)?;
         self.spare_staging.push(staging);
-        let count = u64::from(header.lists[counters::OUTBOX]);
+        let count = u64::from(header.lists[LIST_OUTBOX as usize]);
         self.outbox_guess.follow(count);
         if count > entries {
             // More than was copied, or than there was room for: once more, with room for all.
             if count > self.exchange.room {
                 self.make_exchange_room(device, |room| room.particles = count + count / 4)?;
             }
-            device.write(&self.fixed.counters, 4 * counters::OUTBOX as u64, &[0u32]);
+            device.write(&self.fixed.counters, 4 * u64::from(LIST_OUTBOX), &[0u32]);
             let outgoing = self.pack(rec, step)?;
             return self.packed(rec, step, outgoing);
         }
         let slots = step.count + step.newborns;
-        step.total = slots - header.lists[counters::DROPPED];
+        step.total = slots - header.lists[COUNT_DROPPED as usize];
         Ok(messages)
     }
 
@@ -179,21 +179,21 @@ impl Subdomain {
             self.kernels.exchange.as_ref().and_then(|kernels| Some((kernels, kernels.updates.as_ref()?)))
         {
             let offset = self.offset(rec.device(), step, round);
-            let pass = rec.phase("update");
+            let pass = &mut rec.phase("update");
             let sizes = &self.fixed.rechoose_dispatches;
-            updates.pack.dispatch_indirect(pass, offset, sizes, counters::CHANGED as u32);
+            updates.pack.dispatch_indirect(pass, offset, sizes, LIST_CHANGED);
             kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
-            updates.fill.dispatch_indirect(pass, offset, &self.fixed.dispatches, counters::UPDATES as u32);
+            updates.fill.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_UPDATES);
         }
         let entries = self.update_guess.0.min(self.exchange.update_room);
         let staging = self.copy_outbox(rec, entries, UPDATE, |exchange| &exchange.updates_out)?;
         // The lists start anew after the exchange.
         let encoder = rec.encoder();
-        for list in [counters::CHANGED, counters::UPDATES] {
-            encoder.clear_buffer(&self.fixed.counters, 4 * list as u64, Some(4));
+        for list in [LIST_CHANGED, LIST_UPDATES] {
+            encoder.clear_buffer(&self.fixed.counters, 4 * u64::from(list), Some(4));
         }
-        encoder.clear_buffer(&self.fixed.rechoose_dispatches, 12 * counters::CHANGED as u64, Some(4));
-        encoder.clear_buffer(&self.fixed.dispatches, 12 * counters::UPDATES as u64, Some(4));
+        encoder.clear_buffer(&self.fixed.rechoose_dispatches, 12 * u64::from(LIST_CHANGED), Some(4));
+        encoder.clear_buffer(&self.fixed.dispatches, 12 * u64::from(LIST_UPDATES), Some(4));
         let readback = rec.device().read_later(staging, rec.submit());
         Ok(Outgoing { readback, entries, peers: self.place.peers.len() })
     }
@@ -214,11 +214,11 @@ impl Subdomain {
         let read = |bytes: &[u8]| Header::and_messages(bytes, peers, UPDATE);
         let ((header, mut messages), staging) = outgoing.readback.finish(device, read)?;
         self.spare_staging.push(staging);
-        let count = u64::from(header.lists[counters::UPDATES]);
+        let count = u64::from(header.lists[LIST_UPDATES as usize]);
         self.update_guess.follow(count);
         if count > entries {
             // More than was copied, or than there was room for: once more, with room for all.
-            self.fill_list(device, counters::CHANGED, header.lists[counters::CHANGED]);
+            self.fill_list(device, LIST_CHANGED, header.lists[LIST_CHANGED as usize]);
             if count > self.exchange.update_room {
                 self.make_exchange_room(device, |room| room.updates = count + count / 4)?;
             }
@@ -255,7 +255,7 @@ impl Subdomain {
         device.write_joined(&self.exchange.updates_in, UPDATE, messages)?;
         if let Some(kernels) = self.kernels.exchange.as_ref().and_then(|kernels| kernels.updates.as_ref()) {
             let offset = self.offset(device, step, round);
-            kernels.receive.dispatch(rec.phase("update"), offset, threads(device, updates));
+            kernels.receive.dispatch(&mut rec.phase("update"), offset, threads(device, updates));
         }
         Ok(())
     }
@@ -265,7 +265,11 @@ impl Subdomain {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             device.write(&self.fixed.weights, 0, &[GpuWeights::default()]);
-            kernels.weigh.dispatch(rec.phase("blocks"), self.offset(device, step, 0), super::encode::all(device, step));
+            kernels.weigh.dispatch(
+                &mut rec.phase("blocks"),
+                self.offset(device, step, 0),
+                super::encode::all(device, step),
+            );
         }
     }
 
@@ -295,7 +299,7 @@ impl Subdomain {
         let step = self.at_rest(device);
         if let Some(kernels) = &self.kernels.exchange {
             let all = super::encode::all(device, &step);
-            kernels.weigh.dispatch(rec.phase("weigh"), self.offset(device, &step, 0), all);
+            kernels.weigh.dispatch(&mut rec.phase("weigh"), self.offset(device, &step, 0), all);
         }
         rec.submit();
         let words: Vec<[u32; 2]> = device.read(&self.exchange.histogram, planes)?;
@@ -303,9 +307,9 @@ impl Subdomain {
     }
 
     /// Gives a list that was emptied its length again; its entries are still there.
-    fn fill_list(&self, device: &Device, list: usize, length: u32) {
+    fn fill_list(&self, device: &Device, list: u32, length: u32) {
         let [x, y, z] = threads(device, length.into());
-        device.write(&self.fixed.counters, 4 * list as u64, &[length]);
+        device.write(&self.fixed.counters, 4 * u64::from(list), &[length]);
         device.write(&self.fixed.rechoose_dispatches, 12 * list as u64, &[x, y, z]);
     }
 

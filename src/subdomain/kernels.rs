@@ -168,9 +168,21 @@ impl<K> Kernels<K> {
     }
 }
 
-/// The shader of a kernel: one may be bound twice, to different buffers, so that both do the same to the last bit.
-fn source(name: &str) -> &str {
-    if name == "choose_asked" { "choose" } else { name }
+/// A kernel that is bound a second time, so that both do the same to the last bit: its name, its shader, and the buffer
+/// that it has instead of another.
+struct Second {
+    name: &'static str,
+    shader: &'static str,
+    instead_of: &'static str,
+    buffer: &'static str,
+}
+
+/// The pass over the ghosts that were asked asks nobody, and may not write what it takes its size from.
+const SECONDS: [Second; 1] =
+    [Second { name: "choose_asked", shader: "choose", instead_of: "asked_dispatches", buffer: "rechoose_dispatches" }];
+
+fn second(name: &str) -> Option<&'static Second> {
+    SECONDS.iter().find(|second| second.name == name)
 }
 
 /// Compiled kernels by name.
@@ -186,7 +198,7 @@ impl Compiled {
     ) -> Result<Compiled, GpuError> {
         let mut compiled = Vec::new();
         Kernels::build(features, |name| {
-            if source(name) == name {
+            if second(name).is_none() {
                 compiled.push((name, Kernel::reading(device, name, constants, numbers)?));
             }
             Ok::<(), GpuError>(())
@@ -201,11 +213,16 @@ impl Compiled {
         buffers: &Buffers<'_>,
     ) -> Result<Kernels<BoundKernel>, GpuError> {
         Kernels::build(features, |name| {
-            let kernel = self.0.iter().find(|(known, _)| *known == source(name)).map(|(_, kernel)| kernel);
+            let second = second(name);
+            let shader = second.map_or(name, |second| second.shader);
+            let kernel = self.0.iter().find(|(known, _)| *known == shader).map(|(_, kernel)| kernel);
             let Some(kernel) = kernel else {
                 return Err(GpuError::Kernel { kernel: name.into(), reason: "not compiled".into() });
             };
-            kernel.bind(device, |buffer| buffers.by_name(name, buffer))
+            kernel.bind(device, |buffer| match second {
+                Some(second) if second.instead_of == buffer => buffers.by_name(second.buffer),
+                _ => buffers.by_name(buffer),
+            })
         })
     }
 }

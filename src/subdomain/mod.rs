@@ -16,6 +16,7 @@ mod layout;
 mod memory;
 mod nearness;
 mod place;
+pub mod registry;
 mod rounds;
 mod scales;
 mod state;
@@ -29,15 +30,10 @@ use std::sync::Arc;
 use crate::gpu::{BoundKernel, Constants, Device, Form, GpuError, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
 
-pub use buffers::{
-    BLOCK_WORDS, CHUNK, COAT_WORDS, EMPTIED_CELLS, HELD_INTERVAL, MOTION_ENTRIES, SURFACE_WORDS, VENT_WORDS,
-    ZONE_WORDS, choose_empties, few_stretches, most_particles,
-};
+pub use buffers::{CHUNK, EMPTIED_CELLS, MOTION_ENTRIES, choose_empties, few_stretches, most_particles};
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{CROWD, Features, MEMBERS, Patches, WORKGROUP, block_counts, constants, merges, readable_numbers};
-pub use counters::{
-    Counters, LIST_PARTS, MOST_ROUNDS, PART_WORDS, PARTS_OF_LISTS, WORDS as COUNTER_WORDS, places_in_parts,
-};
+pub use counters::{Counters, places_in_parts};
 pub use domain::{Domain, DomainInput, KernelChoice};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
@@ -53,8 +49,7 @@ pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;
 
 use buffers::{
-    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, HELD_WORDS, ParticleBuffers,
-    TallyWords,
+    Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, ParticleBuffers, TallyWords,
 };
 use exchange::Guess;
 use kernels::{CollisionKernels, Kernels};
@@ -365,7 +360,7 @@ impl Subdomain {
                 Ok(Some(0))
             }
             Kept::Held => {
-                let words: Vec<u32> = device.read(&self.fixed.held, HELD_WORDS)?;
+                let words: Vec<u32> = device.read(&self.fixed.held, registry::HELD_WORDS as usize)?;
                 let (held, present) = (words[0], words[1]);
                 let known = (held as usize) <= newborns.of_step.len() && u64::from(present) <= self.particle.capacity;
                 let step = held.checked_sub(1).filter(|_| known);
@@ -385,7 +380,7 @@ impl Subdomain {
         self.write_parameters(device, &slot);
         if let Some(CollisionKernels { recall: Some(kernel), .. }) = &self.kernels.collisions {
             let mut rec = Recording::new(device);
-            kernel.dispatch(rec.phase("lists"), self.offset(device, &slot, 0), encode::all(device, &slot));
+            kernel.dispatch(&mut rec.phase("lists"), self.offset(device, &slot, 0), encode::all(device, &slot));
             rec.submit();
         }
         self.clear_tallies(device);

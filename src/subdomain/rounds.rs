@@ -5,8 +5,8 @@ use crate::gpu::{BoundKernel, Recording};
 use super::Subdomain;
 use super::buffers::STRETCH;
 use super::constants::WORKGROUP;
-use super::encode::{LIST_ASKED, LIST_RECHOOSE};
 use super::kernels::{CollisionKernels, Settle};
+use super::registry::{LIST_ASKED, LIST_PAIRS, LIST_RECHOOSE};
 use super::step_slot::StepSlot;
 
 impl Subdomain {
@@ -26,8 +26,8 @@ impl Subdomain {
             self.choosing(&kernels.match_pairs, rec, "settle", step, round);
             let offset = self.offset(rec.device(), step, round);
             let (device, places) = (rec.device(), self.places(u64::from(step.total / 2)));
-            let pass = rec.phase("settle");
-            self.over_list(settle, (device, pass), offset, (&self.fixed.dispatches, round), places);
+            let pass = &mut rec.phase("settle");
+            self.over_list(settle, (device, pass), offset, (&self.fixed.dispatches, LIST_PAIRS + round), places);
         }
     }
 
@@ -38,7 +38,7 @@ impl Subdomain {
             self.choosing(&kernels.choose, rec, "lost", step, rounds);
             self.choose_asked(kernels, rec, "lost", step, rounds);
             self.choosing(&kernels.match_pairs, rec, "lost", step, rounds);
-            kernels.lost.dispatch(rec.phase("lost"), 0, [1, 1, 1]);
+            kernels.lost.dispatch(&mut rec.phase("lost"), 0, [1, 1, 1]);
         }
     }
 
@@ -53,7 +53,7 @@ impl Subdomain {
     ) {
         if let Some(neighbours_asked) = kernels.neighbours_asked.as_ref().filter(|_| self.place.asks()) {
             let offset = self.asked_offset(rec.device(), step, round);
-            let pass = rec.phase(phase);
+            let pass = &mut rec.phase(phase);
             for kernel in [neighbours_asked, &kernels.complete_lists, &kernels.choose_asked] {
                 kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
             }
@@ -74,6 +74,6 @@ impl Subdomain {
         let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
         let places = self.places(step.total.into()).max(emptying);
         let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
-        self.over_list(kernel, (device, rec.phase(phase)), offset, arguments, places);
+        self.over_list(kernel, (device, &mut rec.phase(phase)), offset, arguments, places);
     }
 }

@@ -1,8 +1,9 @@
 //! What a device measured in one step interval, decoded from its integer tallies.
 
-use super::buffers::{BLOCK_WORDS, COAT_WORDS, SURFACE_WORDS, TallyWords, VENT_WORDS, ZONE_WORDS};
+use super::buffers::TallyWords;
 use super::constants::Patches;
 use super::counters::{self, Counters};
+use super::registry::*;
 
 /// The tallies of the walls, of which there are copies (`shaders/shared/bounced.wgsl`). All are numbers of two words, but for the
 /// counts of particles that left through vents, a word each: two of them add up like one number, since there are fewer than 2^32 particles.
@@ -77,11 +78,11 @@ pub struct Tallies {
     pub fast: Vec<u32>,
 }
 
-fn long(words: &[u32], index: usize) -> u64 {
-    u64::from(words[index]) | (u64::from(words[index + 1]) << 32)
+fn long(words: &[u32], index: u32) -> u64 {
+    u64::from(words[index as usize]) | (u64::from(words[index as usize + 1]) << 32)
 }
 
-fn signed(words: &[u32], index: usize) -> i64 {
+fn signed(words: &[u32], index: u32) -> i64 {
     long(words, index).cast_signed()
 }
 
@@ -98,46 +99,46 @@ impl Tallies {
         let (surfaces, coats) = (&walls[..coats_at], &walls[coats_at..vents_at]);
         let (vents, works) = (&walls[vents_at..works_at], &walls[works_at..]);
         let taken = |words: &[u32]| -> Vec<CoatSum> {
-            let sum = |w: &[u32]| CoatSum { energy: signed(w, 0), tallied: signed(w, 2) };
-            words.chunks_exact(COAT_WORDS).map(sum).collect()
+            let sum = |w: &[u32]| CoatSum { energy: signed(w, WALL_ENERGY), tallied: signed(w, WALL_TALLIED) };
+            words.chunks_exact(COAT_WORDS as usize).map(sum).collect()
         };
         let block_words = &rest[..sizes.blocks];
         Tallies {
             counters: Counters::from_words(&counter_words),
             zones: zones
-                .chunks_exact(ZONE_WORDS)
+                .chunks_exact(ZONE_WORDS as usize)
                 .map(|w| ZoneSum {
-                    number: signed(w, 0),
-                    velocity: [signed(w, 2), signed(w, 4), signed(w, 6)],
-                    kinetic: signed(w, 8),
-                    spin: signed(w, 10),
+                    number: signed(w, ZONE_NUMBER),
+                    velocity: std::array::from_fn(|axis| signed(w, ZONE_VELOCITY + 2 * axis as u32)),
+                    kinetic: signed(w, ZONE_KINETIC),
+                    spin: signed(w, ZONE_SPIN),
                 })
                 .collect(),
             surfaces: surfaces
-                .chunks_exact(SURFACE_WORDS)
+                .chunks_exact(SURFACE_WORDS as usize)
                 .map(|w| SurfaceSum {
-                    impulse: [signed(w, 0), signed(w, 2), signed(w, 4)],
-                    normal: signed(w, 6),
-                    hits: signed(w, 8),
+                    impulse: std::array::from_fn(|axis| signed(w, SURFACE_IMPULSE + 2 * axis as u32)),
+                    normal: signed(w, SURFACE_NORMAL),
+                    hits: signed(w, SURFACE_HITS),
                 })
                 .collect(),
             coats: taken(coats),
             works: taken(works),
             vents: vents
-                .chunks_exact(VENT_WORDS)
+                .chunks_exact(VENT_WORDS as usize)
                 .map(|w| VentSum {
-                    energy: signed(w, 0),
-                    tallied: signed(w, 2),
-                    hits: signed(w, 4),
-                    clipped: signed(w, 6),
-                    left: std::array::from_fn(|gas| i64::from(w[8 + gas])),
+                    energy: signed(w, WALL_ENERGY),
+                    tallied: signed(w, WALL_TALLIED),
+                    hits: signed(w, VENT_HITS),
+                    clipped: signed(w, VENT_CLIPPED),
+                    left: std::array::from_fn(|gas| i64::from(w[VENT_LEFT as usize + gas])),
                 })
                 .collect(),
-            blocks: block_words[..blocks * BLOCK_WORDS]
-                .chunks_exact(BLOCK_WORDS)
-                .map(|w| BlockSum { number: long(w, 0), energy: long(w, 2) })
+            blocks: block_words[..blocks * BLOCK_WORDS as usize]
+                .chunks_exact(BLOCK_WORDS as usize)
+                .map(|w| BlockSum { number: long(w, BLOCK_NUMBER), energy: long(w, BLOCK_ENERGY) })
                 .collect(),
-            fast: block_words[blocks * BLOCK_WORDS..].to_vec(),
+            fast: block_words[blocks * BLOCK_WORDS as usize..].to_vec(),
         }
     }
 }

@@ -51,7 +51,7 @@ fn assert_kernels_are_compiled_once() {
     let together = std::thread::available_parallelism().map_or(1, usize::from);
     assert!(
         number < MOST_MAPPINGS * together,
-        "{number} mappings of code: kernels are compiled anew on the way (shaders/shared/held.wgsl)"
+        "{number} mappings of code: kernels are compiled anew on the way (INTERVAL in src/subdomain/registry.rs)"
     );
 }
 

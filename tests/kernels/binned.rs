@@ -43,7 +43,7 @@ pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
     rig.put("layers", &[NEAR; COUNT]);
     rig.put("newborns", &born);
     rig.put("bouncing", &[0u32; COUNT]);
-    rig.put("sums", &[0u32; 64]);
+    rig.put("surface_sums", &[0u32; 64]);
     rig.put("bins", &[[7u32; 2]; SLOTS]);
     rig.put("cell_counts", &vec![0u32; world.grid.cell_count()]);
     rig.set_held(PRESENT, COUNT as u32 - 30);
@@ -75,11 +75,11 @@ fn particles_are_counted_where_they_fly_as_bin_counts_them() {
         let (counts, bins): (Vec<u32>, Vec<[u32; 2]>) = (rig.get("cell_counts", cells), rig.get("bins", SLOTS));
         let flown: Vec<u32> = rig.get("particles", 8 * SLOTS);
         // The step that follows, without that.
-        rig.put("cell_start", &vec![0u32; cells]);
+        rig.put("cell_counts", &vec![0u32; cells]);
         rig.put("bins", &[[7u32; 2]; SLOTS]);
         rig.step(GpuStep { newborns: BORN as u32, next_newborns: 0, slot: 1, ..step });
         rig.run("bin", SLOTS);
-        let (counted, binned): (Vec<u32>, Vec<[u32; 2]>) = (rig.get("cell_start", cells), rig.get("bins", SLOTS));
+        let (counted, binned): (Vec<u32>, Vec<[u32; 2]>) = (rig.get("cell_counts", cells), rig.get("bins", SLOTS));
         assert_eq!(counts, counted, "{form:?} {rounds}");
         let cell_of = |bins: &[[u32; 2]]| bins.iter().map(|bin| bin[0]).collect::<Vec<_>>();
         assert_eq!(cell_of(&bins), cell_of(&binned));
@@ -126,7 +126,7 @@ fn the_first_choices_empty_the_cells() {
         let mut rig = Rig::new(&World::plain());
         rig.form = form;
         rig.constant("FEW_STRETCHES", f64::from(few));
-        rig.put("rechoose", &[0u32; 100 + 64 * PARTS]);
+        rig.put("rechoose", &[0u32; 100 + 64 * LIST_PARTS]);
         rig.put("choices", &[[0u32; 2]; 100]);
         rig.put("sorted", &[GpuParticle::default(); 100]);
         rig.put("cell_start", &vec![9u32; all + 8]);

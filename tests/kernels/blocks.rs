@@ -1,6 +1,6 @@
 //! `blocks`: number, energy and fast particles, exactly.
 
-use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuParticle, GpuStep};
+use corpuscle::subdomain::{GpuGas, GpuParticle, GpuStep};
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -59,10 +59,10 @@ fn blocks_sum_number_and_energy_and_count_the_fast() {
     }
     rig.gases(&masses.map(|mass| GpuGas { mass, ..GpuGas::default() }));
     rig.put("particles", &particles);
-    rig.put("sums", &vec![0u32; blocks * BLOCK_WORDS + LEVELS]);
+    rig.put("block_sums", &vec![0u32; blocks * BLOCK_WORDS + LEVELS]);
     rig.step(GpuStep { count: COUNT as u32 + 30, newborns: 10, ..GpuStep::default() });
     rig.run("blocks", COUNT + 40);
-    let words: Vec<u32> = rig.get("sums", blocks * BLOCK_WORDS + LEVELS);
+    let words: Vec<u32> = rig.get("block_sums", blocks * BLOCK_WORDS + LEVELS);
     let (sums, found_fast) = words.split_at(blocks * BLOCK_WORDS);
     let sums: Vec<u64> = sums.chunks_exact(2).map(|w| u64::from(w[0]) | u64::from(w[1]) << 32).collect();
     assert_eq!(sums, expected);

@@ -1,6 +1,6 @@
 //! `bounce` in a box, against reflection in f64.
 
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, SURFACE_WORDS};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep};
 
 use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
@@ -30,7 +30,7 @@ fn bounce(world: &World, particles: &[GpuParticle], flights: &[GpuFlight], surfa
     rig.put("bouncing", &(0..particles.len() as u32).collect::<Vec<_>>());
     rig.constant("COPIES", COPIES as f64);
     rig.constant("COPY_WORDS", COPY_WORDS as f64);
-    rig.put("sums", &[0u32; COPIES * COPY_WORDS]);
+    rig.put("surface_sums", &[0u32; COPIES * COPY_WORDS]);
     rig.set_counter(LIST_BOUNCE, particles.len() as u32);
     rig.step(GpuStep { count: particles.len() as u32, dt: DT, ..GpuStep::default() });
     rig.run("bounce", particles.len());
@@ -165,7 +165,7 @@ fn surfaces_tally_the_impulse_of_their_hits() {
             v = turned;
         }
     }
-    let words: Vec<u32> = rig.get("sums", COPIES * COPY_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", COPIES * COPY_WORDS);
     let long = |at: usize| (u64::from(words[at]) | u64::from(words[at + 1]) << 32).cast_signed();
     // Each workgroup has its own: all are used, and nothing is written behind one.
     for copy in words.chunks_exact(COPY_WORDS) {

@@ -125,7 +125,7 @@ fn no_branch_asks_uniforms_alone_for_what_changes_from_step_to_step() {
             );
         }
     }
-    assert!(found.is_empty(), "a member of a uniform, the function, the kernel: {found:?} (shaders/shared/held.wgsl)");
+    assert!(found.is_empty(), "a member of a uniform, the function, the kernel: {found:?} (src/subdomain/registry.rs)");
 }
 
 #[test]

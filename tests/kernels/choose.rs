@@ -49,7 +49,7 @@ impl Cloud {
         put_flights(&mut rig, &self.flights);
         put_lists(&mut rig, &self.lists);
         // All of them choose in the first round.
-        rig.put("rechoose", &(0..(count + 64 * PARTS) as u32).collect::<Vec<_>>());
+        rig.put("rechoose", &(0..(count + 64 * LIST_PARTS) as u32).collect::<Vec<_>>());
         rig.set_choosers(0, count);
         rig
     }

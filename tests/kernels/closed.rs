@@ -79,7 +79,7 @@ fn fly(world: &World, seed: u32, open: Option<usize>) -> Leaks {
         rig.constant(flag, on);
     }
     rig.gases(&[GpuGas { mass: 1.0, exchange: 0.0, inverse_beta: 0.0, inverse_beta1: 1.0 }; 2]);
-    for dummy in ["sorted", "sums"] {
+    for dummy in ["sorted", "surface_sums"] {
         rig.put(dummy, &[0u32; 12]);
     }
     rig.put("bouncing", &(0..COUNT as u32).collect::<Vec<_>>());

@@ -1,8 +1,6 @@
 //! `bounce` at walls that are no mirrors, against the distributions and sums that its coats stand for.
 
-use corpuscle::subdomain::{
-    COAT_WORDS, GpuCoat, GpuFlight, GpuGas, GpuParticle, GpuStep, GpuVent, SURFACE_WORDS, VENT_WORDS,
-};
+use corpuscle::subdomain::{GpuCoat, GpuFlight, GpuGas, GpuParticle, GpuStep, GpuVent};
 
 use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
@@ -67,7 +65,7 @@ fn bounce(world: &World, particles: &[GpuParticle], coat: GpuCoat, vents: &[GpuV
     if !vents.is_empty() {
         rig.put("vents", vents);
     }
-    rig.put("sums", &vec![0u32; SURFACE_WORDS + COAT_WORDS + VENT_WORDS * vents.len().max(1)]);
+    rig.put("surface_sums", &vec![0u32; SURFACE_WORDS + COAT_WORDS + VENT_WORDS * vents.len().max(1)]);
     rig.set_counter(LIST_BOUNCE, particles.len() as u32);
     rig.step(GpuStep { count: particles.len() as u32, dt: DT, index: 3, tallies_left, ..GpuStep::default() });
     rig.run("bounce", particles.len());
@@ -148,7 +146,7 @@ fn an_accommodating_wall_emits_a_maxwell_flux_of_its_temperature() {
         assert!((variance - shape).abs() < 4.5 * error, "{variance} {shape}");
     }
     let taken: f64 = particles.iter().map(energy).sum::<f64>() - after.iter().map(energy).sum::<f64>();
-    let words: Vec<u32> = rig.get("sums", SURFACE_WORDS + COAT_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
     let tally = sum_at(&words, SURFACE_WORDS) / ENERGY_SCALE;
     let scale: f64 = particles.iter().map(energy).sum();
     // Half a unit a hit at most, and f32's rounding of each.
@@ -170,7 +168,7 @@ fn a_share_of_the_hits_is_accommodated() {
     // Binomial: .3 +- .0051.
     assert!((share - 0.3).abs() < 4.5 * (0.21f64 / 8000.0).sqrt(), "{share}");
     // Without tallies to come, nothing is weighted with them.
-    let words: Vec<u32> = rig.get("sums", SURFACE_WORDS + COAT_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
     assert_eq!(sum_at(&words, SURFACE_WORDS + 2), 0.0);
     assert!(sum_at(&words, SURFACE_WORDS) != 0.0);
 }
@@ -217,7 +215,7 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     // The check can fail: a fifth more would be seen.
     assert!(0.2 * expected > 4.5 * f64::sqrt(variance));
     assert!(inside > 2000.0 && inside < 7000.0, "{inside}");
-    let words: Vec<u32> = rig.get("sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
     let at = SURFACE_WORDS + COAT_WORDS;
     assert!((sum_at(&words, at + 4) - inside).abs() < 3.0);
     assert_eq!(sum_at(&words, at + 6), 0.0, "no probability above one");
@@ -229,7 +227,7 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     assert_eq!(sum_at(&words, at + 2), 2.0 * sum_at(&words, at));
     // A beta ten times as large is clipped for the heaviest gas.
     let clipped = bounce(&world, &particles, mirror, &[GpuVent { beta: 10.0 * beta, ..vent }], 0);
-    let words: Vec<u32> = clipped.get("sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
+    let words: Vec<u32> = clipped.get("surface_sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
     assert!(sum_at(&words, at + 6) > 500.0);
 }
 
@@ -244,7 +242,7 @@ fn a_rough_wall_scatters_by_the_cosine_law_and_keeps_the_speed() {
         let rough = GpuCoat { accommodation: 0.0, friction, ..full() };
         let rig = bounce(&world, &particles, rough, &[], 3);
         let after: Vec<GpuParticle> = rig.get("particles", particles.len());
-        let words: Vec<u32> = rig.get("sums", SURFACE_WORDS + COAT_WORDS);
+        let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
         assert_eq!(sum_at(&words, SURFACE_WORDS), 0.0, "no heat");
         for (old, new) in particles.iter().zip(&after) {
             assert!((speed(new) / speed(old) - 1.0).abs() < 8.0 * U);

@@ -36,7 +36,7 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
     rig.put("newborns", &slots[count..count + born].iter_mut().map(entering).collect::<Vec<_>>());
     rig.put("particles", &slots);
     rig.put("bins", &vec![[7u32; 2]; COUNT]);
-    rig.put("cell_start", &vec![0u32; local.step().bins as usize]);
+    rig.put("cell_counts", &vec![0u32; local.step().bins as usize]);
     rig.put("border", &vec![[NOBODY; 2]; COUNT]);
     let capacity = COUNT as u32;
     let placed = GpuStep { count: count as u32, newborns: born as u32, capacity, dt: DT, ..local.step() };
@@ -53,7 +53,7 @@ fn bin_keeps_own_and_halo_and_lists_those_that_others_need() {
                 counts[bin as usize] += 1;
             }
         }
-        assert_eq!(rig.get::<u32>("cell_start", counts.len()), counts);
+        assert_eq!(rig.get::<u32>("cell_counts", counts.len()), counts);
         // The slots of a bin are 0, 1, ..: none twice.
         let kept = found[..here].iter().filter(|bin| bin[0] != NOBODY);
         let places: BTreeSet<[u32; 2]> = kept.clone().copied().collect();
@@ -311,7 +311,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
         put_lists(&mut rig, &lists);
         rig.put("cell_start", &starts);
         rig.put("updates_in", &updates);
-        rig.put("rechoose", &vec![0u32; COUNT + 64 * PARTS]);
+        rig.put("rechoose", &vec![0u32; COUNT + 64 * LIST_PARTS]);
         rig.put("peers", &local.peers());
         rig.step(GpuStep { count: COUNT as u32, round: ROUND, ghosts, near2: NEAR2, ..local.step() });
         rig.run("receive", updates.len());

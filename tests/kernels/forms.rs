@@ -5,7 +5,7 @@ use corpuscle::subdomain::places_in_parts;
 
 use crate::oracle::random::Stream;
 use crate::probe::Probe;
-use crate::rig::{MISPLACED, PART_WORDS, PARTS, PARTS_OF_LISTS, device};
+use crate::rig::{LIST_PARTS, MISPLACED, PART_WORDS, PARTS_OF_LISTS, device, numbers};
 
 const ROUNDED: [&str; 2] =
     [include_str!("../../shaders/shared/rounded.wgsl"), include_str!("../../shaders/shared/rounded.software.wgsl")];
@@ -166,8 +166,8 @@ fn what_threads_count_together_is_what_each_counts() {
         TOGETHER[..forms].iter().flat_map(|form| [(form, (OF_TOGETHER, 1)), (form, (OF_TOGETHER_IN_TURNS, 8))])
     {
         // The word is one behind the threads' own.
-        let word = "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\nconst MISPLACED: u32 = 117;\n";
-        let text = word.to_owned() + &form.replace("//!", "//") + kernel;
+        let word = "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n";
+        let text = word.to_owned() + &numbers() + &form.replace("//!", "//") + kernel;
         let (outputs, counters) =
             Probe::new(text, &[]).run_and_count(device(), &inputs, outputs * inputs.len(), [40, 1, 1]);
         assert_eq!(counters[MISPLACED], 0, "threads were parted");
@@ -215,9 +215,9 @@ fn what_a_part_has_no_room_for_goes_to_others() {
     }
     let count = 64 * 40;
     let text = [
-        "override WORKGROUP: u32 = 64;\nconst LISTS: u32 = 32;\n",
+        "override WORKGROUP: u32 = 64;\n",
         "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n",
-        "const PARTS_OF_LISTS: u32 = 128;\nconst PART_WORDS: u32 = 64;\nconst MISPLACED: u32 = 117;\n",
+        &numbers(),
         include_str!("../../shaders/shared/together.gpu.wgsl"),
         include_str!("../../shaders/shared/list_parts.gpu.wgsl"),
         include_str!("../../shaders/shared/parted_lists.gpu.wgsl"),
@@ -227,7 +227,7 @@ fn what_a_part_has_no_room_for_goes_to_others() {
     let (outputs, counters) =
         Probe::new(text.clone(), &[]).run_and_count(device(), &vec![0u32; count], count, [40, 1, 1]);
     // Each is counted once.
-    let lengths = (0..PARTS).map(|part| counters[PARTS_OF_LISTS + part * PART_WORDS + 7] as usize);
+    let lengths = (0..LIST_PARTS).map(|part| counters[PARTS_OF_LISTS + part * PART_WORDS + 7] as usize);
     assert_eq!((lengths.sum::<usize>(), counters[MISPLACED]), (count, 0));
     let room = outputs[0][1] as usize;
     let mut places: Vec<usize> = outputs.iter().map(|output| output[0] as usize).collect();
@@ -236,10 +236,10 @@ fn what_a_part_has_no_room_for_goes_to_others() {
     assert_eq!(places.len(), count, "each has a place of its own");
     assert!(places.iter().all(|&place| place / 64 / 16 < room / 64), "within the room of the list");
     // What the host takes for it where it tells a thread for each place.
-    assert_eq!((room * PARTS) as u64, places_in_parts(count as u64));
+    assert_eq!((room * LIST_PARTS) as u64, places_in_parts(count as u64));
     // The check can fail: one part has room for few of them.
     assert!(room < count / 4);
     // Those for whom all parts together have no room are told of.
     let (_, counters) = Probe::new(text, &[]).run_and_count(device(), &[0u32; 64], count, [40, 1, 1]);
-    assert_eq!(counters[MISPLACED] as usize, count - 64 * PARTS);
+    assert_eq!(counters[MISPLACED] as usize, count - 64 * LIST_PARTS);
 }

@@ -1,6 +1,6 @@
 //! A device that is held, as its neighbour lists had too little room: what is left as it is, and `recall`.
 
-use corpuscle::subdomain::{BLOCK_WORDS, GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
+use corpuscle::subdomain::{GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuZone};
 
 use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
@@ -68,7 +68,8 @@ fn a_device_that_is_held_changes_nothing() {
     rig.set_choosers(0, COUNT);
     // What each of them leaves: particles, pairs, sums and counters.
     let mut left_by = |kernel: &str, held: u32| {
-        rig.put("sums", &vec![0u32; (2 * ZONE_WORDS).max(BLOCK_WORDS + LEVELS)]);
+        rig.put("zone_sums", &vec![0u32; 2 * ZONE_WORDS]);
+        rig.put("block_sums", &vec![0u32; BLOCK_WORDS + LEVELS]);
         rig.set_held(HELD, held);
         if kernel == "advect" {
             put_flights(&mut rig, &free_flights(COUNT));
@@ -78,10 +79,11 @@ fn a_device_that_is_held_changes_nothing() {
             _ => rig.run(kernel, COUNT),
         }
         rig.set_held(HELD, 0);
-        let mut left: Vec<u32> = rig.get("sums", 2 * ZONE_WORDS);
+        let mut left: Vec<u32> = rig.get("zone_sums", 2 * ZONE_WORDS);
+        left.extend(rig.get::<u32>("block_sums", BLOCK_WORDS + LEVELS));
         left.extend(rig.get::<u32>("particles", 8 * COUNT));
         left.extend(rig.get::<u32>("pairs", COUNT));
-        left.extend(rig.get::<u32>("counters", COUNTERS));
+        left.extend(rig.get::<u32>("counters", COUNTER_WORDS));
         left
     };
     for kernel in ["match_pairs", "tally", "blocks", "advect"] {
@@ -104,10 +106,10 @@ fn the_steps_of_a_device_that_is_held_have_nobody() {
     for held in [0, 1] {
         rig.put("particles", &particles);
         rig.put("bins", &[[7u32; 2]; COUNT]);
-        rig.put("cell_start", &vec![0u32; world.grid.cell_count()]);
+        rig.put("cell_counts", &vec![0u32; world.grid.cell_count()]);
         rig.set_held(HELD, held);
         rig.run("bin", COUNT);
-        let counted: u32 = rig.get::<u32>("cell_start", world.grid.cell_count()).iter().sum();
+        let counted: u32 = rig.get::<u32>("cell_counts", world.grid.cell_count()).iter().sum();
         assert_eq!(counted, if held == 1 { 0 } else { COUNT as u32 });
         let bins: Vec<[u32; 2]> = rig.get("bins", COUNT);
         assert!(bins.iter().all(|bin| (bin[0] == NOBODY) == (held == 1)));

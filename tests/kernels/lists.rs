@@ -18,17 +18,17 @@ fn reset_empties_every_list_in(form: Form) {
     let mut rig = Rig::new(&World::plain());
     rig.form = form;
     let mut stream = Stream::new(1);
-    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
     rig.put("counters", &noise);
     rig.put("dispatches", &noise);
     rig.put("rechoose_dispatches", &noise);
     rig.put("asked_dispatches", &noise);
     let cells: Vec<u32> = (0..5 * 1024).map(|_| stream.word() | 1).collect();
     let sums = &cells[..200];
-    rig.put("cell_start", &cells);
+    rig.put("cell_counts", &cells);
     rig.put("stretch_sums", sums);
     rig.run_groups("reset", [2, 1, 1]);
-    for (buffer, before, emptied) in [("cell_start", &cells[..], 2048), ("stretch_sums", sums, 128)] {
+    for (buffer, before, emptied) in [("cell_counts", &cells[..], 2048), ("stretch_sums", sums, 128)] {
         let left: Vec<u32> = rig.get(buffer, before.len());
         assert_eq!(left[..emptied], vec![0; emptied], "{buffer}");
         // The check can fail: there were more.
@@ -36,8 +36,8 @@ fn reset_empties_every_list_in(form: Form) {
     }
     // Folded into two dimensions, and more threads than there are cells.
     rig.run_groups("reset", [2, 4, 1]);
-    assert_eq!(rig.get::<u32>("cell_start", cells.len()), vec![0; cells.len()]);
-    let counters: Vec<u32> = rig.get("counters", COUNTERS);
+    assert_eq!(rig.get::<u32>("cell_counts", cells.len()), vec![0; cells.len()]);
+    let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
     // The check can fail: what is not the length of a list keeps its noise.
     for (word, (&found, &noise)) in counters.iter().zip(&noise).enumerate() {
         assert_eq!(found, if word < LISTS || is_of_part(form, word) { 0 } else { noise }, "{form:?} {word}");
@@ -69,7 +69,7 @@ fn newborns_come_behind_the_particles_and_those_without_room_are_counted() {
         rig.put("sorted", &[GpuParticle::default(); 2]);
         rig.put("bouncing", &[0u32; 900]);
         rig.put("bins", &[[7u32; 2]; 900]);
-        rig.put("cell_start", &vec![0u32; world.grid.cell_count()]);
+        rig.put("cell_counts", &vec![0u32; world.grid.cell_count()]);
         rig.constant("COLLISIONS", 0.0);
         rig.constant("ROUNDS_OF_PAIRS", 0.0);
         let capacity = room as u32;
@@ -103,7 +103,7 @@ fn newborns_come_behind_the_particles_and_those_without_room_are_counted() {
 #[test]
 fn lost_adds_the_extra_round_to_the_sample() {
     let mut stream = Stream::new(3);
-    let mut words: Vec<u32> = (0..COUNTERS).map(|_| stream.below(1 << 20)).collect();
+    let mut words: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.below(1 << 20)).collect();
     words[FOREIGN] = words[0] / 2;
     for rounds in [1, 3, 8] {
         let mut rig = Rig::new(&World::plain());
@@ -113,7 +113,7 @@ fn lost_adds_the_extra_round_to_the_sample() {
         let mut expected = words.clone();
         expected[LOST] += words[rounds];
         expected[SAMPLED] += words[..rounds].iter().sum::<u32>() - words[FOREIGN];
-        let found: Vec<u32> = rig.get("counters", COUNTERS);
+        let found: Vec<u32> = rig.get("counters", COUNTER_WORDS);
         assert_eq!(found, expected);
         assert_ne!(found, words, "the check can fail");
     }

@@ -54,11 +54,11 @@ fn settling_those_that_chose_is_matching_and_settling() {
             rig.constant("ROUNDS", 3.0);
             rig.constant("MERGED", f64::from(u8::from(merged)));
             rig.put("layers", &layers);
-            rig.put("pairs", &vec![[0u32; 2]; count / 2 + 64 * PARTS]);
+            rig.put("pairs", &vec![[0u32; 2]; count / 2 + 64 * LIST_PARTS]);
             rig.step(GpuStep { reach, depth: 4, ..cloud.step(ROUND) });
             rig.set_parted(ROUND as usize, 0);
             // That of an odd round is in the second half where kernels are merged.
-            let half = count + 64 * PARTS;
+            let half = count + 64 * LIST_PARTS;
             let mut list = vec![0u32; 2 * half];
             let at = if merged { half } else { 0 };
             list[at..at + entries.len()].copy_from_slice(&entries);
@@ -69,7 +69,7 @@ fn settling_those_that_chose_is_matching_and_settling() {
                 rig.run("settle_chosen", entries.len());
             } else {
                 rig.run("match_pairs", entries.len());
-                rig.run("settle", count / 2 + 64 * PARTS);
+                rig.run("settle", count / 2 + 64 * LIST_PARTS);
             }
             rig
         };
@@ -102,7 +102,7 @@ fn nobody_settles_on_a_device_that_is_held() {
     let count = cloud.particles.len();
     rig.constant("MERGED", 1.0);
     rig.put("layers", &vec![CHOOSES << ROUND; count]);
-    rig.put("rechoose", &[(0..count as u32).collect(), vec![0; 64 * PARTS]].concat().repeat(2));
+    rig.put("rechoose", &[(0..count as u32).collect(), vec![0; 64 * LIST_PARTS]].concat().repeat(2));
     rig.set_choosers(ROUND as usize, count);
     rig.set_held(HELD, 1);
     rig.run("settle_chosen", count);
@@ -135,7 +135,7 @@ fn flying_is_advecting_and_bouncing() {
             let cells =
                 |rig: &Rig| rig.get::<[u32; 2]>("bins", SLOTS).into_iter().map(|bin| bin[0]).collect::<Vec<_>>();
             assert_eq!(cells(&merged), cells(&parted), "{name}");
-            assert_eq!(merged.get::<u32>("sums", 64), parted.get::<u32>("sums", 64), "{name}");
+            assert_eq!(merged.get::<u32>("surface_sums", 64), parted.get::<u32>("surface_sums", 64), "{name}");
         }
         for counter in [BOUNCES, OUTSIDE, TRUNCATED, LIST_NEAR_WALLS, CAPACITY_FAILED, CUT_SHORT] {
             assert_eq!(merged.counter(counter), parted.counter(counter), "{name}: {counter}");

@@ -82,7 +82,7 @@ impl Crowd {
         self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
         let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
         put_to_complete(&mut self.rig, COUNT, &near);
-        self.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
+        self.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
         self.rig.run("neighbours", COUNT);
         complete_lists(&self.rig, LIST_INCOMPLETE);
         lists(&self.rig, COUNT, tails)
@@ -122,7 +122,7 @@ fn flights_begin_with_the_search() {
             crowd.rig.put(name, &vec![0u32; COUNT]);
         }
         put_room(&mut crowd.rig, COUNT, TAILS);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
         let count = COUNT as u32;
         let (newborn_offset, newborn_first_id) = (7, 5000);
         crowd.rig.step(GpuStep {
@@ -316,7 +316,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
         crowd.rig.put("layers", &layers);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * PARTS]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
@@ -432,11 +432,11 @@ fn those_that_choose_are_the_same_in_every_form() {
         let mut of_first = None;
         for form in device().adapter().forms() {
             crowd.rig.form = form;
-            crowd.rig.put("dispatches", &[0u32; 3 * LISTS]);
+            crowd.rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
             crowd.run();
             // Else whom a list has is a matter of the order of the threads.
             assert_eq!(crowd.rig.counter(TAILS_WANTED), 0, "there is room for all lists");
-            let [groups, y, _] = crowd.rig.get::<[u32; 3]>("dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
+            let [groups, y, _] = crowd.rig.get::<[u32; 3]>("rechoose_dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
             let choosers = crowd.rig.choosers(0, COUNT);
             let places = crowd.rig.parted(LIST_RECHOOSE, COUNT);
             assert!(places.iter().all(|place| place / 64 < groups as usize), "the dispatch covers the list");
@@ -444,7 +444,7 @@ fn those_that_choose_are_the_same_in_every_form() {
             // A thread keeps four of those it finds, which are half of its list, until it enters them.
             let longest = crowd.rig.get::<u32>("neighbour_count", COUNT).into_iter().max().unwrap_or(0);
             assert!(near > 0.9 || longest > 16, "{longest}");
-            assert!((groups as usize) < choosers.len() / 64 + 2 * PARTS && y == 1, "{groups} {y}");
+            assert!((groups as usize) < choosers.len() / 64 + 2 * LIST_PARTS && y == 1, "{groups} {y}");
             crowd.rig.run_groups("choose", [groups, 1, 1]);
             let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
             let chosen: Vec<[u32; 2]> = choosers.iter().map(|&s| choices[s as usize]).collect();

@@ -39,10 +39,11 @@ impl Probe {
         let source = Box::leak(Box::new(KernelSource {
             name: "probe",
             entry_point: "probe",
+            phases: &[],
             bindings: &[
-                Binding { index: 0, name: "inputs", access: Access::Read },
-                Binding { index: 1, name: "outputs", access: Access::ReadWrite },
-                Binding { index: 2, name: "counters", access: Access::ReadWrite },
+                Binding { index: 0, name: "inputs", access: Access::Read, stepped: None },
+                Binding { index: 1, name: "outputs", access: Access::ReadWrite, stepped: None },
+                Binding { index: 2, name: "counters", access: Access::ReadWrite, stepped: None },
             ],
             overrides: Vec::leak(self.overrides),
             source: String::leak(self.text),
@@ -59,7 +60,7 @@ impl Probe {
         let kernel = Kernel::of(device, source, &self.constants).expect("a kernel");
         let bound = kernel.bind(device, buffers).expect("its buffers");
         let mut recording = Recording::new(device);
-        bound.dispatch(recording.phase("probe"), 0, groups);
+        bound.dispatch(&mut recording.phase("probe"), 0, groups);
         recording.submit();
         let read = device.read(&outputs, threads).expect("the device's answer");
         (read, device.read(&counters, 2048).expect("the device's answer"))

@@ -6,8 +6,7 @@ use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
 use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, HELD_INTERVAL, MOTION_ENTRIES, Walls, readable_numbers,
-    share_table,
+    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, readable_numbers, registry, share_table,
 };
 
 pub use crate::devices::device;
@@ -16,47 +15,21 @@ use crate::oracle::random::Stream;
 use crate::oracle::vector::Vector;
 use crate::oracle::walls::Triangle;
 
-/// Counters of `shaders/shared/counters.wgsl` and lists of `lists.wgsl`.
-pub const COUNTERS: usize = corpuscle::subdomain::COUNTER_WORDS;
-pub const LISTS: usize = 32;
-pub const LIST_CROWDED: usize = 2;
-pub const LIST_CROWDS: usize = 3;
-pub const LIST_NEAR_WALLS: usize = 9;
-pub const LIST_INCOMPLETE: usize = 10;
-pub const LIST_BOUNCE: usize = 11;
-pub const LIST_BORDER: usize = 12;
-pub const LIST_CHANGED: usize = 13;
-pub const LIST_OUTBOX: usize = 14;
-pub const LIST_UPDATES: usize = 15;
-pub const LIST_RECHOOSE: usize = 16;
-/// Of the lists that kernels of the form for GPUs have in parts.
-pub use corpuscle::subdomain::{LIST_PARTS as PARTS, PART_WORDS, PARTS_OF_LISTS};
-pub const LIST_ASKED: usize = 26;
-pub const LIST_BOUNCE_ODD: usize = 27;
-pub const COUNT_DROPPED: usize = 31;
-pub const LOST: usize = 34;
-pub const SAMPLED: usize = 35;
-pub const TAILS_WANTED: usize = 36;
-pub const LIST_TAILS: usize = 29;
-pub const OUTSIDE: usize = 37;
-pub const OVERSHOOT: usize = 38;
-pub const TRUNCATED: usize = 39;
-pub const TALLY_OVERFLOW: usize = 40;
-pub const CAPACITY_FAILED: usize = 41;
-pub const BOUNCES: usize = 42;
-pub const BLOCKED: usize = 43;
-pub const FOREIGN: usize = 44;
-pub const STRAYS: usize = 45;
-pub const MISSING: usize = 46;
-pub const CANDIDATES: usize = 47;
-pub const GHOST_CANDIDATES: usize = 50;
-pub const GHOST_WALLS: usize = 51;
-pub const MOVED: usize = 48;
-pub const COLLISIONS_LOW: usize = 32;
-pub const FAST_PAIRS: usize = 49;
-pub const CUT_SHORT: usize = 52;
-pub const MISPLACED: usize = 117;
-pub const CELL_COLLISIONS: usize = 53;
+/// Numbers of the registry, as places of words.
+macro_rules! places {
+    ($($name:ident),* $(,)?) => { $(pub const $name: usize = registry::$name as usize;)* };
+}
+
+places! {
+    LISTS, LIST_CROWDED, LIST_CROWDS, LIST_NEAR_WALLS, LIST_INCOMPLETE, LIST_BOUNCE, LIST_BORDER, LIST_CHANGED,
+    LIST_OUTBOX, LIST_UPDATES, LIST_RECHOOSE, LIST_ASKED, LIST_BOUNCE_ODD, LIST_TAILS, COUNT_DROPPED,
+    COUNTER_WORDS, COLLISIONS_LOW, LOST, SAMPLED, TAILS_WANTED, OUTSIDE, OVERSHOOT, TRUNCATED, TALLY_OVERFLOW,
+    CAPACITY_FAILED, BOUNCES, BLOCKED, FOREIGN, STRAYS, MISSING, CANDIDATES, GHOST_CANDIDATES, GHOST_WALLS, MOVED,
+    FAST_PAIRS, CUT_SHORT, MISPLACED, CELL_COLLISIONS, LIST_PARTS, PART_WORDS, PARTS_OF_LISTS,
+    HELD, HELD_PARTICLES, INTERVAL, PRESENT,
+    ZONE_WORDS, SURFACE_WORDS, COAT_WORDS, VENT_WORDS, BLOCK_WORDS,
+}
+
 /// The forms of kernels that the device can run.
 pub fn forms() -> Vec<Form> {
     device().adapter().forms()
@@ -64,15 +37,9 @@ pub fn forms() -> Vec<Form> {
 
 /// Whether a word of the counters is the length of a part of a list (`shaders/shared/list_parts.gpu.wgsl`).
 pub fn is_of_part(form: Form, word: usize) -> bool {
-    let of_parts = PARTS_OF_LISTS..PARTS_OF_LISTS + PARTS * PART_WORDS;
+    let of_parts = PARTS_OF_LISTS..PARTS_OF_LISTS + LIST_PARTS * PART_WORDS;
     form == Form::Gpu && of_parts.contains(&word) && (word - PARTS_OF_LISTS) % PART_WORDS < LISTS
 }
-
-/// Words of `held`.
-pub const HELD: usize = 0;
-pub const HELD_PARTICLES: usize = 1;
-pub const INTERVAL: usize = HELD_INTERVAL as usize;
-pub const PRESENT: usize = 2;
 
 pub const NOBODY: u32 = u32::MAX;
 pub const NEVER: f32 = 1e30;
@@ -92,6 +59,13 @@ pub const LONG: u32 = 0x4000;
 pub const CHOOSES: u32 = 0x10000;
 /// Words of a particle's flight and the beginning of its neighbour list.
 pub const RECORD: usize = 8;
+
+/// The numbers of the registry as every kernel has them.
+pub fn numbers() -> String {
+    let all = registry::NUMBERS.into_iter().flatten();
+    all.map(|(name, value)| format!("const {name}: u32 = {value}u;\n")).collect()
+}
+
 /// Threads of the largest dispatch over particles.
 const MOST_PARTICLES: usize = 8192;
 
@@ -299,7 +273,7 @@ impl Rig {
         rig.put("triangles", &world.walls.triangles);
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
-        rig.put("counters", &[0u32; COUNTERS]);
+        rig.put("counters", &[0u32; COUNTER_WORDS]);
         rig.put("held", &[0u32; INTERVAL + 1]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
@@ -317,7 +291,9 @@ impl Rig {
         rig.put("shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        for buffer in ["cell_start", "cell_counts", "bins", "stretch_sums", "cells", "middles", "neighbour_count"] {
+        for buffer in
+            ["cell_start", "cell_counts", "counts_apart", "bins", "stretch_sums", "cells", "middles", "neighbour_count"]
+        {
             rig.put(buffer, &[0u32; 4]);
         }
         rig
@@ -393,12 +369,12 @@ impl Rig {
     }
 
     pub fn counter(&self, slot: usize) -> u32 {
-        self.get::<u32>("counters", COUNTERS)[slot]
+        self.get::<u32>("counters", COUNTER_WORDS)[slot]
     }
 
     /// Collisions in cells, whatever parts they are counted in.
     pub fn cell_collisions(&self) -> u32 {
-        let words: Vec<u32> = self.get("counters", COUNTERS);
+        let words: Vec<u32> = self.get("counters", COUNTER_WORDS);
         assert!(words[CELL_COLLISIONS + 1..CELL_COLLISIONS + 64].iter().step_by(2).all(|&high| high == 0));
         words[CELL_COLLISIONS..CELL_COLLISIONS + 64].iter().step_by(2).sum()
     }
@@ -411,7 +387,7 @@ impl Rig {
         let compiled = Kernel::in_form(device(), self.form, source, &self.constants, numbers).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
         let mut recording = Recording::new(device());
-        bound.dispatch(recording.phase("test"), 0, groups);
+        bound.dispatch(&mut recording.phase(source.phases.first().unwrap_or(&"test")), 0, groups);
         recording.submit();
     }
 
@@ -426,23 +402,23 @@ impl Rig {
 
     /// Where the entries are of a list in parts, if it has any, that has so many at most (`shaders/shared/parted_lists.wgsl`).
     pub fn parted(&self, list: usize, most: usize) -> Vec<usize> {
-        let lengths: Vec<u32> = self.get("counters", COUNTERS);
+        let lengths: Vec<u32> = self.get("counters", COUNTER_WORDS);
         if self.form != Form::Gpu {
             return (0..lengths[list] as usize).collect();
         }
-        let room = (most / (64 * PARTS) + 1) * 64;
+        let room = (most / (64 * LIST_PARTS) + 1) * 64;
         let places = |part: usize| {
             let length = lengths[PARTS_OF_LISTS + part * PART_WORDS + list] as usize;
-            (0..length.min(room)).map(move |k| (k / 64 * PARTS + part) * 64 + k % 64)
+            (0..length.min(room)).map(move |k| (k / 64 * LIST_PARTS + part) * 64 + k % 64)
         };
-        (0..PARTS).flat_map(places).collect()
+        (0..LIST_PARTS).flat_map(places).collect()
     }
 
     /// The first so many entries of such a list are all that it has.
     pub fn set_parted(&self, list: usize, count: usize) {
         self.set_counter(list, if self.form == Form::Gpu { 0 } else { count as u32 });
-        for part in 0..PARTS {
-            let length = (0..count).filter(|place| place / 64 % PARTS == part).count();
+        for part in 0..LIST_PARTS {
+            let length = (0..count).filter(|place| place / 64 % LIST_PARTS == part).count();
             self.set_counter(PARTS_OF_LISTS + part * PART_WORDS + list, length as u32);
         }
     }
@@ -450,7 +426,7 @@ impl Rig {
     /// Those that choose in a round, of so many particles, in ascending order.
     pub fn choosers(&self, round: usize, particles: usize) -> Vec<u32> {
         let places = self.parted(LIST_RECHOOSE + round, particles);
-        let entries: Vec<u32> = self.get("rechoose", particles + 64 * PARTS);
+        let entries: Vec<u32> = self.get("rechoose", particles + 64 * LIST_PARTS);
         let mut found: Vec<u32> = places.into_iter().map(|place| entries[place]).collect();
         found.sort_unstable();
         found

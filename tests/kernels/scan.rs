@@ -54,7 +54,7 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
         counts[cells - 1] = 3;
         let all = with_end(&counts);
         let (chunks, stretches) = (cells / CHUNK + 1, cells / STRETCH + 1);
-        rig.put("cell_start", &all);
+        rig.put("cell_counts", &all);
         rig.put("chunk_sums", &vec![7u32; chunks]);
         rig.put("stretch_sums", &vec![0u32; stretches]);
         rig.run("scan_sums", chunks);
@@ -71,7 +71,7 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
 #[test]
 fn scan_sums_empties_the_lists_of_the_step_before() {
     let mut stream = Stream::new(3);
-    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
     let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
     // Fewer chunks than there are lists, and more.
     let cases = [(4, 0, 0), (90_001, 0, 0), (90_001, 0, 64), (90_001, 1, 64)];
@@ -79,7 +79,7 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
         let mut rig = rig(cells);
         rig.form = form;
         rig.constant("FEW_STRETCHES", f64::from(few));
-        rig.put("cell_start", &with_end(&vec![0; cells]));
+        rig.put("cell_counts", &with_end(&vec![0; cells]));
         rig.put("chunk_sums", &vec![7u32; cells / CHUNK + 1]);
         rig.put("stretch_sums", &vec![0u32; cells / STRETCH + 1]);
         for buffer in ["counters", "dispatches", "rechoose_dispatches"] {
@@ -87,7 +87,7 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
         }
         rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, peers, ..Default::default() });
         rig.run("scan_sums", cells / CHUNK + 1);
-        let counters: Vec<u32> = rig.get("counters", COUNTERS);
+        let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
         for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
             let emptied = is_of_part(form, word) || word < LISTS && !kept.contains(&word);
             assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{form:?} {word}");
@@ -109,7 +109,7 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
 #[test]
 fn scan_merged_does_all_of_the_scan() {
     let mut stream = Stream::new(8);
-    let noise: Vec<u32> = (0..COUNTERS).map(|_| stream.word() | 1).collect();
+    let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
     let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
     let cases: Vec<(usize, bool)> = CELLS.into_iter().flat_map(|cells| [(cells, false), (cells, true)]).collect();
     for (form, (cells, apart)) in forms().into_iter().flat_map(|form| cases.iter().map(move |&case| (form, case))) {
@@ -120,7 +120,7 @@ fn scan_merged_does_all_of_the_scan() {
         let mut counts = counts(&mut stream, cells);
         counts[cells - 1] = 3;
         let all = with_end(&counts);
-        let (name, noise_of_cells) = (if apart { "cell_counts" } else { "cell_start" }, vec![9u32; all.len() + 4]);
+        let (name, noise_of_cells) = (if apart { "counts_apart" } else { "cell_start" }, vec![9u32; all.len() + 4]);
         rig.put("cell_start", &noise_of_cells);
         rig.put(name, &[&all[..], &[9; 4]].concat());
         rig.put("counters", &noise);
@@ -136,9 +136,9 @@ fn scan_merged_does_all_of_the_scan() {
         assert_eq!(found[all.len()..], [9; 4], "nothing behind them");
         assert_eq!(rig.held(PRESENT), starts[cells]);
         if apart {
-            assert_eq!(rig.get::<u32>("cell_counts", all.len()), vec![0; all.len()]);
+            assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
         }
-        let counters: Vec<u32> = rig.get("counters", COUNTERS);
+        let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
         for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
             let emptied = is_of_part(form, word) || word < LISTS && !kept.contains(&word);
             assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{form:?} {word}");
@@ -217,10 +217,10 @@ fn scan_cells_empties_counts_that_lie_apart() {
         rig.constant("COUNTS_APART", 1.0);
         rig.put("chunk_sums", &of_chunks);
         rig.put("stretch_sums", &prefix(&sums(&all, STRETCH))[..cells / STRETCH + 1]);
-        rig.put("cell_counts", &all);
+        rig.put("counts_apart", &all);
         rig.put("cell_start", &vec![9u32; all.len()]);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), prefix(&counts), "{form:?}");
-        assert_eq!(rig.get::<u32>("cell_counts", all.len()), vec![0; all.len()]);
+        assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
     }
 }

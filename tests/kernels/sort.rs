@@ -57,11 +57,11 @@ fn bin_counts_every_particle_in_the_cell_of_its_mid_step_point() {
     let mut rig = Rig::new(&world);
     rig.put("particles", &particles);
     rig.put("bins", &vec![[NOBODY; 2]; COUNT]);
-    rig.put("cell_start", &vec![0u32; cells.count()]);
+    rig.put("cell_counts", &vec![0u32; cells.count()]);
     rig.step(step());
     rig.run("bin", COUNT);
     let counts: Vec<u32> = start.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    assert_eq!(rig.get::<u32>("cell_start", cells.count()), counts);
+    assert_eq!(rig.get::<u32>("cell_counts", cells.count()), counts);
     let bins: Vec<[u32; 2]> = rig.get("bins", COUNT);
     assert_eq!(bins.iter().map(|bin| bin[0]).collect::<Vec<_>>(), cell);
     // The slots of a cell are 0, 1, .. in some order.

@@ -1,6 +1,6 @@
 //! `tally`: sums over zones and gases, exactly. Velocities and spins are such that f32 loses nothing.
 
-use corpuscle::subdomain::{GpuParticle, GpuStep, GpuZone, ZONE_WORDS};
+use corpuscle::subdomain::{GpuParticle, GpuStep, GpuZone};
 
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{dot, minus, norm};
@@ -53,14 +53,14 @@ fn rig(world: &World, zones: &[GpuZone], particles: &[GpuParticle], chambers: u3
     rig.constant("ENERGY_SCALE", ENERGY_SCALE);
     rig.put("particles", particles);
     rig.put("zones", zones);
-    rig.put("sums", &vec![0u32; zones.len() * GASES * ZONE_WORDS]);
+    rig.put("zone_sums", &vec![0u32; zones.len() * GASES * ZONE_WORDS]);
     rig.step(GpuStep { count: particles.len() as u32, ..GpuStep::default() });
     rig.run_groups("tally", [zones.len() as u32, particles.len().div_ceil(2048) as u32, GASES.div_ceil(2) as u32]);
     rig
 }
 
 fn sums(rig: &Rig, zones: usize) -> Vec<[i64; 6]> {
-    let words: Vec<u32> = rig.get("sums", zones * GASES * ZONE_WORDS);
+    let words: Vec<u32> = rig.get("zone_sums", zones * GASES * ZONE_WORDS);
     let long = |w: &[u32]| (u64::from(w[0]) | u64::from(w[1]) << 32).cast_signed();
     words.chunks_exact(ZONE_WORDS).map(|w| std::array::from_fn(|k| long(&w[2 * k..]))).collect()
 }

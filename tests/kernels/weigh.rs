@@ -47,14 +47,14 @@ fn histograms_are_the_sums_over_planes_of_the_open_boxes() {
         rig.put("layers", &layers);
         rig.put("neighbour_count", &listed);
         rig.put("cuts", &cuts);
-        rig.put("sums", &vec![0u32; 2 * planes]);
+        rig.put("histogram", &vec![0u32; 2 * planes]);
         rig.uniform("weights", &[weights]);
         rig.step(GpuStep { count: COUNT as u32, ..local.step() });
         rig.run("weigh", COUNT + 64);
         rig
     };
     let sums = |rig: &Rig| -> Vec<u64> {
-        rig.get::<[u32; 2]>("sums", planes).iter().map(|w| u64::from(w[0]) | u64::from(w[1]) << 32).collect()
+        rig.get::<[u32; 2]>("histogram", planes).iter().map(|w| u64::from(w[0]) | u64::from(w[1]) << 32).collect()
     };
     let found = rig(GpuWeights { cuts: cuts.len() as u32, ..WEIGHTS });
     assert_eq!(sums(&found), expected);

@@ -2,7 +2,15 @@ use super::*;
 use crate::gpu::KERNELS;
 
 const fn kernel(source: &'static str) -> KernelSource {
-    KernelSource { name: "probe", entry_point: "probe", bindings: &[], overrides: &[], source, forms: [None; 2] }
+    KernelSource {
+        name: "probe",
+        entry_point: "probe",
+        phases: &[],
+        bindings: &[],
+        overrides: &[],
+        source,
+        forms: [None; 2],
+    }
 }
 
 const PROBE: KernelSource = kernel(

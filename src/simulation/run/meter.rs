@@ -4,7 +4,8 @@ use crate::gpu::Constants;
 use crate::output::PhaseTable;
 use crate::simulation::SimulationError;
 use crate::simulation::observer::Observer;
-use crate::subdomain::{Counters, MOST_ROUNDS};
+use crate::subdomain::Counters;
+use crate::subdomain::registry::MOST_ROUNDS;
 
 use super::Simulation;
 
@@ -26,7 +27,7 @@ pub struct Lists {
     /// Flights that were tested against walls.
     pub near_walls: u64,
     /// Particles that chose, by round; behind the last those that would have again.
-    pub choosers: [u64; MOST_ROUNDS],
+    pub choosers: [u64; MOST_ROUNDS as usize],
 }
 
 impl Lists {

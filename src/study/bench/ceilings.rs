@@ -78,7 +78,7 @@ impl Ceilings {
             let timed = |dispatches: u32| -> Result<f64, GpuError> {
                 let mut recording = Recording::new(device);
                 for _ in 0..dispatches {
-                    bound.dispatch(recording.phase("ceiling"), 0, groups);
+                    bound.dispatch(&mut recording.phase("ceiling"), 0, groups);
                 }
                 let start = Instant::now();
                 let submission = recording.submit();
@@ -121,7 +121,7 @@ pub fn wake(device: &Device) -> Result<(), GpuError> {
     let start = Instant::now();
     while start.elapsed().as_secs_f64() < WAKING {
         let mut recording = Recording::new(device);
-        (0..256).for_each(|_| bound.dispatch(recording.phase("wake"), 0, groups));
+        (0..256).for_each(|_| bound.dispatch(&mut recording.phase("wake"), 0, groups));
         let submission = recording.submit();
         device.wait(&submission)?;
     }
