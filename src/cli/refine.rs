@@ -35,7 +35,7 @@ pub fn refine(raw: RefineArguments) -> Result<(), CliError> {
         content: Content::Run,
         scene: Some(&scene),
         meshes: &checkpoint.manifest().mesh,
-        inputs: &[&[path.clone()], &checkpoint.meshes()?[..]].concat(),
+        inputs: &[std::slice::from_ref(&path), &checkpoint.meshes()?[..]].concat(),
         force: raw.force,
     };
     let written = write(&refined, &checkpoint, &OutputFolder::create(&folder, &claim)?)?;

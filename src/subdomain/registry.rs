@@ -310,7 +310,7 @@ pub const REUSED: &[&[Use]] = &[
 ];
 
 /// The name under which a buffer is made.
-pub fn made_as<'a>(name: &'a str) -> &'a str {
+pub fn made_as(name: &str) -> &str {
     let has = |uses: &&&[Use]| uses.iter().any(|used| used.names.contains(&name));
     REUSED.iter().find(has).map_or(name, |uses| uses[0].names[0])
 }

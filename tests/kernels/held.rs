@@ -68,8 +68,8 @@ fn a_device_that_is_held_changes_nothing() {
     rig.set_choosers(0, COUNT);
     // What each of them leaves: particles, pairs, sums and counters.
     let mut left_by = |kernel: &str, held: u32| {
-        rig.put("zone_sums", &vec![0u32; 2 * ZONE_WORDS]);
-        rig.put("block_sums", &vec![0u32; BLOCK_WORDS + LEVELS]);
+        rig.put("zone_sums", &[0u32; 2 * ZONE_WORDS]);
+        rig.put("block_sums", &[0u32; BLOCK_WORDS + LEVELS]);
         rig.set_held(HELD, held);
         if kernel == "advect" {
             put_flights(&mut rig, &free_flights(COUNT));
