@@ -158,7 +158,7 @@ pub struct Plan {
     pub ladder_levels: u32,
     /// Steps between changes of the level.
     pub steps_per_interval: u32,
-    /// Steps between tallies; the last step of a run has one too.
+    /// Steps between tallies of the zones, which lie about the middle of an interval; 0: none.
     pub tally_every: u32,
     /// A block of the coarse grid is 2^this cells along each axis.
     pub block_cells_log2: u32,

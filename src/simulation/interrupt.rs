@@ -147,7 +147,9 @@ mod tests {
         drop(again);
         let hung_up = Interrupt::catch().unwrap();
         low_level::raise(SIGHUP).unwrap();
-        assert_eq!(hung_up.take(), Request::CheckpointAndStop(Some(1)));
+        // The tests themselves may run under `nohup`.
+        let expected = if is_ignored(SIGHUP) { Request::None } else { Request::CheckpointAndStop(Some(1)) };
+        assert_eq!(hung_up.take(), expected);
         assert_eq!([1, 2, 15].map(signal_name), ["SIGHUP", "SIGINT", "SIGTERM"]);
     }
 }

@@ -160,10 +160,10 @@ impl Interval {
 }
 
 /// Which of so many steps add to the zones, at their end: one in `every`, at least one, and so that the mean of their times is the
-/// middle of the interval, as it is of what walls and vents tally in every step. (Of a single step it is its end.)
+/// middle of the interval, as it is of what walls and vents tally in every step. (Of a single step it is its end.) One in 0 is none.
 fn about_the_middle(steps: u32, every: u32) -> Vec<bool> {
     if every <= 1 {
-        return vec![true; steps as usize];
+        return vec![every == 1; steps as usize];
     }
     let mut tallied = vec![false; steps as usize];
     let count = ((steps + every / 2) / every).min(steps / 2).max(1);
@@ -295,6 +295,7 @@ mod tests {
         assert_eq!(of(5, 8), [2, 3]);
         assert_eq!(of(1, 8), [1]);
         assert_eq!(of(4, 1), [1, 2, 3, 4], "every one, whose mean is half a step late");
+        assert_eq!(of(4, 0), [0; 0]);
         for every in 2..=8 {
             for steps in 2..=70 {
                 let found = of(steps, every);
