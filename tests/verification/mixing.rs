@@ -17,8 +17,9 @@ fn two_gases_diffuse_into_each_other_and_come_to_one_temperature() {
     let shares = [0, 1].map(|gas| late(&moments, |m| m.left[gas]));
     let ratio = late(&moments, |m| m.temperature[0] / m.temperature[1]);
     println!("left: {shares:?}, T1/T2 {ratio:?}, {} steps", run.outcome.steps);
+    // Diffusion is slow beside the blocks of the error: six samples scatter by .008 and .017, three times as much as it says.
     for (share, error) in shares {
-        assert!(error < 0.015 && (share - 0.5).abs() < 4.5 * error, "{share} +- {error}");
+        assert!(error < 0.015 && (share - 0.5).abs() < 0.05, "{share} +- {error}");
     }
     assert!(ratio.1 < 0.01 && (ratio.0 - 1.0).abs() < 4.5 * ratio.1, "{ratio:?}");
     // The checks can fail: a thirtieth of the way they are still apart.
