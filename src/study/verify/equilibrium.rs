@@ -70,7 +70,7 @@ pub fn ratios(run: &Run) -> [(f64, f64); 2] {
 pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let times = if effort == Effort::Quick { 1 } else { 2 };
     let mut checks = Vec::new();
-    for (method, step_over_tau, steps) in [("closest-approach", 0.1, 5600), ("cell", 0.5, 2000)] {
+    for (method, step_over_tau, steps) in [("closest-approach", 0.1, 5600), ("cell", 0.5, 3200)] {
         let [spin, gases] = ratios(&mixture(device, method, 3, step_over_tau, times * steps)?);
         checks.push(Check::of(format!("{method}: T_int/T_tr"), 1.0, spin, 0.01));
         checks.push(Check::of(format!("{method}: T1/T2, masses 1:7"), 1.0, gases, 0.01));
