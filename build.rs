@@ -57,7 +57,7 @@ pub struct Kernel {
     /// Those of the other forms, where they are others.
     pub forms: [Option<String>; FORMS.len()],
     pub entry_point: String,
-    /// Of the step.
+    /// The phases of the step in which it is dispatched.
     pub phases: Vec<String>,
     /// The buffers that the entry point uses.
     pub bindings: Vec<Bound>,

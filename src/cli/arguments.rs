@@ -20,7 +20,7 @@ pub use studies::{
 const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked by an option, 2 bad input, 3 device trouble, \
     4 the audit failed, 128 + N stopped by signal N, with a checkpoint.";
 
-/// Of the program, and the commit of its sources where that is known.
+/// The program's version, and the commit of its sources where that is known.
 const VERSION: &str = env!("CORPUSCLE_VERSION");
 
 /// A GPU solver of the corpuscular particle method: gas in inflator tank tests and airbags

@@ -57,7 +57,7 @@ pub struct Beginning {
     pub checkpoint: Checkpoint,
     pub state: RunState,
     pub output: OutputState,
-    /// Of the run; on rank 0.
+    /// The run's folder; on rank 0.
     pub folder: Option<OutputFolder>,
 }
 

@@ -74,7 +74,7 @@ pub fn run(raw: RunArguments, quiet: bool) -> Result<Ending, CliError> {
 /// that this puts to all.
 ///
 /// # Errors
-/// Of this rank.
+/// The error of this rank.
 pub fn once<T>(prepared: Result<T, CliError>, comm: &dyn Communicator) -> Result<T, CliError> {
     let failed = comm.all_gather(vec![u8::from(prepared.is_err())])?;
     if failed.iter().position(|failed| *failed != [0]).is_some_and(|first| first != comm.rank()) {
@@ -206,7 +206,7 @@ fn claim(settings: &RunSettings, content: Content) -> Result<OutputFolder, CliEr
 /// What all ranks of this process share.
 struct Job<'a> {
     settings: &'a RunSettings,
-    /// Of rank 0.
+    /// Rank 0 has it.
     folder: Option<OutputFolder>,
     from: Option<Beginning>,
     device: &'a Device,
@@ -285,7 +285,7 @@ impl Job<'_> {
         ending(&outcome, comm)
     }
 
-    /// Of all checkpoints of the run, the earlier ones included.
+    /// What all checkpoints of the run come from, the earlier ones included.
     fn origin(&self, adapter: Adapter) -> Result<Origin, CliError> {
         let model = &self.settings.model;
         let plan = model.plan.to_toml()?;

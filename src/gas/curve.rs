@@ -112,7 +112,7 @@ impl FlowIntegral {
         Self { pieces, total }
     }
 
-    /// Of several flows, each with its weight.
+    /// The integral of several flows, each with its weight.
     pub fn sum(parts: &[(f64, &FlowIntegral)]) -> Self {
         let all = || parts.iter().flat_map(|(_, flow)| &flow.pieces);
         let mut times: Vec<f64> = all().flat_map(|piece| [piece.start, piece.start + piece.duration]).collect();

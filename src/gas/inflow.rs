@@ -25,11 +25,14 @@
 //! draws are keyed on the id only; the newborns do not depend on how the time is cut by
 //! [`Inflow::take_until`].
 
+mod schedule;
+
 use serde::{Deserialize, Serialize};
 
 use super::curve::{FlowIntegral, value_held};
 use super::{Draws, Particle, Purpose, Species, thermo};
 use crate::scene::{GAS_CONSTANT, Jet, JetSpeed, Mixture, Orifice};
+use schedule::{Schedule, Stream};
 
 /// Share of the debt that one particle pays.
 const DEBT_SHARE: f64 = 0.125;
@@ -94,103 +97,6 @@ struct Source {
     /// Particles to come, at most.
     left: u64,
     debt: f64,
-}
-
-/// One gas of one orifice.
-#[derive(Debug, Clone, PartialEq)]
-struct Stream {
-    source: usize,
-    gas: usize,
-    /// Integral of the orifice's mass flow, kg.
-    flow: FlowIntegral,
-    /// kg of the whole mixture that flow by while this gas delivers one particle.
-    mass_per_particle: f64,
-    /// Particles of the run, at most.
-    most: u64,
-    taken: u64,
-}
-
-impl Stream {
-    /// Particles that the curve delivers until a time.
-    fn delivered(&self, time: f64) -> f64 {
-        self.flow.until(time) / self.mass_per_particle
-    }
-
-    /// When the curve has delivered so many, never if it does not.
-    fn time_of(&self, particles: u64) -> f64 {
-        self.flow.time_of(particles as f64 * self.mass_per_particle).unwrap_or(f64::INFINITY)
-    }
-}
-
-/// When the particles of a gas enter, through whichever orifice.
-#[derive(Debug, Clone, PartialEq)]
-struct Schedule {
-    streams: Vec<usize>,
-    /// Of all its orifices, kg of the mixture of the one or moles of the gas of several.
-    flow: FlowIntegral,
-    /// What of that flows by between two particles.
-    per_particle: f64,
-    count: u64,
-    taken: u64,
-    next: Option<f64>,
-}
-
-impl Schedule {
-    fn new(streams: &[Stream], gas: usize, moles_per_particle: f64, end_time: f64) -> Option<Self> {
-        let own: Vec<usize> = (0..streams.len()).filter(|&index| streams[index].gas == gas).collect();
-        let (flow, per_particle) = match own[..] {
-            [] => return None,
-            [only] => (streams[only].flow.clone(), streams[only].mass_per_particle),
-            _ => {
-                let moles = |&index: &usize| {
-                    let stream: &Stream = &streams[index];
-                    (moles_per_particle / stream.mass_per_particle, &stream.flow)
-                };
-                (FlowIntegral::sum(&own.iter().map(moles).collect::<Vec<_>>()), moles_per_particle)
-            }
-        };
-        let schedule = Self { streams: own, flow, per_particle, count: 0, taken: 0, next: None };
-        Some(schedule.counted(end_time))
-    }
-
-    fn time_of(&self, index: u64) -> Option<f64> {
-        self.flow.time_of((index as f64 + 0.5) * self.per_particle)
-    }
-
-    fn counted(mut self, end_time: f64) -> Self {
-        let enters = |schedule: &Self, index| schedule.time_of(index).is_some_and(|time| time < end_time);
-        // The quotient may miss the last particle by rounding: ask the schedule itself.
-        self.count = (self.flow.total() / self.per_particle + 0.5) as u64;
-        while enters(&self, self.count) {
-            self.count += 1;
-        }
-        while self.count > 0 && !enters(&self, self.count - 1) {
-            self.count -= 1;
-        }
-        self.take(0);
-        self
-    }
-
-    /// So many have entered.
-    fn take(&mut self, taken: u64) {
-        self.taken = taken;
-        self.next = if taken < self.count { self.time_of(taken) } else { None };
-    }
-
-    /// The stream through which the particle of this time enters, the first of equals.
-    fn stream_at(&self, time: f64, streams: &[Stream]) -> usize {
-        if let [only] = self.streams[..] {
-            return only;
-        }
-        let ahead = |index: usize| streams[index].delivered(time) - streams[index].taken as f64;
-        let due = self.streams.iter().filter(|&&index| ahead(index) > 0.0);
-        let first = due.min_by(|&&a, &&b| {
-            let whole = |index: usize| streams[index].time_of(streams[index].taken + 1);
-            whole(a).total_cmp(&whole(b))
-        });
-        // Some stream is ahead by the half particle, but for rounding.
-        *first.or_else(|| self.streams.iter().max_by(|&&a, &&b| ahead(a).total_cmp(&ahead(b)))).unwrap_or(&0)
-    }
 }
 
 /// A flow that brings no particle.

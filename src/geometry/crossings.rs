@@ -19,7 +19,7 @@ use glam::DVec3;
 const SHORT: f64 = 1e-8;
 /// How far beside a crossing its surroundings are, over its length.
 const BESIDE: f64 = 1e-3;
-/// Of barycentric coordinates and shares of edges.
+/// What barycentric coordinates and shares of edges may miss by rounding.
 const SLACK: f64 = 1e-9;
 /// Over the extent: how far from a plane corners lie in it.
 const FLAT: f64 = 1e-12;

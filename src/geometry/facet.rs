@@ -147,7 +147,7 @@ mod tests {
     fn a_crossed_and_a_warped_face_are_refused() {
         let bow = flat(&[[0.0, 0.0], [2.0, 1.0], [2.0, 0.0], [0.0, 1.5]]);
         assert_eq!(triangulated(&bow), Err(Fault::Crossed));
-        // Of equal halves.
+        // Its halves are equal, so that their areas cancel.
         assert_eq!(triangulated(&flat(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]])), Err(Fault::Crossed));
         assert_eq!(triangulated(&flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.5, 0.0]])).unwrap().len(), 2);
         let mut quad = flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);

@@ -166,7 +166,7 @@ mod tests {
         assert!(hidden.is_some_and(|gap| gap > 0.14), "{hidden:?}");
     }
 
-    /// Of a foil its thickness; of what is hidden in a wall, and of a vessel that has nothing behind its walls, none.
+    /// A foil is as thin as its thickness; what is hidden in a wall, and a vessel with nothing behind its walls, is no body.
     #[test]
     fn the_thinnest_body_is_found() {
         let foil = |low: f64, high: f64| {

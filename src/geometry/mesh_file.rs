@@ -1,5 +1,6 @@
 //! Walls from STL (binary, ASCII) and OBJ files. Vertices at equal coordinates become one, whichever part of the file
-//! they are in: patches of one surface are joined. (Not so if each part is closed alone: bodies may touch.) What is not closed then is mended ([`mend`](super::mend)).
+//! they are in: patches of one surface are joined. (Not so if each part is closed alone: bodies may touch.) What is not
+//! closed then is mended ([`mend`](super::mend)).
 
 use super::closed::is_closed;
 use super::primitives::WallMesh;
@@ -11,7 +12,7 @@ use std::path::Path;
 
 /// That some editors begin a text with.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-/// Of a text that is quoted, characters.
+/// Characters of a text that is quoted.
 const LONGEST_QUOTE: usize = 40;
 
 /// A part of a file, by its place among the names of a [`Soup`].
@@ -22,7 +23,7 @@ pub(super) type PartOf = Option<u32>;
 pub(super) struct Soup {
     /// In file units.
     pub corners: Vec<[[f32; 3]; 3]>,
-    /// Of each triangle.
+    /// The part of each triangle.
     pub parts: Vec<PartOf>,
     /// No two alike, in the order of the file.
     pub names: Vec<String>,
@@ -88,7 +89,7 @@ pub(super) fn read(path: &Path, scale: f64, wanted: &[String], subject: &str) ->
     Ok(mesh)
 }
 
-/// Of each triangle.
+/// The face of each triangle.
 fn faces(soup: &Soup, wanted: &[String]) -> Vec<Option<Face>> {
     let place = |name: &String| wanted.iter().position(|other| other == name).map(|k| Face::Part(k as u32));
     let of_name: Vec<Option<Face>> = soup.names.iter().map(place).collect();

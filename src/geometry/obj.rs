@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
     let mut places: Vec<[f32; 3]> = Vec::new();
     let mut faces: Vec<Face> = Vec::new();
     let (mut object, mut group) = (None, None);
-    // Of faces that name a vertex further on.
+    // The face that names the vertex farthest ahead: its line, and the vertex.
     let mut ahead: Option<(usize, i64)> = None;
     for (line, statement) in statements(&super::mesh_file::decoded(bytes)) {
         let mut words = statement.split_whitespace();

@@ -77,7 +77,7 @@ struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// Of a corner, where the volume is that of a sphere of the radius 1.
+    /// How far a corner is from the centre where the volume is that of a sphere of the radius 1.
     fn corner_over_radius(&self) -> f64 {
         let of_triangle = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|k| self.directions[k as usize]);

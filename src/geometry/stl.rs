@@ -26,7 +26,7 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|(_, size)| size == Some(bytes.len()))
 }
 
-/// Of a binary file: how many triangles its header says, and how many bytes they take.
+/// How many triangles the header of a binary file says, and how many bytes such a file has.
 fn announced(bytes: &[u8]) -> Option<(usize, Option<usize>)> {
     let count: [u8; 4] = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
     let count = u32::from_le_bytes(count) as usize;

@@ -57,7 +57,7 @@ pub struct Triangle {
     pub vertices: [u32; 3],
     /// Index of the wall.
     pub wall: u32,
-    /// Of a plain box its six faces; of a hollow box those of the cavity, and its outside (the walls of its holes have
+    /// The part that it is of: a face of a box; of a hollow box a face of the cavity, or its outside (the walls of its holes have
     /// none); of a mesh the parts that the scene names.
     pub face: Option<Face>,
 }

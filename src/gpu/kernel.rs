@@ -41,6 +41,20 @@ pub struct KernelSource {
 }
 
 impl KernelSource {
+    /// A kernel of a test, without buffers.
+    #[cfg(test)]
+    pub(super) const fn probe(source: &'static str) -> KernelSource {
+        KernelSource {
+            name: "probe",
+            entry_point: "probe",
+            phases: &[],
+            bindings: &[],
+            overrides: &[],
+            source,
+            forms: [None; 2],
+        }
+    }
+
     pub(super) fn of(&self, form: Form) -> &'static str {
         let other = match form {
             Form::Plain => None,
@@ -352,14 +366,11 @@ mod tests {
     use super::*;
 
     static PROBE: KernelSource = KernelSource {
-        name: "probe",
-        entry_point: "probe",
-        phases: &[],
-        bindings: &[],
         overrides: &[("EDGE", true), ("LOOPS", false)],
-        source: "override EDGE: f32;\noverride LOOPS: u32 = 1;\nvar<workgroup> product: f32;\n\
-                 @compute @workgroup_size(1)\nfn probe() {\n    product = EDGE * f32(LOOPS);\n}\n",
-        forms: [None; 2],
+        ..KernelSource::probe(
+            "override EDGE: f32;\noverride LOOPS: u32 = 1;\nvar<workgroup> product: f32;\n\
+             @compute @workgroup_size(1)\nfn probe() {\n    product = EDGE * f32(LOOPS);\n}\n",
+        )
     };
 
     /// One that reads serves all values of what it reads, and no other of what is compiled in.

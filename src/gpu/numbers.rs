@@ -83,24 +83,12 @@ mod tests {
     use super::*;
     use crate::gpu::{Form, KERNELS};
 
-    fn kernel(source: &'static str) -> KernelSource {
-        KernelSource {
-            name: "probe",
-            entry_point: "probe",
-            phases: &[],
-            bindings: &[],
-            overrides: &[],
-            source,
-            forms: [None; 2],
-        }
-    }
-
     const PROBE: &str = "override EDGE: f32;\noverride CELLS: u32 = 1;\noverride FLAG: bool = true;\n\
                          @compute @workgroup_size(64)\nfn probe(@builtin(local_invocation_index) i: u32) {\n}\n";
 
     #[test]
     fn numbers_become_variables_that_are_read_first() {
-        let probe = kernel(PROBE);
+        let probe = KernelSource::probe(PROBE);
         let constants = [("FLAG", 0.0), ("CELLS", 7.0), ("EDGE", 0.1)];
         let reading = |numbers: &[&str]| Reading::of(&probe, PROBE, &constants, numbers);
         let both = reading(&["CELLS", "EDGE", "MORE"]).unwrap().unwrap();

@@ -64,7 +64,7 @@ impl Environment {
     }
 }
 
-/// Of this machine.
+/// The name of this machine.
 pub fn host_name() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname")
         .map_or_else(|_| "this machine".into(), |name| name.trim().into())

@@ -6,7 +6,7 @@
 
 use super::amounts::Amounts;
 use super::render::{significant, table};
-use super::{Measured, MeasuredWall, plausible};
+use super::{Measured, MeasuredVent, MeasuredWall, plausible};
 use crate::gas::moles_at;
 use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
 
@@ -43,7 +43,7 @@ pub struct Opens {
     /// Pa.
     pub absolute: f64,
     pub outside: f64,
-    /// Whether a closed vessel that loses no heat gets there.
+    /// Whether its chamber has that pressure at the start, or all gas together at the end, closed and without loss of heat.
     pub reached: bool,
 }
 
@@ -63,21 +63,18 @@ impl Inventory {
             pressure: amounts.total() * GAS_CONSTANT * amounts.final_temperature / volume,
             temperature: amounts.final_temperature,
         };
-        let highest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(end.pressure, f64::max);
-        let opens = |vent: &Vent| {
+        let opens = |(vent, place): (&Vent, &MeasuredVent)| {
             let absolute = vent.external_pressure + vent.opening_pressure;
-            Opens {
-                absolute,
-                outside: vent.external_pressure,
-                reached: highest >= absolute || measured.motion.is_some(),
-            }
+            let highest = end.pressure.max(scene.chambers[place.chamber].pressure);
+            let reached = highest >= absolute || measured.motion.is_some();
+            (vent.name.clone(), Opens { absolute, outside: vent.external_pressure, reached })
         };
         Inventory {
             units: scene.units,
             walls: scene.walls.iter().map(|wall| wall.name.clone()).zip(measured.walls.iter().copied()).collect(),
             chambers,
             end,
-            vents: scene.vents.iter().map(|vent| (vent.name.clone(), opens(vent))).collect(),
+            vents: scene.vents.iter().zip(&measured.vents).map(opens).collect(),
             doubts: plausible::doubts(scene, measured, &end),
             inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
         }
@@ -107,7 +104,7 @@ impl Inventory {
         }
         let mut vents = vec![heads(["vent", "opens at", "above the outside", ""])];
         vents.extend(self.vents.iter().map(|(name, opens)| {
-            let note = if opens.reached { "" } else { "not reached by all gas together" };
+            let note = if opens.reached { "" } else { "not reached at the start, nor by all gas together" };
             let [absolute, above] =
                 [opens.absolute, opens.absolute - opens.outside].map(|p| self.shown(p, Dimension::Pressure));
             let bar = significant(1e-5 * opens.absolute);

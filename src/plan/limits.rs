@@ -51,9 +51,9 @@ pub enum Quantity {
     FastParticles,
     /// Of the method `cell`, where a cell is at least a mean free path long.
     CellParticles,
-    /// Of a round wall: how far its facets lie from the round surface at most, over its radius.
+    /// How far the facets of a round wall lie from the round surface at most, over its radius.
     Facets,
-    /// Of a body, or of a gap that faces gas, over the longest side of the vessel.
+    /// How thick a body is, or how wide a gap that faces gas, over the longest side of the vessel.
     Thickness,
 }
 

@@ -75,7 +75,7 @@ pub struct Measured {
     pub heated: Vec<(usize, usize)>,
     /// Where walls move.
     pub motion: Option<MeasuredMotion>,
-    /// Of each wall of the scene.
+    /// Box, area and volume of each wall of the scene.
     pub walls: Vec<MeasuredWall>,
 }
 

@@ -31,7 +31,7 @@ impl<'a> Parts<'a> {
         Parts { walls: &raw.wall, used }
     }
 
-    /// Of a wall that is a mesh.
+    /// The names used of a wall that is a mesh.
     pub fn of_mesh(&self, wall: usize) -> Vec<String> {
         self.used[wall].clone()
     }

@@ -166,19 +166,19 @@ pub enum Face {
         axis: usize,
         positive: bool,
     },
-    /// Of a hollow box what is around its shell.
+    /// What is around the shell of a hollow box.
     Outside,
     /// Where the holes of a plane are.
     Plane,
-    /// Of a plane the side that its normal points out of, the other one, and what joins them, those of holes included.
+    /// The side of a plane that its normal points out of; the other one; what joins them, walls of holes included.
     Front,
     Back,
     Rim,
-    /// Of a cylinder.
+    /// The ends and the side of a cylinder.
     Base,
     Top,
     Side,
-    /// Of a mesh, by its place in the `parts` of the shape.
+    /// A part of a mesh, by its place in the `parts` of the shape.
     Part(u32),
 }
 

@@ -192,7 +192,7 @@ impl<'a> Conditions<'a> {
         self.state.current = self.see(at_start, 1, [0.0; 2], &[], &[]).0;
     }
 
-    /// Of the chamber that a vent empties, Pa, by the tallies that were seen last.
+    /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last.
     pub fn pressure_before(&self, vent: usize) -> f64 {
         self.local(&self.state.latest, self.model.coats.vents[vent].chamber).map_or(0.0, |gas| gas.pressure)
     }

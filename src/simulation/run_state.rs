@@ -42,7 +42,7 @@ pub struct RunState {
     pub conditions: ConditionsState,
     pub guards: GuardState,
     pub switch: SwitchState,
-    /// Of each vent of the scene.
+    /// What was seen of each vent of the scene.
     pub vents: Vec<VentWatch>,
     /// Intervals so far.
     pub submitted: u64,

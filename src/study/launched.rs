@@ -91,7 +91,7 @@ impl Program {
         };
         let mut done = 0;
         match &case.from {
-            // Of an earlier sweep that failed.
+            // The folder may have what an earlier sweep left that failed.
             None => command.arg("run").arg(&case.scene).arg("--force").arg("--out").arg(folder),
             Some(start) => {
                 done = start.step;

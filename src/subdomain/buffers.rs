@@ -120,7 +120,7 @@ pub struct TallyWords {
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
     pub counters: wgpu::Buffer,
-    /// Of the words `HELD_WORDS` of the registry.
+    /// The words `HELD` and so on of the registry.
     pub held: wgpu::Buffer,
     pub zone_sums: wgpu::Buffer,
     pub surface_sums: wgpu::Buffer,

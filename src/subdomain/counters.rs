@@ -51,7 +51,7 @@ pub struct Counters {
     /// Entries of lists that found no place, and threads that were parted while they counted together.
     pub misplaced: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
-    pub choosers: [u32; MOST_ROUNDS as usize],
+    pub choosers: [u32; RECHOOSE_LISTS as usize],
 }
 
 impl Counters {

@@ -20,10 +20,10 @@ registry! {
     LISTS_AND_COUNTS {
         /// The pairs of round r are list r; the list behind the last round's counts the pairs that the rounds lost.
         LIST_PAIRS = 0,
-        /// Of the method `cell`, which has no rounds: cells that walls divide, and cells that moving walls may touch.
+        /// Cells that walls divide, and cells that moving walls may touch, with the method `cell`, which has no rounds.
         LIST_PARTED = 0,
         LIST_MOVED = 1,
-        /// Of the method `cell`: particles of cells that are put in order one by one, and crowded cells.
+        /// Particles of cells that are put in order one by one, and crowded cells, with the method `cell`.
         LIST_CROWDED = 2,
         LIST_CROWDS = 3,
         /// The particles that may meet a wall in the step: their number alone, they are in other lists.
@@ -37,9 +37,9 @@ registry! {
         /// Sendings of particles, and of updates.
         LIST_OUTBOX = 14,
         LIST_UPDATES = 15,
-        /// The particles that choose in round r are list `LIST_RECHOOSE` + r, for `MOST_ROUNDS` of them.
+        /// The particles that choose in round r are list `LIST_RECHOOSE` + r: so many lists, up to the one behind the last round's.
         LIST_RECHOOSE = 16,
-        MOST_ROUNDS = 10,
+        RECHOOSE_LISTS = 10,
         /// The ghosts that were asked for their choice.
         LIST_ASKED = 26,
         /// Particles that meet a wall, of steps at odd places.
@@ -89,7 +89,7 @@ registry! {
         MOVED = 48,
         /// Collisions of pairs faster than the plan's fastest since the last read.
         FAST_PAIRS = 49,
-        /// Of `CANDIDATES` those of ghosts, and ghosts that may meet a wall in that step.
+        /// The entries of ghosts among `CANDIDATES`, and ghosts that may meet a wall in that step.
         GHOST_CANDIDATES = 50,
         GHOST_WALLS = 51,
         /// Threads whose loops the device ended too soon (`shaders/shared/turns.wgsl`).
@@ -131,28 +131,28 @@ registry! {
 registry! {
     /// The integer tallies: words of an entry, and where in it each sum of two words begins.
     TALLIES {
-        /// Of a gas in a zone (`shaders/tally.wgsl`).
+        /// A gas in a zone (`shaders/tally.wgsl`).
         ZONE_NUMBER = 0,
         ZONE_VELOCITY = 2,
         ZONE_KINETIC = 8,
         ZONE_SPIN = 10,
         ZONE_WORDS = 12,
-        /// Of a surface (`shaders/shared/bounced.wgsl`): three components of the impulse, the normal impulse, hits.
+        /// A surface (`shaders/shared/bounced.wgsl`): three components of the impulse, the normal impulse, hits.
         SURFACE_IMPULSE = 0,
         SURFACE_NORMAL = 6,
         SURFACE_HITS = 8,
         SURFACE_WORDS = 10,
-        /// Of a coat, a vent or a moving wall: an energy, and that energy times the tallies of zones that followed.
+        /// A coat, a vent or a moving wall: an energy, and that energy times the tallies of zones that followed.
         WALL_ENERGY = 0,
         WALL_TALLIED = 2,
         COAT_WORDS = 4,
-        /// Of a vent behind these: hits, hits whose probability was clipped to one, and then, a word each, the
+        /// A vent has behind these: hits, hits whose probability was clipped to one, and then, a word each, the
         /// particles of each gas that left.
         VENT_HITS = 4,
         VENT_CLIPPED = 6,
         VENT_LEFT = 8,
         VENT_WORDS = 24,
-        /// Of a coarse block (`shaders/blocks.wgsl`).
+        /// A coarse block (`shaders/blocks.wgsl`).
         BLOCK_NUMBER = 0,
         BLOCK_ENERGY = 2,
         BLOCK_WORDS = 4,
@@ -232,7 +232,7 @@ pub const BUFFERS: &[&str] = &[
     "updates_out",
     "updates_in",
     "cuts",
-    // Of the kernels of `corpuscle bench`.
+    // The kernels of `corpuscle bench` have these.
     "copy_from",
     "copy_to",
 ];

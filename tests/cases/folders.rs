@@ -153,6 +153,8 @@ fn an_unfinished_run_or_one_of_another_scene_is_not_replaced_unasked() {
     let before = fs::read_dir(out.join("checkpoints")).unwrap().count();
     refused(&run, &["has not reached its end", &format!("`corpuscle resume {}`", out.display()), "--force"]);
     assert!(before > 0 && fs::read_dir(out.join("checkpoints")).unwrap().count() == before);
+    // An edited scene is no run to go on with.
+    refused(&[&run[..], &["--seed", "2"]].concat(), &["which `resume` keeps: `seed = 1` there, `seed = 2` in this"]);
     done(&["resume", text(&out)]);
     // The same again gives the same.
     let history = fs::read(out.join("history.csv")).unwrap();

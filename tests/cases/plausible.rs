@@ -204,6 +204,32 @@ fn what_is_meant_is_not_doubted() {
     }
 }
 
+/// A vent is told as shut if neither its own chamber at the start nor all gas together reaches its pressure; the other chamber's
+/// pressure is not its own.
+#[test]
+fn a_vent_that_no_gas_opens_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let note = |low: f64, opens_at: f64| {
+        let text = format!(
+            "end_time = 1e-3\n[[gas]]\nname = \"n2\"\nmolar_mass = 0.028\ngamma = 1.4\n\
+             [[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [-0.2, -0.2, -0.2]\nmax = [0.2, 0.2, 0.2]\ngas = \"inside\"\n\
+             [[wall]]\nname = \"inner\"\nshape = \"box\"\nmin = [-0.05, -0.05, -0.05]\nmax = [0.05, 0.05, 0.05]\nthickness = 0.005\n\
+             [[chamber]]\nname = \"high\"\nregion = {{ box = {{ min = [-0.05, -0.05, -0.05], max = [0.05, 0.05, 0.05] }} }}\n\
+             pressure = 8e5\ntemperature = 300.0\ngas = \"n2\"\n\
+             [[chamber]]\nname = \"low\"\npressure = {low}\ntemperature = 300.0\ngas = \"n2\"\n\
+             [[vent]]\nname = \"disc\"\nwall = \"tank\"\nface = \"+x\"\narea = 1e-4\ndischarge = 0.7\n\
+             external_pressure = 101325.0\nopening_pressure_absolute = {opens_at}\n[model]\nparticles = 4000\n"
+        );
+        let path = folder.path().join("two.toml");
+        std::fs::write(&path, text).unwrap();
+        let (code, out, err) = outcome(&["check", path.to_str().unwrap()]);
+        assert_eq!(code, 0, "{err}");
+        out.contains("not reached at the start, nor by all gas together")
+    };
+    // The litre at 8 bar leaves all gas at 1.12 bar.
+    assert!(note(101_325.0, 251_325.0) && !note(101_325.0, 1.1e5) && !note(3e5, 251_325.0));
+}
+
 /// `check` and `plan` say of each wall, chamber and vent what it is, in the scene's units; with `--strict` a warning is an error.
 #[test]
 fn check_and_plan_say_what_a_scene_holds() {

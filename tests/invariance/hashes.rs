@@ -30,7 +30,7 @@ impl Hasher for Fnv {
     }
 }
 
-/// Of the history and of the state at the end.
+/// The hash of the history, and that of the state at the end.
 fn hashes(bits: &Bits) -> [u64; 2] {
     let [mut history, mut state] = [0, 0].map(|_| Fnv(0xcbf2_9ce4_8422_2325));
     bits.history.iter().flatten().for_each(|word| history.write(&word.to_le_bytes()));

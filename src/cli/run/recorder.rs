@@ -25,7 +25,7 @@ pub struct Recorder<'a> {
     checkpoints: Option<Checkpoints<'a>>,
     /// `None` on a rank alone.
     among: Option<Among>,
-    /// Of each vent; empty until the end.
+    /// A line for each vent; empty until the end.
     vents: Vec<VentWatch>,
 }
 
@@ -36,6 +36,13 @@ struct Among {
     /// Of the next snapshot.
     boxes: Vec<[[f64; 3]; 2]>,
     frames: Vec<Frame>,
+}
+
+/// What is written as the run goes on.
+struct Files {
+    history: HistoryWriter,
+    snapshots: Option<SnapshotWriter>,
+    progress: Option<Progress>,
 }
 
 /// Particles of a frame that are drawn, about.
@@ -54,31 +61,14 @@ impl<'a> Recorder<'a> {
             }
         };
         let progress = Some(Progress::new(model.plan.end_time, shown));
-        Ok(Recorder {
-            model,
-            reference,
-            history,
-            snapshots,
-            progress,
-            checkpoints: None,
-            among: None,
-            vents: Vec::new(),
-        })
+        let files = Files { history, snapshots, progress };
+        Ok(Recorder::of(model, reference, files))
     }
 
     /// Of a run that has no particles, and so no snapshots.
     pub fn without_particles(model: &'a Model, reference: Reference, dir: &Path) -> Result<Recorder<'a>, OutputError> {
         let history = HistoryWriter::create(dir, &columns(&model.scene))?;
-        Ok(Recorder {
-            model,
-            reference,
-            history,
-            snapshots: None,
-            progress: None,
-            checkpoints: None,
-            among: None,
-            vents: Vec::new(),
-        })
+        Ok(Recorder::of(model, reference, Files { history, snapshots: None, progress: None }))
     }
 
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
@@ -105,16 +95,13 @@ impl<'a> Recorder<'a> {
         };
         let Totals { time, steps, particle_steps } = totals;
         let progress = Some(Progress::new(model.plan.end_time, shown).resume(time, steps, particle_steps));
-        Ok(Recorder {
-            model,
-            reference,
-            history,
-            snapshots,
-            progress,
-            checkpoints: None,
-            among: None,
-            vents: Vec::new(),
-        })
+        let files = Files { history, snapshots, progress };
+        Ok(Recorder::of(model, reference, files))
+    }
+
+    fn of(model: &'a Model, reference: Reference, files: Files) -> Recorder<'a> {
+        let Files { history, snapshots, progress } = files;
+        Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None, vents: Vec::new() }
     }
 
     /// Also writes checkpoints.

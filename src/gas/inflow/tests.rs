@@ -87,7 +87,7 @@ fn mass_is_within_half_a_particle() {
     assert!(short.total() < whole.total() / 2);
 }
 
-/// Of many orifices alike, each of which brings .69 of a particle, all together bring what they bring, in turn; those
+/// Many orifices alike, each of which brings .69 of a particle, together bring their sum, in turn; those
 /// that bring none are told.
 #[test]
 fn orifices_alike_take_turns() {

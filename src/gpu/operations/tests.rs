@@ -1,19 +1,7 @@
 use super::*;
 use crate::gpu::KERNELS;
 
-const fn kernel(source: &'static str) -> KernelSource {
-    KernelSource {
-        name: "probe",
-        entry_point: "probe",
-        phases: &[],
-        bindings: &[],
-        overrides: &[],
-        source,
-        forms: [None; 2],
-    }
-}
-
-const PROBE: KernelSource = kernel(
+const PROBE: KernelSource = KernelSource::probe(
     "override FAST: bool = true;
 override FACTOR: f32 = 2.0;
 @group(0) @binding(0) var<storage, read_write> values: array<vec3<f32>>;
@@ -82,7 +70,7 @@ fn both_sides_of_a_logical_operator_count() {
 fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 values[id.x] = select(0u, 1u, id.x > 1u && (id.y > 2u || id.z > 3u));
 }";
-    let counted = Stretch::of_kernel(&kernel(source), &[]).unwrap();
+    let counted = Stretch::of_kernel(&KernelSource::probe(source), &[]).unwrap();
     assert_eq!(counted, Stretch(vec![Item::Counted(counted.straight())]), "no branch");
     assert!(counted.straight().integer >= 4.0 && counted.straight().integer <= 6.0, "{counted:?}");
 }

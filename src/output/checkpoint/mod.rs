@@ -85,7 +85,7 @@ pub(super) fn is_checkpoint_folder(name: &str) -> bool {
     step_of(name.trim_end_matches(PARTIAL_SUFFIX).trim_end_matches(REMOVED_SUFFIX)).is_some()
 }
 
-/// Of one that a kill has cut short.
+/// Whether it is the folder of a checkpoint that a kill has cut short.
 pub(super) fn is_left_over(name: &str) -> bool {
     let unfinished = name.ends_with(PARTIAL_SUFFIX) || name.ends_with(REMOVED_SUFFIX);
     unfinished && is_checkpoint_folder(name)

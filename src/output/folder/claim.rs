@@ -75,7 +75,10 @@ impl Claim<'_> {
             return Err(OutputError::FolderInUse { path: path(), foreign });
         }
         let Some(found) = Content::found(folder, &contents) else { return Ok(()) };
-        if let Some(state) = unfinished(folder, found) {
+        if let Some(mut state) = unfinished(folder, found) {
+            if let Some(difference) = self.difference(folder).filter(|_| found == self.content) {
+                state += &format!("; but it is of another scene, which `resume` keeps: {difference}");
+            }
             return Err(OutputError::Unfinished { path: path(), state });
         }
         if found != self.content {
@@ -127,7 +130,7 @@ impl Claim<'_> {
     }
 }
 
-/// Of the history.
+/// Rows of the history.
 fn rows(folder: &Path) -> usize {
     let text = fs::read_to_string(folder.join(HISTORY_FILE)).unwrap_or_default();
     text.lines().count().saturating_sub(1)

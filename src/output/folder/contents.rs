@@ -87,7 +87,7 @@ impl Contents {
         Ok(())
     }
 
-    /// Of one of several seeds, in a folder of its own.
+    /// The run of one of several seeds, in a folder of its own.
     fn add_run(&mut self, name: &str, folder: &Path) -> Result<(), OutputError> {
         let run = Contents::of(folder)?;
         self.results.extend(run.results);

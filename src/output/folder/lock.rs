@@ -15,7 +15,7 @@ use super::super::environment::host_name;
 pub(super) const LOCK_FILE: &str = ".corpuscle-lock";
 /// How often a lock may be found to be of a removed file: each time another process has just ended.
 const ATTEMPTS: usize = 100;
-/// Of what is read of a lock file: more than any command line of ours.
+/// Bytes that are read of a lock file: more than any command line of ours has.
 const MOST_TOLD: u64 = 4096;
 
 /// Held as long as it lives.

@@ -159,7 +159,7 @@ pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String>
     found
 }
 
-/// Of a run of particles.
+/// What is odd about the number of steps of a run of particles.
 pub fn many_steps(scene: &Scene, steps: f64) -> Option<String> {
     let range = range_of(Kind::Steps);
     let shown = |si: f64| {

@@ -4,7 +4,7 @@
 use super::units::as_written;
 use crate::scene::{Dimension, Region, Scene, Shape, Vent};
 
-/// Of a ratio of two lengths that should be the same number.
+/// How near to 1 the ratio of two lengths is that were meant to be the same number.
 const SAME: f64 = 1e-6;
 
 fn is_same(a: f64, b: f64) -> bool {

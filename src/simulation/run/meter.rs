@@ -5,7 +5,7 @@ use crate::output::PhaseTable;
 use crate::simulation::SimulationError;
 use crate::simulation::observer::Observer;
 use crate::subdomain::Counters;
-use crate::subdomain::registry::MOST_ROUNDS;
+use crate::subdomain::registry::RECHOOSE_LISTS;
 
 use super::Simulation;
 
@@ -27,7 +27,7 @@ pub struct Lists {
     /// Flights that were tested against walls.
     pub near_walls: u64,
     /// Particles that chose, by round; behind the last those that would have again.
-    pub choosers: [u64; MOST_ROUNDS as usize],
+    pub choosers: [u64; RECHOOSE_LISTS as usize],
 }
 
 impl Lists {
