@@ -142,12 +142,12 @@ impl CliError {
         CliError::Model { path: path.to_path_buf(), error, help }
     }
 
-    /// The same with what no vessel has beside the help.
+    /// The same with what no vessel has before the help: what else would help follows from it.
     pub fn doubting(self, doubts: &[String]) -> CliError {
         match self {
             CliError::Model { path, error, help } if !doubts.is_empty() => {
                 let told = format!("the cause may be a value that no vessel has:{}", list(doubts));
-                let help = Some(help.map_or(told.clone(), |help| format!("{help}\n{told}")));
+                let help = Some(help.map_or(told.clone(), |help| format!("{told}\nif it is meant: {help}")));
                 CliError::Model { path, error, help }
             }
             other => other,

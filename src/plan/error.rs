@@ -16,7 +16,7 @@ pub enum PlanError {
     #[error("the scene holds no gas: no chamber has any, and no orifice delivers any before the end time")]
     #[diagnostic(help("give a chamber a pressure, or an orifice a mass flow within the run"))]
     NoGas,
-    #[error("chamber `{chamber}` has {moles:e} mol of gas but no particle at {moles_per_particle:e} mol each")]
+    #[error("chamber `{chamber}` has {moles:.3e} mol of gas but no particle at {moles_per_particle:.3e} mol each")]
     #[diagnostic(help("{}", for_a_particle(*needed)))]
     EmptyChamber { chamber: String, moles: f64, moles_per_particle: f64, needed: u64 },
     #[error("chamber `{chamber}` has a volume of {volume} m3")]

@@ -75,7 +75,11 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
     found.extend(too_thin(measured, method));
     found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
         let count = number_density * volume;
-        let remedy = "a larger region, or more `particles`";
+        let remedy = if *volume > 0.0 {
+            "a larger region, or more `particles`"
+        } else {
+            "no gas is in its region: move it into the gas, in the units of the scene"
+        };
         table(Quantity::ProbeParticles, &format!("probe `{}` at the end of the run", probe.name), count, remedy)
     }));
     found.push(long_steps(decided));

@@ -144,7 +144,7 @@ fn places(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>]) -> Result<
         let touched: Vec<usize> = (0..areas.len()).filter(|&chamber| areas[chamber] > 1e-6 * whole).collect();
         match touched[..] {
             [chamber] => Ok(VentPlace { chamber, area: areas[chamber] }),
-            [] => Err(ModelError::VentNowhere { vent: vent.name.clone() }),
+            [] => Err(without_gas(scene, vessel, chambers, vent)),
             _ => Err(ModelError::VentOfSeveral { vent: vent.name.clone(), chambers: names(&scene.chambers, &touched) }),
         }
     };
@@ -154,6 +154,24 @@ fn places(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>]) -> Result<
 fn names(chambers: &[Chamber], indices: &[usize]) -> String {
     let names: Vec<String> = indices.iter().map(|&index| format!("\"{}\"", chambers[index].name)).collect();
     names.join(", ")
+}
+
+/// Why a vent has no place: its place borders on other chambers than its own, or on none.
+fn without_gas(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>], vent: &Vent) -> ModelError {
+    let name = vent.name.clone();
+    let Some(own) = vent.chamber else { return ModelError::VentNowhere { vent: name } };
+    let mut areas = vec![0.0; scene.chambers.len()];
+    for (triangle, chamber) in vessel.triangles.iter().zip(chambers) {
+        let Some(chamber) = chamber.filter(|_| on_face(vent, triangle.wall as usize, triangle.face)) else { continue };
+        let corners = corners(vessel, triangle.vertices);
+        add_areas(std::slice::from_ref(vent), &[0], corners, MOST_SPLITS, &mut |_, area| areas[chamber] += area);
+    }
+    let others: Vec<usize> = (0..areas.len()).filter(|&chamber| chamber != own && areas[chamber] > 0.0).collect();
+    if others.is_empty() || areas[own] > 0.0 {
+        return ModelError::VentNowhere { vent: name };
+    }
+    let chamber = scene.chambers[own].name.clone();
+    ModelError::VentElsewhere { vent: name, chamber, borders: names(&scene.chambers, &others) }
 }
 
 /// Adds the parts of a triangle to the first vent that holds them.
@@ -228,6 +246,10 @@ mod tests {
         // The other way round nothing is left for the disc.
         let covered = vent("all", "wall = \"outer\"") + &vent("disc", DISC);
         assert!(matches!(model(&covered, ""), Err(ModelError::VentNowhere { vent }) if vent == "disc"));
+        // A place by other gas than that of the vent's chamber is told with that gas.
+        let elsewhere = vent("disc", &format!("{DISC}\nchamber = \"inside\""));
+        let told = model(&elsewhere, "").err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(told.contains("borders on \"around\", not on its `chamber`, \"inside\""), "{told}");
     }
 
     /// The inner box borders on both chambers; so does its heat.

@@ -40,7 +40,7 @@ pub enum ModelError {
     #[error("orifice \"{orifice}\": its disc, {found} lies in or behind a wall")]
     #[diagnostic(help(
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller (it is in the \
-         unit of the scene, length times length)"
+         unit of the scene, length times length); the side of a round wall is of facets, and a flat disc has its middle further in"
     ))]
     OrificeInWall { orifice: String, found: String },
     #[error(
@@ -66,6 +66,9 @@ pub enum ModelError {
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
     VentNowhere { vent: String },
+    #[error("vent \"{vent}\": its place borders on {borders}, not on its `chamber`, {chamber:?}")]
+    #[diagnostic(help("name the chamber whose gas it lets out, or leave `chamber` out"))]
+    VentElsewhere { vent: String, chamber: String, borders: String },
     #[error("vent \"{vent}\": its place borders on the chambers {chambers}, and a vent empties one")]
     #[diagnostic(help("say which with `chamber`, or give one vent for each"))]
     VentOfSeveral { vent: String, chambers: String },
