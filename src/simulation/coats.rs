@@ -170,8 +170,8 @@ fn without_gas(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>], vent:
     if others.is_empty() || areas[own] > 0.0 {
         return ModelError::VentNowhere { vent: name };
     }
-    let chamber = scene.chambers[own].name.clone();
-    ModelError::VentElsewhere { vent: name, chamber, borders: names(&scene.chambers, &others) }
+    let (others, own) = (names(&scene.chambers, &others), names(&scene.chambers, &[own]));
+    ModelError::VentElsewhere { vent: name, borders: format!("{others}, not on its `chamber`, {own}") }
 }
 
 /// Adds the parts of a triangle to the first vent that holds them.

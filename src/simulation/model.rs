@@ -66,9 +66,9 @@ pub enum ModelError {
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
     VentNowhere { vent: String },
-    #[error("vent \"{vent}\": its place borders on {borders}, not on its `chamber`, {chamber:?}")]
+    #[error("vent \"{vent}\": its place borders on {borders}")]
     #[diagnostic(help("name the chamber whose gas it lets out, or leave `chamber` out"))]
-    VentElsewhere { vent: String, chamber: String, borders: String },
+    VentElsewhere { vent: String, borders: String },
     #[error("vent \"{vent}\": its place borders on the chambers {chambers}, and a vent empties one")]
     #[diagnostic(help("say which with `chamber`, or give one vent for each"))]
     VentOfSeveral { vent: String, chambers: String },
