@@ -83,7 +83,7 @@ fn write(refined: &Refined, parent: &Checkpoint, folder: &OutputFolder) -> Resul
     let plan = model.plan.to_toml()?;
     let Manifest { adapter, mesh, .. } = parent.manifest();
     for (record, source) in mesh.iter().zip(parent.meshes()?) {
-        record.keep(&source, folder)?;
+        record.keep(&source, folder.path())?;
     }
     let scene = to_toml(&model.scene);
     let origin = Origin { scene, plan: plan.clone(), meshes: mesh.clone(), adapter: adapter.clone() };

@@ -9,15 +9,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::output::{
-    Adapter, Checkpoint, CheckpointError, OutputFolder, OutputState, check_marker, has_ended, latest, run_folder,
+    Checkpoint, OutputFolder, check_marker, has_ended, latest, run_folder,
 };
 use crate::ranks::Communicator;
 use crate::scene::parse;
-use crate::simulation::RunState;
 
 use super::CliError;
 use super::arguments::ResumeArguments;
-use super::run::{Ending, among_ranks, launch, once};
+use super::run::{Beginning, Ending, among_ranks, launch, once};
 use super::settings::{Execution, RunSettings, model_of};
 use super::terminal::tell;
 
@@ -50,40 +49,6 @@ fn settings_of(from: &Path, checkpoint: &Checkpoint, execution: Execution) -> Re
     }
     let folder = run_folder(from, checkpoint.path());
     Ok(RunSettings { scene, model, folder, force: false, execution })
-}
-
-/// What a run goes on from.
-pub struct Beginning {
-    pub checkpoint: Checkpoint,
-    pub state: RunState,
-    pub output: OutputState,
-    /// The run's folder; on rank 0.
-    pub folder: Option<OutputFolder>,
-}
-
-impl Beginning {
-    fn new(checkpoint: Checkpoint, folder: Option<OutputFolder>) -> Result<Beginning, CheckpointError> {
-        let (output, state) = checkpoint.state()?;
-        Ok(Beginning { checkpoint, state, output, folder })
-    }
-
-    pub fn step(&self) -> u64 {
-        self.checkpoint.manifest().step
-    }
-
-    /// s.
-    pub fn time(&self) -> f64 {
-        self.checkpoint.manifest().time
-    }
-
-    /// Says where the run goes on, and what may make its bits differ from there.
-    pub fn warn(&self, adapter: &Adapter) {
-        let path = self.checkpoint.path().display();
-        tracing::info!("goes on from {path}: step {}, {:.4} ms", self.step(), 1e3 * self.time());
-        for warning in self.checkpoint.warnings(adapter) {
-            tracing::warn!("{warning}");
-        }
-    }
 }
 
 /// A run's folder, on rank 0, and one of its checkpoints.

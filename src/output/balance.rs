@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::folder::BALANCE_FILE;
 use super::history::number;
+use super::names::BALANCE_FILE;
 
 /// An interval among ranks. An imbalance is that of the fullest rank over the mean.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::folder::ENVIRONMENT_FILE;
+use super::names::ENVIRONMENT_FILE;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Environment {

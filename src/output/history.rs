@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::OutputError;
 use super::appended::{AppendedFile, AppendedState};
 use super::error::write_atomically;
-use super::folder::HISTORY_FILE;
+use super::names::HISTORY_FILE;
 
 /// What one column holds.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::OutputError;
 use super::checkpoint::CheckpointError;
-use super::error::{PARTIAL_SUFFIX, write_atomically};
-use super::{OutputError, OutputFolder};
+use super::checksum::length_and_crc;
+use super::error::write_atomically;
+use super::names::MESH_FOLDER;
 use crate::scene::{Scene, Shape};
 
 /// One file that a scene names.
@@ -42,7 +44,7 @@ fn named(scene: &Scene) -> impl Iterator<Item = &PathBuf> {
 impl MeshRecord {
     fn of(path: &Path) -> Result<MeshRecord, CheckpointError> {
         let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
-        let (bytes, crc32) = super::checkpoint::length_and_crc(&mut file).map_err(CheckpointError::io("read", path))?;
+        let (bytes, crc32) = length_and_crc(&mut file).map_err(CheckpointError::io("read", path))?;
         Ok(MeshRecord { path: path.to_path_buf(), bytes, crc32 })
     }
 
@@ -53,7 +55,7 @@ impl MeshRecord {
     /// Where the copy is in a run's folder. Meshes of one name and different content have different copies.
     pub fn copy_in(&self, folder: &Path) -> PathBuf {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        folder.join(super::folder::MESH_FOLDER).join(format!("{:08x}-{name}", self.crc32))
+        folder.join(MESH_FOLDER).join(format!("{:08x}-{name}", self.crc32))
     }
 
     /// The file with this content: the copy in the folder `run`, or else the original.
@@ -81,12 +83,12 @@ impl MeshRecord {
     ///
     /// # Errors
     /// If the system refuses, or the file was changed in between.
-    pub fn keep(&self, source: &Path, folder: &OutputFolder) -> Result<(), CheckpointError> {
-        let copy = self.copy_in(folder.path());
+    pub fn keep(&self, source: &Path, folder: &Path) -> Result<(), CheckpointError> {
+        let copy = self.copy_in(folder);
         if self.is_of(&copy) {
             return Ok(());
         }
-        let parent = copy.parent().unwrap_or(folder.path());
+        let parent = copy.parent().unwrap_or(folder);
         fs::create_dir_all(parent).map_err(CheckpointError::io("create", parent))?;
         let mut file = File::open(source).map_err(CheckpointError::io("read", source))?;
         let copied = write_atomically(&copy, |out| std::io::copy(&mut file, out).map(|_| ()));
@@ -94,13 +96,6 @@ impl MeshRecord {
             OutputError::Io { action, path, source } => CheckpointError::Io { action, path, source },
             other => CheckpointError::Content { path: copy.clone(), problem: other.to_string() },
         })?;
-        self.find(folder.path()).map(|_| ())
+        self.find(folder).map(|_| ())
     }
-}
-
-/// Whether a file of [`super::folder::MESH_FOLDER`] is a copy that a run has made, whole or not.
-pub(super) fn is_mesh_copy(name: &str) -> bool {
-    let name = name.trim_end_matches(PARTIAL_SUFFIX);
-    let hexadecimal = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    name.split_once('-').is_some_and(|(crc, rest)| crc.len() == 8 && hexadecimal(crc) && !rest.is_empty())
 }

@@ -10,12 +10,14 @@ mod audit;
 mod balance;
 mod chart;
 mod checkpoint;
+mod checksum;
 mod environment;
 mod error;
 mod folder;
 mod history;
 mod map;
 mod meshes;
+mod names;
 mod phases;
 mod progress;
 mod scatter;
@@ -37,16 +39,16 @@ pub use checkpoint::{
 };
 pub use environment::{AdapterRecord, Environment, host_name};
 pub use error::OutputError;
-pub use folder::{
-    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, Claim, Content, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE,
-    LOG_FILE, OutputFolder, PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE,
-    SCENE_FILE, SNAPSHOT_FOLDER, STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE, SUBDOMAIN_CHART_FILE,
-    SWEEP_CHART_FILE, SWEEP_FILE, SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE, check_marker, has_ended,
-    seed_folder,
-};
+pub use folder::{Claim, Content, OutputFolder, check_marker, has_ended};
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use map::{MapCell, MapRow, map_chart};
 pub use meshes::{MeshRecord, mesh_paths, meshes_of};
+pub use names::{
+    AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, LOG_FILE,
+    PARETO_CHART_FILE, PARETO_FILE, PARETO_TABLE_FILE, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, SNAPSHOT_FOLDER,
+    STABILITY_CHART_FILE, STABILITY_FILE, STABILITY_TABLE_FILE, SUBDOMAIN_CHART_FILE, SWEEP_CHART_FILE, SWEEP_FILE,
+    SWEEP_MODEL_CHART_FILE, SWEEP_TABLE_FILE, TIMING_FILE, seed_folder,
+};
 pub use phases::PhaseTable;
 pub use progress::{LOG_ONLY, Progress, Shown};
 pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::folder::{SNAPSHOT_FOLDER, is_snapshot_file};
+use super::names::{SNAPSHOT_FOLDER, is_snapshot_file};
 use super::vtk::{Array, DataSet, Section};
 
 /// One particle of a snapshot, SI.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::folder::TIMING_FILE;
+use super::names::TIMING_FILE;
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {

@@ -1,6 +1,7 @@
 //! What can go wrong between ranks.
 
-use super::LONGEST_MESSAGE;
+/// The longest message, and the longest sum of an [`Communicator::all_gather`]: what MPI can count.
+pub const LONGEST_MESSAGE: usize = i32::MAX as usize;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
 pub enum RankError {

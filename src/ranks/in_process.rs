@@ -6,9 +6,10 @@
 //! communicator, which they must not.
 
 use super::collectives::{Collectives, Offer, Outcome};
+use super::communicator::{check_other, panic_message, within_limit};
 use super::reduction::{Reduction, Tickets};
 use super::schedule::{Pace, Schedule, Wait};
-use super::{Communicator, RankError, check_other, panic_message, within_limit};
+use super::{Communicator, RankError};
 use std::cell::RefCell;
 use std::collections::{HashMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -12,9 +12,10 @@
 mod channel;
 mod pending;
 
-use super::environment::Launcher;
+use super::communicator::{check_other, panic_message, within_limit};
+use super::launcher::Launcher;
 use super::reduction::{Lengths, Reduction, Tickets};
-use super::{Communicator, LONGEST_MESSAGE, RankError, check_other, within_limit};
+use super::{Communicator, LONGEST_MESSAGE, RankError};
 use ::mpi::collective::{CommunicatorCollectives, Root};
 use ::mpi::datatype::{Equivalence, PartitionMut};
 use ::mpi::environment::{Universe, is_finalized};
@@ -281,7 +282,7 @@ fn abort_on_panic(rank: usize) {
         if is_finalized() {
             return;
         }
-        tell(rank, &format!("panicked: {}", super::panic_message(panic.payload())));
+        tell(rank, &format!("panicked: {}", panic_message(panic.payload())));
         if thread::current().id() == mpi_thread {
             SimpleCommunicator::world().abort(PANICKED);
         }

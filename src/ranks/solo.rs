@@ -1,7 +1,8 @@
 //! One rank in one process.
 
+use super::communicator::{check_other, within_limit};
 use super::reduction::{Reduction, Tickets};
-use super::{Communicator, RankError, check_other, within_limit};
+use super::{Communicator, RankError};
 use std::cell::{OnceCell, RefCell};
 use std::collections::VecDeque;
 

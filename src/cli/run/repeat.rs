@@ -11,7 +11,9 @@ use crate::output::{
 use crate::ranks::Communicator;
 use crate::scene::{Method, to_toml};
 
-use super::{Ending, claim, devices, launch};
+use super::devices;
+use super::ending::Ending;
+use super::launch::{claim, launch};
 
 /// Seeds are below this.
 const SEEDS: u64 = 1 << 56;

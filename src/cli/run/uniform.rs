@@ -12,7 +12,7 @@ use crate::scene::to_toml;
 use crate::simulation::{audit_limits, run_uniform};
 
 use super::chart;
-use super::command;
+use super::environment::command;
 use super::recorder::Recorder;
 use super::reference::Reference;
 
@@ -30,7 +30,7 @@ pub fn run(settings: &RunSettings, folder: &OutputFolder, quiet: bool, started: 
     folder.clear()?;
     terminal::log_to(&folder.path().join(LOG_FILE));
     for mesh in meshes_of(&model.scene)? {
-        mesh.keep(&mesh.path, folder)?;
+        mesh.keep(&mesh.path, folder.path())?;
     }
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
     folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::error::CheckpointError;
-use super::{FORMAT, RECORD_BYTES, is_checkpoint_file};
+use super::layout::{FORMAT, PLAN, RECORD_BYTES, SCENE, STATE, is_checkpoint_file};
 use crate::output::{AdapterRecord, MeshRecord};
 
 const FIRST_LINE: &str = "# corpuscle checkpoint, format ";
@@ -113,7 +113,7 @@ impl Manifest {
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(format!("it names {} twice", pair[0]));
         }
-        for needed in [super::SCENE, super::PLAN, super::STATE] {
+        for needed in [SCENE, PLAN, STATE] {
             if !names.contains(&needed) {
                 return Err(format!("it does not name {needed}"));
             }

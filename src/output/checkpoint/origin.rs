@@ -1,7 +1,5 @@
 //! What all checkpoints of a run share: where it came from and what computes it.
 
-use std::io::Read;
-
 use super::error::CheckpointError;
 use super::manifest::Adapter;
 use crate::output::meshes::{MeshRecord, meshes_of};
@@ -25,23 +23,5 @@ impl Origin {
     /// If a mesh cannot be read.
     pub fn new(scene: &Scene, plan: String, adapter: Adapter) -> Result<Origin, CheckpointError> {
         Ok(Origin { scene: to_toml(scene), plan, meshes: meshes_of(scene)?, adapter })
-    }
-}
-
-/// Of all that is left in `source`.
-pub(in crate::output) fn length_and_crc(source: &mut impl Read) -> std::io::Result<(u64, u32)> {
-    let mut crc = crc32fast::Hasher::new();
-    let mut chunk = vec![0; 1 << 16];
-    let mut bytes = 0;
-    loop {
-        match source.read(&mut chunk) {
-            Ok(0) => return Ok((bytes, crc.finalize())),
-            Ok(count) => {
-                crc.update(&chunk[..count]);
-                bytes += count as u64;
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
     }
 }

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
+use super::OutputState;
 use super::error::CheckpointError;
+use super::layout::{ID_MASK, ID_OFFSET, MANIFEST, PLAN, RECORD_BYTES, SCENE, STATE, complete, particle_file};
 use super::manifest::{self, Adapter, FileRecord, Manifest};
-use super::origin::length_and_crc;
-use super::{ID_MASK, ID_OFFSET, MANIFEST, OutputState, PLAN, RECORD_BYTES, SCENE, STATE, complete};
+use crate::output::checksum::length_and_crc;
 use crate::scene::{Scene, Shape};
 
 /// The state is far smaller: it does not grow with the particles.
@@ -190,7 +191,7 @@ impl Checkpoint {
     /// If the file is not as it was written.
     pub fn particles(&self, index: usize) -> Result<Vec<u8>, CheckpointError> {
         let Some(record) = self.manifest.particle_files().nth(index) else {
-            return Err(CheckpointError::Missing { path: self.path.join(super::particle_file(index)) });
+            return Err(CheckpointError::Missing { path: self.path.join(particle_file(index)) });
         };
         let mut records = Vec::new();
         self.pieces(record, 0..record.particles, &mut |piece| records.extend_from_slice(piece))?;

@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::OutputState;
 use super::error::CheckpointError;
+use super::layout::{
+    KEPT, MANIFEST, PLAN, RECORD_BYTES, REMOVED_SUFFIX, SCENE, STATE, complete, folder_name, is_left_over,
+    particle_file,
+};
 use super::manifest::{FileRecord, Manifest};
 use super::origin::Origin;
 use super::read::Checkpoint;
-use super::{
-    KEPT, MANIFEST, OutputState, PLAN, RECORD_BYTES, REMOVED_SUFFIX, SCENE, STATE, complete, folder_name, is_left_over,
-    particle_file,
-};
 use crate::output::error::PARTIAL_SUFFIX;
 
 /// When in a run.

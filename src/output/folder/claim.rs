@@ -9,8 +9,10 @@ use std::path::{Path, PathBuf};
 use super::super::OutputError;
 use super::super::checkpoint::latest;
 use super::super::meshes::MeshRecord;
+use super::super::names::{
+    AUDIT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, PARETO_FILE, SCENE_FILE, STABILITY_FILE, SWEEP_FILE,
+};
 use super::contents::Contents;
-use super::{AUDIT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, PARETO_FILE, SCENE_FILE, STABILITY_FILE, SWEEP_FILE};
 
 /// Who asks for a folder.
 #[derive(Debug, Clone, Copy)]

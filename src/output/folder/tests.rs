@@ -1,3 +1,4 @@
+use super::super::names::*;
 use super::*;
 use crate::output::{Column, HistoryWriter, SnapshotWriter};
 

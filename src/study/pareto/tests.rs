@@ -2,6 +2,7 @@
 
 use super::report::{Chart, front_of};
 use super::*;
+use crate::scene::Method;
 
 /// The settings of every case can be planned, the corners of every method's widest ranges and of the narrowest at least: none is charted as a failure
 /// that is none of the method's.

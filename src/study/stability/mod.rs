@@ -7,6 +7,7 @@
 //! entry of [`AXES`].
 
 mod at_rest;
+mod effort;
 mod flows;
 pub mod report;
 
@@ -17,21 +18,11 @@ use crate::simulation::SimulationError;
 use crate::study::StudyError;
 use crate::study::verify::Check;
 
+pub use effort::Effort;
+pub(crate) use effort::ROUNDS;
+
 /// Standard errors by which a quantity must be beyond its allowance to be broken, and within which one must know it.
 const SURE: f64 = 2.0;
-/// Rounds of the runs, where the axis is another: the default of plans.
-pub(crate) const ROUNDS: u32 = 8;
-
-/// How much a map takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// Two values of each axis, known badly: to see that it works.
-    Quick,
-    /// What `docs/limits.md` is made with.
-    Usual,
-    /// More values, more particles.
-    Full,
-}
 
 /// A run of a method with a value of the axis.
 type Runner = fn(&Device, Method, f64, Effort) -> Result<Vec<Check>, StudyError>;

@@ -9,6 +9,8 @@
 //! fail.
 
 mod at_once;
+mod case;
+mod check;
 pub mod collisions;
 pub mod curve;
 pub mod equilibrium;
@@ -28,160 +30,11 @@ pub mod statistics;
 pub mod tube;
 mod witness;
 
-use crate::gpu::Device;
-use crate::output::{PALETTE, Series};
-
 pub use at_once::run_cases;
+pub use case::{Case, Curves, Effort, Findings};
+pub use check::{Check, Verdict};
 pub(crate) use witness::model_from;
 pub use witness::{Run, Witness, run, scene_of};
-
-use super::StudyError;
-
-/// How much a case takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// All cases together in minutes on two cores.
-    Quick,
-    /// The figures of the documentation.
-    Full,
-}
-
-/// A law and the runs that show it.
-pub struct Case {
-    pub name: &'static str,
-    /// What is compared with what, and where the reference is from.
-    pub law: &'static str,
-    run: fn(&Device, Effort) -> Result<Findings, StudyError>,
-}
-
-impl Case {
-    /// # Errors
-    /// If a run fails.
-    pub fn run(&self, device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-        (self.run)(device, effort)
-    }
-}
-
-/// What a case found.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Findings {
-    pub checks: Vec<Check>,
-    pub charts: Vec<Curves>,
-    /// What is to be said of the specification's figures that were found to be otherwise.
-    pub notes: Vec<String>,
-}
-
-impl From<Vec<Check>> for Findings {
-    fn from(checks: Vec<Check>) -> Findings {
-        Findings { checks, ..Findings::default() }
-    }
-}
-
-impl FromIterator<Check> for Findings {
-    fn from_iter<I: IntoIterator<Item = Check>>(checks: I) -> Findings {
-        Findings::from(checks.into_iter().collect::<Vec<_>>())
-    }
-}
-
-/// Measured curves beside their references.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Curves {
-    /// Of the file, without its ending.
-    pub name: &'static str,
-    pub title: String,
-    pub x_label: &'static str,
-    pub y_label: &'static str,
-    pub series: Vec<Series>,
-}
-
-impl Curves {
-    pub fn new(name: &'static str, title: String, x_label: &'static str, y_label: &'static str) -> Curves {
-        Curves { name, title, x_label, y_label, series: Vec::new() }
-    }
-
-    /// Adds a measured one.
-    #[must_use]
-    pub fn line(mut self, name: &str, points: Vec<[f64; 2]>) -> Curves {
-        let colour = PALETTE[self.series.len() % PALETTE.len()];
-        self.series.push(Series { name: name.into(), points, dashed: false, colour });
-        self
-    }
-
-    /// Adds what the last ones should be.
-    #[must_use]
-    pub fn reference(mut self, name: &str, points: Vec<[f64; 2]>) -> Curves {
-        let [.., ink] = PALETTE;
-        self.series.push(Series { name: name.into(), points, dashed: true, colour: ink });
-        self
-    }
-}
-
-/// A quantity of a case.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Check {
-    pub quantity: String,
-    pub reference: f64,
-    pub measured: f64,
-    /// Largest difference of the two.
-    pub tolerance: f64,
-    /// Standard error of `measured`; 0 where it is a number of the run and no estimate.
-    pub error: f64,
-    /// The reference is a figure of the specification that runs do not find, as a note of the case tells.
-    pub disputed: bool,
-}
-
-/// How far from a disputed figure a measured one may be, as a part of it: the specification's are of single runs.
-const DISPUTED: f64 = 0.2;
-
-/// Standard errors that a tolerance must have.
-const ERRORS_IN_TOLERANCE: f64 = 3.0;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    Pass,
-    Fail,
-    /// From a disputed figure, by a fifth of it at most: that is no failure of the solver, nor does it pass.
-    Differs,
-    /// The run knows too little.
-    Unclear,
-}
-
-impl Verdict {
-    pub fn word(self) -> &'static str {
-        match self {
-            Verdict::Pass => "pass",
-            Verdict::Fail => "FAIL",
-            Verdict::Differs => "differs",
-            Verdict::Unclear => "UNCLEAR",
-        }
-    }
-}
-
-impl Check {
-    /// An estimate with a standard error.
-    pub fn of(quantity: impl Into<String>, reference: f64, (measured, error): (f64, f64), tolerance: f64) -> Check {
-        Check { quantity: quantity.into(), reference, measured, tolerance, error, disputed: false }
-    }
-
-    #[must_use]
-    pub fn disputed(self) -> Check {
-        Check { disputed: true, ..self }
-    }
-
-    pub fn verdict(&self) -> Verdict {
-        let off = (self.measured - self.reference).abs();
-        // Without a number there is no pass either.
-        if off.is_nan() || self.error.is_nan() || ERRORS_IN_TOLERANCE * self.error > self.tolerance {
-            Verdict::Unclear
-        } else if off <= self.tolerance {
-            Verdict::Pass
-        } else if self.disputed && off <= DISPUTED * self.reference.abs() {
-            Verdict::Differs
-        } else {
-            Verdict::Fail
-        }
-    }
-}
 
 /// All cases, those of the specification's figures last.
 pub fn all_cases() -> impl Iterator<Item = &'static Case> {
@@ -284,25 +137,6 @@ pub const CASES: &[Case] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A check passes within its tolerance, fails beyond it (or differs from what is disputed), and says nothing where it does
-    /// not know.
-    #[test]
-    fn a_check_passes_fails_or_knows_too_little() {
-        let check = |measured, error| Check::of("x", 1.0, (measured, error), 0.03).verdict();
-        assert_eq!(check(1.029, 0.005), Verdict::Pass);
-        assert_eq!(check(0.971, 0.0), Verdict::Pass);
-        assert_eq!(check(1.031, 0.005), Verdict::Fail);
-        assert_eq!(check(1.0, 0.011), Verdict::Unclear);
-        assert_eq!(check(f64::NAN, 0.0), Verdict::Unclear);
-        assert_eq!(check(1.0, f64::NAN), Verdict::Unclear);
-        let disputed = |measured, error| Check::of("x", 1.0, (measured, error), 0.03).disputed().verdict();
-        assert_eq!(disputed(1.029, 0.005), Verdict::Pass);
-        assert_eq!(disputed(1.031, 0.005), Verdict::Differs);
-        assert_eq!(disputed(0.801, 0.005), Verdict::Differs);
-        assert_eq!(disputed(1.201, 0.005), Verdict::Fail);
-        assert_eq!(disputed(1.031, 0.011), Verdict::Unclear);
-    }
 
     #[test]
     fn names_are_unique() {

@@ -1,6 +1,6 @@
 //! What gas without collisions has wrong, where nothing is wrong about its energy.
 
-use super::figure;
+use super::figure::figure;
 use crate::gpu::Device;
 use crate::scene::Method;
 use crate::simulation::Options;

@@ -1,6 +1,6 @@
 //! Events that mutual choice in few rounds loses (specification, section 2).
 
-use super::figure;
+use super::figure::figure;
 use crate::gpu::Device;
 use crate::study::StudyError;
 use crate::study::verify::collisions::collision_rate_held;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use super::figure;
+use super::figure::figure;
 use crate::gas::kinetics;
 use crate::gpu::Device;
 use crate::scene::Method;

@@ -1,6 +1,6 @@
 //! Rigid spheres: their pressure on walls and the speed of their sound.
 
-use super::figure;
+use super::figure::figure;
 use crate::gas::kinetics;
 use crate::gpu::Device;
 use crate::scene::Method;

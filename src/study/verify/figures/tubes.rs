@@ -1,7 +1,7 @@
 //! The specification's table of Sod's shock tube, section 2. Its f and x are those of the gas on the left: with those of the mean
 //! state rigid spheres on the left would be 1.8 times as dense, and the table's errors of them half as large again.
 
-use super::figure;
+use super::figure::figure;
 use crate::gpu::Device;
 use crate::scene::Method;
 use crate::study::StudyError;
