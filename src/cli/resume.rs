@@ -8,9 +8,7 @@ use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::output::{
-    Checkpoint, OutputFolder, check_marker, has_ended, latest, run_folder,
-};
+use crate::output::{Checkpoint, OutputFolder, check_marker, has_ended, latest, run_folder};
 use crate::ranks::Communicator;
 use crate::scene::parse;
 

@@ -1,6 +1,7 @@
 //! `corpuscle sweep`: a scene on several counts of devices, run or emulated, and compared.
 
 mod emulated;
+mod plan;
 
 use std::fmt::Write;
 use std::fs;
@@ -23,6 +24,7 @@ use super::arguments::{Balance, BalanceBy, SweepArguments};
 use super::settings::{model_of, scene_of};
 use super::terminal::say;
 use emulated::{EMULATED_STEPS, Emulation};
+use plan::SweepPlan;
 
 const RUNS_FOLDER: &str = "runs";
 /// Times that every count is run unless said.
@@ -54,20 +56,6 @@ pub fn sweep(raw: SweepArguments) -> Result<(), CliError> {
     }
     say(&text)?;
     say(&format!("{}\n", folder.path().display()))
-}
-
-/// A sweep as it will be done.
-struct SweepPlan {
-    raw: SweepArguments,
-    scene: Scene,
-    folder: PathBuf,
-    devices: Vec<usize>,
-    /// Counts that are run.
-    real: Vec<usize>,
-    strategies: Vec<Strategy>,
-    launcher: Vec<String>,
-    /// What the runs go on from, in order of time; none: the start of the scene.
-    moments: Vec<Moment>,
 }
 
 impl SweepPlan {

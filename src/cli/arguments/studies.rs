@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{Balance, EXIT_CODES, MethodName, SceneArguments, TuningArguments, count};
+use super::counts::count;
+use super::runs::{Balance, EXIT_CODES, MethodName, SceneArguments, TuningArguments};
 
 /// Counts of devices that the machine has are run, others can be emulated on one of its devices.
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ use crate::study::state::{Moment, weights};
 use super::super::CliError;
 use super::super::arguments::{EmulationArguments, TuningArguments};
 use super::super::settings::model_of;
-use super::SweepPlan;
+use super::plan::SweepPlan;
 
 /// Steps of an interval that is measured in an emulation: of the first and last another thing is measured.
 pub(super) const EMULATED_STEPS: u32 = 3;
