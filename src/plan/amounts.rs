@@ -141,6 +141,19 @@ impl<'a> Heat<'a> {
     }
 }
 
+/// Gas at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Contents {
+    /// m3.
+    pub volume: f64,
+    /// kg.
+    pub mass: f64,
+    /// Pa.
+    pub pressure: f64,
+    /// K.
+    pub temperature: f64,
+}
+
 /// Whether any of its gas enters before the end, s.
 pub fn delivers(orifice: &Orifice, end_time: f64) -> bool {
     FlowIntegral::new(&orifice.mass_flow, end_time).total() > 0.0

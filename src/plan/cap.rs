@@ -1,6 +1,6 @@
 //! What holds the collision diameter down where gas is denser than in the mean (specification, section 2).
 
-use super::render::significant;
+use super::text::significant;
 use super::{PlanError, Reason};
 use crate::gas::kinetics;
 use crate::scene::{DiameterCap, Method, Scene};

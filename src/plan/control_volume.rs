@@ -1,8 +1,8 @@
 //! The plan of a control volume: no particles, no step, no grid to speak of.
 
 use super::amounts::{Amounts, highest_temperature};
-use super::decide::{LADDER_LEVELS, STEPS_PER_INTERVAL, TALLY_EVERY};
 use super::population::{openings, silent_orifices};
+use super::resolution::{LADDER_LEVELS, STEPS_PER_INTERVAL, TALLY_EVERY};
 use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason};
 use crate::gas::Species;
 use crate::geometry::Grid;

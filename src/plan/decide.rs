@@ -9,8 +9,10 @@ use super::heat::species;
 use super::longest::{Basis, possible_step};
 use super::motion;
 use super::population::{Population, openings, silent_orifices, wanted};
-use super::render::significant;
-use super::resolution::{Extreme, MeanState, Resolution, default_occupancy};
+use super::resolution::{
+    Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY, default_occupancy,
+};
+use super::text::significant;
 use super::vents;
 use super::warnings::{Decided, warnings};
 use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, plausible};
@@ -19,11 +21,6 @@ use crate::geometry::Grid;
 use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
-pub const LADDER_LEVELS: u32 = 12;
-pub const STEPS_PER_INTERVAL: u32 = 32;
-pub const TALLY_EVERY: u32 = 8;
-/// Particles in a mean block of the coarse grid, at least.
-pub(super) const PER_BLOCK: f64 = 64.0;
 
 /// Decides what to model, or says why it cannot be modelled.
 pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {

@@ -1,6 +1,6 @@
 //! Why a scene cannot be planned.
 
-use super::render::significant;
+use super::text::significant;
 use crate::geometry::GridError;
 use crate::scene::shown_collision_number;
 

@@ -3,7 +3,7 @@
 
 use super::Reason;
 use super::limits::{Quantity, Warning};
-use super::render::significant;
+use super::text::significant;
 use crate::geometry::facets;
 use crate::scene::{Method, Scene, Shape};
 

@@ -1,7 +1,7 @@
 //! The gases as they are modelled: heat capacities that depend on the temperature become partition functions.
 
 use super::amounts::highest_temperature;
-use super::render::significant;
+use super::text::significant;
 use super::{Measured, PlanError, Reason};
 use crate::gas::{Species, fit};
 use crate::scene::{HeatCapacity, Scene};

@@ -4,8 +4,8 @@
 //! All gas at the end: p = n R T / V with T from the energy balance of all gas and all inflow (`Amounts`), no heat lost, vents
 //! shut, no work of walls that move.
 
-use super::amounts::Amounts;
-use super::render::{significant, table};
+use super::amounts::{Amounts, Contents};
+use super::text::{significant, table};
 use super::{Measured, MeasuredVent, MeasuredWall, plausible};
 use crate::gas::moles_at;
 use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
@@ -22,19 +22,6 @@ pub struct Inventory {
     /// Values that no vessel has, each with its range and the unit that is likely meant.
     pub doubts: Vec<String>,
     inflow: bool,
-}
-
-/// Gas at rest.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Contents {
-    /// m3.
-    pub volume: f64,
-    /// kg.
-    pub mass: f64,
-    /// Pa.
-    pub pressure: f64,
-    /// K.
-    pub temperature: f64,
 }
 
 /// When a vent opens.

@@ -4,7 +4,7 @@
 //! A limit is of a quantity and of one method, or of all that have no limit of their own. What is not in the table was
 //! not found to break anything.
 
-use super::render::significant;
+use super::text::significant;
 use crate::gas::vent::UNCLIPPED;
 use crate::scene::Method;
 use serde::{Deserialize, Serialize};

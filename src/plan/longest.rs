@@ -5,8 +5,8 @@
 //! ends above the step that the gas needs. No result of such a step means anything, so a shorter one is taken, and the
 //! plan says so.
 
-use super::render::significant;
 use super::resolution::{Extreme, FASTEST_PAIR, MeanState, Resolution};
+use super::text::significant;
 use super::{Measured, PlanError};
 use crate::gas::kinetics;
 use crate::scene::{Method, ModelRequest};

@@ -1,7 +1,7 @@
 //! Walls that move, before the run: how hot they make the gas.
 
 use super::limits::{Quantity, Warning};
-use super::render::significant;
+use super::text::significant;
 use super::{Measured, MeasuredMotion, Reason};
 use crate::gas::Species;
 use crate::scene::{GAS_CONSTANT, Method, Scene};

@@ -3,8 +3,8 @@
 use super::amounts::{Amounts, delivers};
 use super::error::MOST_PARTICLES;
 use super::limits::{Quantity, limit};
-use super::render::{grouped, significant};
 use super::resolution::cell_edge;
+use super::text::{grouped, significant};
 use super::{Measured, PlanError, Reason};
 use crate::gas::{Inflow, Species, Unrepresented, kinetics};
 use crate::scene::{Method, Orifice, Scene};

@@ -1,13 +1,17 @@
 //! Diameter, rounds, time step and cell edge.
 
-use super::decide::{LADDER_LEVELS, PER_BLOCK};
 use super::error::MOST_ROUNDS;
 use super::limits::step_limit;
-use super::render::significant;
+use super::text::significant;
 use super::{PlanError, Reason};
 use crate::gas::kinetics;
 use crate::scene::{Method, ModelRequest};
 
+pub const LADDER_LEVELS: u32 = 12;
+pub const STEPS_PER_INTERVAL: u32 = 32;
+pub const TALLY_EVERY: u32 = 8;
+/// Particles in a mean block of the coarse grid, at least.
+pub(super) const PER_BLOCK: f64 = 64.0;
 /// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (specification, section 2).
 pub const PER_CELL: f64 = 6.0;
 /// In thin gas: one thread collides all of a cell.

@@ -2,8 +2,8 @@
 
 use super::limits::{Bound, Quantity, Warning, step_limit};
 use super::population::more_particles;
-use super::render::significant;
 use super::resolution::Resolution;
+use super::text::significant;
 use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
 use crate::scene::{Chamber, GAS_CONSTANT, Method, Scene};

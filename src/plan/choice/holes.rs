@@ -10,7 +10,7 @@ use crate::gas::continuum_coefficient;
 use crate::plan::amounts::Amounts;
 use crate::plan::forecast::{Cause, DISCHARGE_UNKNOWN, Modelled, Outlook, pressures};
 use crate::plan::heat::species;
-use crate::plan::render::{grouped, significant};
+use crate::plan::text::{grouped, significant};
 use crate::plan::{Measured, OpeningPlan, Plan, PlanError, Quantity, limit};
 use crate::scene::{Method, Scene};
 

@@ -28,7 +28,7 @@ use cost::{Cost, UNIFORM_SECONDS, USUAL_RATE};
 use families::{Family, families};
 
 pub use holes::modelling_errors;
-pub use report::{Alternative, Choice, Forecast};
+pub use report::Choice;
 
 /// About the smallest share of the true error that a forecast was (.18 of .31 when this was fixed, `tests/verification/planner.rs`): the plan aims
 /// at this part of the wished error.

@@ -2,35 +2,11 @@
 
 use super::holes::Holes;
 use super::{AIM, Chooser, NEXT, Possible};
+use crate::plan::forecast::{Alternative, Forecast};
 use crate::plan::forecast::{Cause, ColumnForecast, worst};
-use crate::plan::render::{grouped, significant};
+use crate::plan::text::{grouped, significant};
 use crate::plan::{Plan, Reason};
 use crate::scene::{Method, ModelRequest, Wish};
-use serde::Serialize;
-
-/// What a plan is worth, and what it costs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Forecast {
-    /// Relative, of the worst column: see `docs/planner.md`.
-    pub error: f64,
-    /// s of device time, at so many particle-steps a second.
-    pub seconds: f64,
-    pub particle_steps: f64,
-    pub device_rate: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cheaper: Option<Alternative>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub better: Option<Alternative>,
-    pub columns: Vec<ColumnForecast>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Alternative {
-    pub method: Method,
-    pub particles: u64,
-    pub error: f64,
-    pub seconds: f64,
-}
 
 /// The request to plan, and what to add to its plan.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,11 +12,13 @@
 //! source in [`noise`] and [`bias`].
 
 mod bias;
+mod columns;
 mod course;
 pub(super) mod noise;
 mod outlook;
 
 pub use bias::DISCHARGE_UNKNOWN;
+pub use columns::{Alternative, Cause, ColumnForecast, Forecast, Part, worst};
 pub use outlook::{Modelled, Outlook, SeenHeat, SeenProbe, SeenSurface};
 
 use super::Measured;
@@ -26,7 +28,6 @@ use super::warnings::lost_events;
 use crate::gas::{Collisions, FlowIntegral, Species, State, kinetics, thermo};
 use crate::scene::{Method, Scene};
 use course::{Course, Moment};
-use serde::Serialize;
 
 /// Gas on two sides of an open border is released if it differs by more than this.
 const RELEASED: f64 = 1e-3;
@@ -42,82 +43,6 @@ pub struct Candidate {
     pub rounds: u32,
     /// x = dt/tau of its largest step.
     pub collisions_per_step: f64,
-}
-
-/// Why a column is wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Cause {
-    /// Finitely many particles.
-    Noise,
-    /// The Knudsen number of holes.
-    Holes,
-    /// Collisions that a step loses.
-    LostCollisions,
-    /// Rigid spheres have not the ideal gas's pressure.
-    RigidSpheres,
-    /// Fronts as wide as a mean free path.
-    Fronts,
-    /// Holes are modelled, and of what is behind them only a constant pressure is left.
-    LeftOut,
-    /// The coefficients of modelled holes are known to two per cent.
-    Coefficients,
-    /// A control volume has no waves.
-    Transit,
-    /// A control volume has no jets.
-    Jets,
-}
-
-impl Cause {
-    pub fn name(self) -> &'static str {
-        match self {
-            Cause::Noise => "noise of the particles",
-            Cause::Holes => "Knudsen number of the holes",
-            Cause::LostCollisions => "lost collisions",
-            Cause::RigidSpheres => "pressure of rigid spheres",
-            Cause::Fronts => "width of fronts",
-            Cause::LeftOut => "what is left out behind holes",
-            Cause::Coefficients => "discharge coefficients",
-            Cause::Transit => "waves that it lacks",
-            Cause::Jets => "jets that it lacks",
-        }
-    }
-}
-
-/// A column, and its parts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ColumnForecast {
-    pub name: String,
-    /// Whether it counts.
-    pub asked: bool,
-    /// Relative.
-    pub error: f64,
-    pub parts: Vec<Part>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Part {
-    pub cause: Cause,
-    pub error: f64,
-}
-
-impl ColumnForecast {
-    fn new(name: String, asked: bool, parts: Vec<(Cause, f64)>) -> ColumnForecast {
-        let parts: Vec<Part> =
-            parts.into_iter().filter(|part| part.1 > 0.0).map(|(cause, error)| Part { cause, error }).collect();
-        let error = parts.iter().fold(0.0, |sum, part| sum + part.error * part.error).sqrt();
-        ColumnForecast { name, asked, error, parts }
-    }
-
-    /// Its largest part.
-    pub fn main_cause(&self) -> Option<Cause> {
-        self.parts.iter().max_by(|a, b| a.error.total_cmp(&b.error)).map(|part| part.cause)
-    }
-}
-
-/// The column with the largest error of those that count.
-pub fn worst(columns: &[ColumnForecast]) -> Option<&ColumnForecast> {
-    columns.iter().filter(|column| column.asked).max_by(|a, b| a.error.total_cmp(&b.error))
 }
 
 /// What a control volume makes of a scene's pressures, in the continuum: by row of the history, of each chamber.

@@ -8,8 +8,8 @@ mod shapes;
 mod units;
 
 use super::Measured;
-use super::inventory::Contents;
-use super::render::{grouped, significant};
+use super::amounts::Contents;
+use super::text::{grouped, significant};
 use crate::scene::{
     Course, Curve, Dimension, GAS_CONSTANT, Gas, HeatCapacity, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape,
     UnitSystem, Vent, VentFlow, Wall,

@@ -1,0 +1,83 @@
+//! What the plan needs to know of the geometry.
+
+use super::error::PlanError;
+use crate::scene::Opening;
+
+/// What the plan needs to know of the geometry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// m3.
+    pub gas_volume: f64,
+    /// m3, one per chamber of the scene.
+    pub chamber_volumes: Vec<f64>,
+    /// m, the box around all walls.
+    pub bounds_min: [f64; 3],
+    pub bounds_max: [f64; 3],
+    /// The openings found from the holes of the walls; those declared in the scene are added.
+    pub openings: Vec<Opening>,
+    /// The narrowest passage of the gas between walls that face each other, m, where one was found.
+    pub smallest_gap: Option<f64>,
+    /// The thinnest body with gas on both sides, m, where one was found.
+    pub thinnest_body: Option<f64>,
+    /// m2, of all walls.
+    pub wall_area: f64,
+    /// m3 of gas, one per probe of the scene.
+    pub probe_volumes: Vec<f64>,
+    /// Of each vent of the scene.
+    pub vents: Vec<MeasuredVent>,
+    /// Indices of a wall that exchanges heat and of a chamber that it borders on.
+    pub heated: Vec<(usize, usize)>,
+    /// Where walls move.
+    pub motion: Option<MeasuredMotion>,
+    /// Box, area and volume of each wall of the scene.
+    pub walls: Vec<MeasuredWall>,
+}
+
+impl Measured {
+    /// That all gas space has gas at the start: what flows into empty space no control volume knows, and no forecast.
+    ///
+    /// # Errors
+    /// If chambers leave more of it out than holes have.
+    pub(super) fn no_empty_space(&self, asked: &'static str) -> Result<(), PlanError> {
+        let (chambers, gas) = (self.chamber_volumes.iter().sum::<f64>(), self.gas_volume);
+        if chambers < (1.0 - IN_HOLES) * gas {
+            return Err(PlanError::EmptySpace { asked, chambers, gas });
+        }
+        Ok(())
+    }
+}
+
+/// The part of the gas space that may be in no chamber, as the inside of holes is.
+const IN_HOLES: f64 = 0.01;
+
+/// What moving walls do to the gas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredMotion {
+    /// m3, of all gas at the end of the run.
+    pub final_gas_volume: f64,
+    /// The least volume of a chamber in the run, over that at the start.
+    pub least_share: f64,
+    /// m/s, of the fastest wall.
+    pub fastest: f64,
+}
+
+/// A wall as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredWall {
+    /// m, the corners of the box around it.
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+    /// m2.
+    pub area: f64,
+    /// m3, what it encloses: gas in a cavity, else solid.
+    pub volume: f64,
+    pub cavity: bool,
+}
+
+/// Where a vent is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredVent {
+    pub chamber: usize,
+    /// m2 of wall.
+    pub area: f64,
+}
