@@ -27,7 +27,7 @@ use super::arguments::RunArguments;
 use super::settings::RunSettings;
 
 pub use beginning::Beginning;
-pub use checkpoints::Wanted;
+pub use checkpoints::CheckpointWish;
 pub use ending::Ending;
 pub use launch::launch;
 pub use ranks::{among_ranks, once};

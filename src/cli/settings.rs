@@ -12,7 +12,7 @@ use super::arguments::{
     Balance, BalanceBy, ExecutionArguments, GhostsThatChoose, RunArguments, SceneArguments, SharingArguments,
     TuningArguments, WishArguments,
 };
-use super::run::Wanted;
+use super::run::CheckpointWish;
 
 /// The scene of the file with the overrides in it, as if the file had said so.
 pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
@@ -78,13 +78,13 @@ pub struct Execution {
     /// Warnings are errors.
     pub strict: bool,
     pub sharing: Sharing,
-    pub checkpoints: Wanted,
+    pub checkpoints: CheckpointWish,
 }
 
 impl Execution {
     pub fn new(raw: ExecutionArguments) -> Result<Execution, CliError> {
         let ExecutionArguments { gpu, batch, steps, strict, checkpoint_every, stop_after, sharing } = raw;
-        let checkpoints = Wanted { every: checkpoint_every, stop_after };
+        let checkpoints = CheckpointWish { every: checkpoint_every, stop_after };
         Ok(Execution { gpu, batch, stop_after_steps: steps, strict, sharing: Sharing::new(&sharing)?, checkpoints })
     }
 }

@@ -108,7 +108,7 @@ pub fn emulate(
 }
 
 /// What a rank has seen.
-struct Seen {
+struct Watched {
     events: Vec<Event>,
     balance: Vec<BalanceRecord>,
     passes: f64,
@@ -132,7 +132,7 @@ fn one(
     comm: &dyn Communicator,
     options: Options<'_>,
     intervals: usize,
-) -> Result<Seen, SimulationError> {
+) -> Result<Watched, SimulationError> {
     let watch = Stopwatch::new(comm);
     let mut records = Records::default();
     let outcome = {
@@ -152,11 +152,11 @@ fn one(
         simulation.finish(&mut records)?
     };
     let passes = outcome.phases.rows.iter().map(|(_, _, count)| count).sum::<u64>() as f64;
-    Ok(Seen { events: watch.events(), balance: records.0, passes: passes / outcome.steps.max(1) as f64 })
+    Ok(Watched { events: watch.events(), balance: records.0, passes: passes / outcome.steps.max(1) as f64 })
 }
 
 /// `None` if no interval was as it should be.
-fn shared_out(ranks: &[Seen], strategy: Strategy, steps: usize, settling: usize) -> Option<Emulated> {
+fn shared_out(ranks: &[Watched], strategy: Strategy, steps: usize, settling: usize) -> Option<Emulated> {
     let records = &ranks[0].balance;
     let last = records.iter().rposition(|record| record.rebalanced.is_some());
     // In the interval of a rebalance particles come home.

@@ -18,7 +18,7 @@ use crate::subdomain::GpuParticle;
 
 /// What the user asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Wanted {
+pub struct CheckpointWish {
     pub every: Option<CheckpointEvery>,
     pub stop_after: Option<WallTime>,
 }
@@ -51,7 +51,7 @@ impl<'a> Checkpoints<'a> {
     }
 
     /// The part of rank 0, of a run whose time loop starts, or goes on, at `step`.
-    pub fn leading(self, wanted: Wanted, step: u64, origin: Origin) -> Checkpoints<'a> {
+    pub fn leading(self, wanted: CheckpointWish, step: u64, origin: Origin) -> Checkpoints<'a> {
         let schedule = Schedule::new(wanted.every, wanted.stop_after, self.started.elapsed(), step);
         Checkpoints { lead: Some(Lead { schedule, origin }), ..self }
     }
@@ -89,7 +89,7 @@ impl<'a> Checkpoints<'a> {
         let written = match comm.gather(encoded(&own, rank)?)? {
             None => Ok(None),
             Some(all) => {
-                let files: Result<Vec<Told>, RankError> =
+                let files: Result<Vec<FileAnswer>, RankError> =
                     all.iter().enumerate().map(|(rank, bytes)| decoded(bytes, rank)).collect();
                 self.commit(writer, moment, files?, output).map(Some)
             }
@@ -113,11 +113,11 @@ impl<'a> Checkpoints<'a> {
         &self,
         writer: CheckpointWriter,
         moment: &Moment<'_>,
-        files: Vec<Told>,
+        files: Vec<FileAnswer>,
         output: Option<Outputs<'_>>,
     ) -> Result<Written, String> {
         let several = files.len() > 1;
-        let of_rank = |(rank, file): (usize, Told)| {
+        let of_rank = |(rank, file): (usize, FileAnswer)| {
             file.map_err(|error| if several { format!("rank {rank}: {error}") } else { error })
         };
         let files = files.into_iter().enumerate().map(of_rank).collect::<Result<Vec<FileRecord>, String>>()?;
@@ -148,7 +148,7 @@ impl Observer for Checkpoints<'_> {
 }
 
 /// A rank's file of particles, or why there is none.
-type Told = Result<FileRecord, String>;
+type FileAnswer = Result<FileRecord, String>;
 
 /// A checkpoint that stands.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use crate::output::{
     SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, over_mean, subdomain_chart,
 };
 use crate::simulation::{
-    BalanceRecord, Model, Moment, Observer, Outcome, Request, Row, SimulationError, Told, VentWatch, imbalance,
+    BalanceRecord, GuardWarning, Model, Moment, Observer, Outcome, Request, Row, SimulationError, VentWatch, imbalance,
 };
 use crate::subdomain::{GpuParticle, Scales};
 
@@ -271,7 +271,7 @@ impl Observer for Recorder<'_> {
         }
     }
 
-    fn warning(&mut self, told: &Told) {
+    fn warning(&mut self, told: &GuardWarning) {
         match &self.progress {
             Some(progress) => progress.warn(&told.to_string()),
             None => tracing::warn!("{told}"),

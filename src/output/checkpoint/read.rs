@@ -271,7 +271,7 @@ impl Checkpoint {
 
     /// Files were found sound one by one; they must also belong together.
     fn check_ids(&self) -> Result<(), CheckpointError> {
-        let mut seen = Seen { ids: self.manifest.ids, bits: Vec::new() };
+        let mut seen = SeenIds { ids: self.manifest.ids, bits: Vec::new() };
         for record in self.manifest.particle_files() {
             let problem = |problem: String| CheckpointError::Content { path: self.path.join(&record.name), problem };
             let mut trouble = None;
@@ -305,13 +305,13 @@ impl Checkpoint {
 }
 
 /// The ids of particles that were met, a bit each.
-struct Seen {
+struct SeenIds {
     /// All are below.
     ids: u64,
     bits: Vec<u64>,
 }
 
-impl Seen {
+impl SeenIds {
     /// What is wrong with one more particle of this id.
     fn trouble(&mut self, id: u32) -> Option<String> {
         if u64::from(id) >= self.ids {

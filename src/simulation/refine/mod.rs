@@ -15,16 +15,17 @@ mod local;
 mod places;
 mod start;
 
+use super::model::build::Model;
+use super::model::error::ModelError;
 use crate::gas::{FlowIntegral, Inflow, InflowStateError, moles_at, thermo};
 use crate::geometry::GeometryError;
 use crate::plan::MOST_PARTICLES;
 use crate::scene::Scene;
 use crate::subdomain::GpuParticle;
 
-use super::clock::Clock;
-use super::ladder::LadderError;
-use super::model::{Model, ModelError};
-use super::run_state::{RunState, StateError};
+use super::control::clock::Clock;
+use super::control::ladder::LadderError;
+use super::timeloop::run_state::{RunState, RunStateError};
 
 use groups::groups;
 use lineage::Lineage;
@@ -78,7 +79,7 @@ pub enum RefineError {
     #[diagnostic(transparent)]
     Geometry(#[from] GeometryError),
     #[error(transparent)]
-    State(#[from] StateError),
+    State(#[from] RunStateError),
     #[error(
         "the particles are of another moment than the state: {found} of gas `{gas}` are there, {expected} had entered"
     )]

@@ -7,15 +7,15 @@
 use crate::gas::Inflow;
 use crate::geometry::block_volumes;
 use crate::plan::Plan;
-use crate::simulation::audit::Account;
-use crate::simulation::averages::AveragesState;
-use crate::simulation::clock::Clock;
-use crate::simulation::guards::GuardState;
-use crate::simulation::ladder::{Ladder, LadderError};
-use crate::simulation::model::Model;
-use crate::simulation::run_state::RunState;
-use crate::simulation::setup::patches;
-use crate::simulation::switch::SwitchState;
+use crate::simulation::accounting::audit::Account;
+use crate::simulation::accounting::averages::AveragesState;
+use crate::simulation::accounting::guards::GuardState;
+use crate::simulation::control::clock::Clock;
+use crate::simulation::control::ladder::{Ladder, LadderError};
+use crate::simulation::model::build::Model;
+use crate::simulation::timeloop::run_state::RunState;
+use crate::simulation::timeloop::setup::patches;
+use crate::simulation::zero_d::switch::SwitchState;
 use crate::subdomain::{BlockSum, GpuParticle, Scales};
 
 /// `clock` and `inflow` are the refined run's at that moment, `parent` is the state of the parent.

@@ -1,0 +1,416 @@
+//! The account of a run: what entered, what is there, what was lost.
+//!
+//! It starts at time 0, or, of a refined state, at the moment of the refinement: then what had entered `before` counts as
+//! there from the start.
+
+use super::averages::Averages;
+use crate::simulation::control::surface_states::SurfaceStates;
+use crate::simulation::model::build::Model;
+use crate::simulation::timeloop::interval::Interval;
+use crate::simulation::timeloop::run_state::RunStateError;
+use crate::simulation::timeloop::step::{once_an_interval, place};
+use serde::{Deserialize, Serialize};
+
+use crate::gas::Inflow;
+use crate::geometry::Vessel;
+use crate::output::{Audit, AuditLimits, PhaseTable};
+use crate::plan::Plan;
+use crate::scene::Method;
+use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
+
+/// The same limit as that of the audit at the end.
+const ENERGY_ERROR: f64 = 1e-4;
+
+pub struct Account {
+    scales: Scales,
+    molar_masses: Vec<f64>,
+    moles_per_particle: f64,
+    counted: AccountState,
+}
+
+/// Totals of all gas, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct State {
+    number: u64,
+    mass: f64,
+    momentum: [f64; 3],
+    energy: f64,
+}
+
+/// What orifices had brought before the account started, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Entered {
+    number: u64,
+    mass: f64,
+    energy: f64,
+}
+
+/// All that an account has counted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccountState {
+    start: State,
+    before: Entered,
+    injected_momentum: [f64; 3],
+    /// By the newborns of the intervals read, J.
+    energy_entered: f64,
+    pub particles: u64,
+    /// The particles of each step, summed.
+    pub particle_steps: u64,
+    pub collisions: u64,
+    pub bounces: u64,
+    pub step_range: [f64; 2],
+    steps: u64,
+    lost: u64,
+    sampled: u64,
+    truncated: u64,
+    overshoot: u32,
+    /// What walls took and vents let out in the intervals read, J and particles.
+    energy_lost: f64,
+    left: u64,
+    /// Of each vent: hits that let a particle out, and hits whose probability was clipped.
+    clipped: Vec<[u64; 2]>,
+    /// Phase, seconds, dispatch groups.
+    phases: Vec<(String, f64, u64)>,
+}
+
+impl AccountState {
+    /// Particles that have left by the end of the last interval read.
+    pub fn left(&self) -> u64 {
+        self.left
+    }
+
+    /// Of each vent: hits that let a particle out, and hits whose probability was clipped.
+    pub fn clipped(&self) -> &[[u64; 2]] {
+        &self.clipped
+    }
+}
+
+impl Account {
+    pub fn new(plan: &Plan) -> Account {
+        let counted = AccountState {
+            start: State::default(),
+            before: Entered::default(),
+            injected_momentum: [0.0; 3],
+            energy_entered: 0.0,
+            particles: plan.initial_particles,
+            particle_steps: 0,
+            collisions: 0,
+            bounces: 0,
+            step_range: [f64::INFINITY, 0.0],
+            steps: 0,
+            lost: 0,
+            sampled: 0,
+            truncated: 0,
+            overshoot: 0,
+            energy_lost: 0.0,
+            left: 0,
+            clipped: Vec::new(),
+            phases: Vec::new(),
+        };
+        Account {
+            scales: Scales::new(plan),
+            molar_masses: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
+            moles_per_particle: plan.moles_per_particle,
+            counted,
+        }
+    }
+
+    /// Zone 0 holds everything.
+    fn totals(&self, tallies: &Tallies) -> State {
+        let mut state = State::default();
+        for (zone, molar_mass) in tallies.zones.iter().zip(&self.molar_masses) {
+            let mass = molar_mass * self.moles_per_particle;
+            state.number += zone.number.unsigned_abs();
+            state.mass += mass * zone.number as f64;
+            for (total, velocity) in state.momentum.iter_mut().zip(zone.velocity) {
+                *total += mass * velocity as f64 / self.scales.velocity;
+            }
+            let spin = self.scales.reference_mass * zone.spin as f64;
+            state.energy += (mass * zone.kinetic as f64 + spin) / self.scales.energy;
+        }
+        state
+    }
+
+    pub fn start(&mut self, tallies: &Tallies) {
+        self.counted.start = self.totals(tallies);
+    }
+
+    /// Starts the account with these particles, after what this inflow has let in.
+    pub fn start_with(&mut self, particles: &[GpuParticle], inflow: &Inflow) {
+        let reference_mass = self.scales.reference_mass;
+        let mut start = State { number: particles.len() as u64, ..State::default() };
+        for particle in particles {
+            let mass = self.molar_masses[usize::from(particle.gas())] * self.moles_per_particle;
+            let velocity = particle.velocity.map(f64::from);
+            start.mass += mass;
+            for (total, v) in start.momentum.iter_mut().zip(velocity) {
+                *total += mass * v;
+            }
+            let kinetic = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
+            start.energy += kinetic + reference_mass * f64::from(particle.spin);
+        }
+        self.counted.particles = start.number;
+        self.counted.start = start;
+        self.counted.before = self.entered(inflow);
+    }
+
+    fn entered(&self, inflow: &Inflow) -> Entered {
+        let by_gas = inflow.entered_by_gas();
+        let mass = by_gas.iter().zip(&self.molar_masses).map(|(&n, mass)| n as f64 * mass * self.moles_per_particle);
+        Entered {
+            number: by_gas.iter().sum(),
+            mass: mass.sum(),
+            // What an orifice still owes is not in yet; it owes nothing once its flow has ended.
+            energy: inflow.enthalpy() - inflow.debt(),
+        }
+    }
+
+    /// The energy that walls took, also as work, and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
+    /// over them.
+    fn lost(&self, tallies: &Tallies) -> (f64, f64) {
+        let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
+        let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
+        let (energy, tallied) = coats
+            .chain(vents)
+            .chain(tallies.works.iter().map(|work| (work.energy, work.tallied)))
+            .fold((0i128, 0i128), |(energy, tallied), (e, t)| (energy + i128::from(e), tallied + i128::from(t)));
+        let unit = self.scales.reference_mass / self.scales.energy;
+        (energy as f64 * unit, tallied as f64 * unit)
+    }
+
+    /// What must hold after every interval, of all ranks together; how far the energy is off, relative.
+    pub fn check(&mut self, tallies: &Tallies, interval: &Interval) -> Result<f64, String> {
+        let counters = &tallies.counters;
+        let found: u64 = tallies.blocks.iter().map(|block| block.number).sum();
+        let expected = i128::from(interval.particles) - i128::from(self.counted.left + left(tallies));
+        if counters.capacity_failed > 0 || i128::from(found) != expected {
+            return Err(format!("{found} particles are there, {expected} should be"));
+        }
+        if counters.missing > 0 {
+            return Err(format!("{} updates of ghosts were for particles that are not there", counters.missing));
+        }
+        if counters.cut_short > 0 {
+            return Err(format!(
+                "the driver ended loops of {} threads too soon, as Mesa's lavapipe of 22.3 does after 65,535 turns and that of \
+                 25.0 does not: take a newer driver, or fewer particles or triangles in a cell",
+                counters.cut_short
+            ));
+        }
+        if counters.misplaced > 0 {
+            return Err(format!(
+                "{} entries of lists found no place: the driver runs threads apart that count together, or a list has too little \
+                 room; please report this, with the output of `corpuscle adapters`",
+                counters.misplaced
+            ));
+        }
+        if counters.tally_overflow > 0 {
+            let squeezed = if tallies.works.is_empty() { "" } else { ", as of gas that a moving wall leaves no room" };
+            return Err(format!(
+                "{} values were beyond the range of a tally: speeds or energies far above the plan's{squeezed}",
+                counters.tally_overflow
+            ));
+        }
+        if counters.outside > 0 {
+            return Err(format!("particles were found outside the vessel ({} times in these steps)", counters.outside));
+        }
+        let (since, brought) = interval.energy_tallied();
+        let samples = f64::from(interval.samples());
+        let had = samples * (self.counted.start.energy + self.counted.energy_entered) + since;
+        let (lost, missed) = self.lost(tallies);
+        let expected = had - samples * self.counted.energy_lost - missed;
+        self.counted.energy_entered += brought;
+        self.counted.energy_lost += lost;
+        let energy = self.totals(tallies).energy;
+        // Of all that there ever was, since little may be left.
+        let scale = had.max(expected);
+        if (energy - expected).abs() > ENERGY_ERROR * scale {
+            return Err(format!(
+                "the energy is {energy:.6e} J where {expected:.6e} J should be, summed over {samples} steps"
+            ));
+        }
+        // An interval of few steps may have no sample.
+        Ok(if scale > 0.0 { (energy - expected) / scale } else { 0.0 })
+    }
+
+    pub fn add(
+        &mut self,
+        plan: &Plan,
+        tallies: &Tallies,
+        interval: &Interval,
+        samples: u32,
+        timed: &[(&'static str, f64)],
+    ) {
+        let counters = &tallies.counters;
+        let steps = u64::from(interval.steps);
+        let mut present =
+            interval.particles - self.counted.left - interval.entering.iter().map(|&born| u64::from(born)).sum::<u64>();
+        for born in &interval.entering {
+            present += u64::from(*born);
+            self.counted.particle_steps += present;
+        }
+        self.counted.left += left(tallies);
+        self.counted.particles = interval.particles - self.counted.left;
+        self.counted.clipped.resize(tallies.vents.len(), [0; 2]);
+        for (counted, vent) in self.counted.clipped.iter_mut().zip(&tallies.vents) {
+            counted[0] += vent.left.iter().sum::<i64>().unsigned_abs();
+            counted[1] += vent.clipped.unsigned_abs();
+        }
+        self.counted.steps += steps;
+        // A pair that a wall parted was settled without a collision.
+        self.counted.collisions += counters.collisions - u64::from(counters.blocked);
+        self.counted.bounces += u64::from(counters.bounces);
+        self.counted.lost += u64::from(counters.lost);
+        self.counted.sampled += match plan.method {
+            // All steps are watched for candidates that were left out.
+            Method::Cell => counters.collisions,
+            _ => u64::from(counters.sampled),
+        };
+        self.counted.truncated += u64::from(counters.truncated);
+        self.counted.overshoot = self.counted.overshoot.max(counters.overshoot);
+        self.counted.step_range =
+            [self.counted.step_range[0].min(interval.dt), self.counted.step_range[1].max(interval.dt)];
+        for (total, own) in self.counted.injected_momentum.iter_mut().zip(interval.momentum) {
+            *total += own;
+        }
+        // One step was timed; a tally is in fewer steps than the rest.
+        for &(name, seconds) in timed {
+            let share = match name {
+                "tally" => u64::from(samples),
+                name if once_an_interval(name) => 1,
+                _ => steps,
+            };
+            match self.counted.phases.iter_mut().find(|(known, ..)| known == name) {
+                Some((_, total, count)) => {
+                    *total += seconds * share as f64;
+                    *count += share;
+                }
+                None => self.counted.phases.push((name.to_owned(), seconds * share as f64, share)),
+            }
+        }
+    }
+
+    pub fn state(&self) -> &AccountState {
+        &self.counted
+    }
+
+    /// # Errors
+    /// If no run of this plan can have counted this; then nothing is changed.
+    pub fn restore(&mut self, plan: &Plan, state: &AccountState) -> Result<(), RunStateError> {
+        let initial = state.start.number.checked_sub(state.before.number);
+        if initial != Some(plan.initial_particles) {
+            let found = initial.unwrap_or(0);
+            return Err(RunStateError::differs("particles at the start", found, plan.initial_particles));
+        }
+        if state.particles > plan.particles {
+            return Err(RunStateError::Impossible { what: "there are more particles than in the whole run" });
+        }
+        self.counted.clone_from(state);
+        Ok(())
+    }
+
+    pub fn phases(&self) -> PhaseTable {
+        let mut rows = self.counted.phases.clone();
+        rows.sort_by_key(|(name, ..)| place(name));
+        PhaseTable { rows, steps: self.counted.steps, particle_steps: self.counted.particle_steps }
+    }
+
+    /// The account at the end; `outside` particles were found in no gas.
+    pub fn close(
+        &self,
+        model: &Model,
+        inflow: &Inflow,
+        tallies: &Tallies,
+        outside: u64,
+        averages: &Averages,
+        conditions: &SurfaceStates<'_>,
+    ) -> Audit {
+        let end = self.totals(tallies);
+        let plan = &model.plan;
+        let (entered, before) = (self.entered(inflow), self.counted.before);
+        let surfaces = !model.scene.surfaces.is_empty();
+        let (particles_vented, mass_vented, enthalpy_vented) = averages.total_vented();
+        let clipped = model.scene.vents.iter().zip(&self.counted.clipped);
+        let events = (self.counted.lost + self.counted.sampled) as f64;
+        Audit {
+            particles_initial: self.counted.start.number,
+            particles_injected: entered.number - before.number,
+            particles_vented,
+            particles_inside: end.number - outside,
+            particles_outside: outside,
+            mass_start: self.counted.start.mass,
+            mass_injected: entered.mass - before.mass,
+            mass_vented,
+            mass_end: end.mass,
+            momentum_start: self.counted.start.momentum,
+            momentum_injected: self.counted.injected_momentum,
+            momentum_to_walls: surfaces.then(|| averages.total_impulse()),
+            momentum_end: end.momentum,
+            energy_start: self.counted.start.energy,
+            enthalpy_injected: entered.energy - before.energy,
+            enthalpy_vented,
+            work_by_walls: (!model.moving.is_empty()).then(|| averages.total_work()),
+            heat_to_walls: model.scene.walls.iter().any(|wall| wall.heat.is_some()).then(|| averages.total_heat()),
+            clipped_vents: clipped
+                .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
+                .collect(),
+            clipped_walls: conditions.beyond(),
+            energy_end: end.energy,
+            lost_collision_fraction: (plan.method != Method::None && events > 0.0)
+                .then(|| self.counted.lost as f64 / events),
+            wall_overshoot: f64::from(self.counted.overshoot) * plan.grid.quantum(),
+            truncated_flights: self.counted.truncated,
+            overflows: Vec::new(),
+        }
+    }
+}
+
+/// Particles that left in an interval.
+fn left(tallies: &Tallies) -> u64 {
+    tallies.vents.iter().flat_map(|vent| vent.left).sum::<i64>().unsigned_abs()
+}
+
+/// What an audit of a run of this plan lets pass. Walls let a particle be behind them by their tolerance, which
+/// grows with the vessel (and the device rounds what it found up to a quantum).
+pub fn audit_limits(plan: &Plan) -> AuditLimits {
+    let wall_overshoot = (1.0 + 1e-6) * Walls::tolerance(&plan.grid) + plan.grid.quantum();
+    AuditLimits { wall_overshoot, ..AuditLimits::default() }
+}
+
+/// Particles that are in no gas, nor within the tolerance of a wall: each has passed a closed mesh.
+pub fn count_outside(vessel: &Vessel, plan: &Plan, particles: &[GpuParticle]) -> u64 {
+    let reach = 2.0 * Walls::tolerance(&plan.grid);
+    let outside = particles.iter().filter(|particle| {
+        let place = plan.grid.to_metres(particle.position);
+        if vessel.is_gas(place) {
+            return false;
+        }
+        (0..6).all(|side| {
+            let mut near = place;
+            near[side / 2] += if side % 2 == 0 { reach } else { -reach };
+            !vessel.is_gas(near)
+        })
+    });
+    outside.count() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    /// A particle behind a wall by no more than walls let it be is no fault, however large the vessel.
+    #[test]
+    fn the_overshoot_allowed_is_the_walls_tolerance() {
+        let text = include_str!("../../../scenes/box.toml");
+        let limits = |text: &str| {
+            let plan = Model::new(parse(text, "box.toml", std::path::Path::new("")).unwrap()).unwrap().plan;
+            (audit_limits(&plan).wall_overshoot, Walls::tolerance(&plan.grid))
+        };
+        let (small, tolerance) = limits(text);
+        assert!(small > tolerance && small < 1.01 * tolerance, "{small} {tolerance}");
+        let (large, tolerance) = limits(&text.replace("[0.1, 0.1, 0.1]", "[5.0, 5.0, 5.0]"));
+        assert!(large > tolerance && large < 1.01 * tolerance, "{large} {tolerance}");
+        // The default, 1 um, would refuse what the walls of the large vessel allow, and not what those of the small do.
+        assert!(small < AuditLimits::default().wall_overshoot && large > AuditLimits::default().wall_overshoot);
+    }
+}

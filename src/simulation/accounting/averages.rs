@@ -1,0 +1,472 @@
+//! Rows of the history: averages over a window of whole step intervals, from the integer tallies.
+//!
+//! Of a zone of volume V with N particles of nu moles, mass M and thermal kinetic energy
+//! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
+//! normal impulse of its hits over area and time.
+
+use crate::simulation::control::surface_states::VentTarget;
+use crate::simulation::timeloop::run_state::RunStateError;
+use serde::{Deserialize, Serialize};
+
+use crate::plan::Plan;
+use crate::scene::GAS_CONSTANT;
+use crate::subdomain::{Scales, SurfaceSum, Tallies, VentSum, ZoneSum};
+
+/// Mean state of a zone over a window.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ZoneState {
+    /// Pa.
+    pub pressure: f64,
+    /// K; zero in an empty zone.
+    pub temperature: f64,
+    /// kg/m3.
+    pub density: f64,
+    /// m/s, of the mass.
+    pub velocity: [f64; 3],
+    /// Mean number of particles of each gas.
+    pub particles: Vec<f64>,
+    /// m3.
+    pub volume: f64,
+}
+
+/// A wall that moves.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MotionState {
+    /// m and m/s, in the middle of the window.
+    pub displacement: f64,
+    pub velocity: f64,
+    /// That it has done on the gas since the start of the run, J.
+    pub work: f64,
+    /// The same per time in the window, W.
+    pub power: f64,
+}
+
+/// What a surface received in a window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurfaceState {
+    /// Pa.
+    pub pressure: f64,
+    /// kg m/s since the start of the run.
+    pub impulse: [f64; 3],
+    /// In the window.
+    pub hits: u64,
+}
+
+/// What a wall that exchanges heat took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WallState {
+    /// J since the start of the run; negative if the wall gave more.
+    pub heat: f64,
+    /// W/m2 in the window.
+    pub heat_flux: f64,
+}
+
+/// What left through a vent.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VentState {
+    /// kg/s in the window, and what the vent should have passed for the gas before it.
+    pub mass_flow: f64,
+    pub wanted_mass_flow: f64,
+    /// The two over the isentropic flow through its area; zero where that is.
+    pub discharge: f64,
+    pub wanted_discharge: f64,
+    /// kg and J since the start of the run.
+    pub mass: f64,
+    pub enthalpy: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// s, the middle of the window.
+    pub time: f64,
+    /// s.
+    pub window: [f64; 2],
+    /// Mean step in the window, s.
+    pub step: f64,
+    /// At the end of the window.
+    pub particles: u64,
+    pub chambers: Vec<ZoneState>,
+    pub probes: Vec<ZoneState>,
+    pub surfaces: Vec<SurfaceState>,
+    /// Those that exchange heat.
+    pub walls: Vec<WallState>,
+    pub vents: Vec<VentState>,
+    /// The walls that move.
+    pub motions: Vec<MotionState>,
+}
+
+/// The scene's side of the averages.
+#[derive(Debug, Clone, Default)]
+pub struct Layout {
+    /// m3, chambers then probes.
+    pub volumes: Vec<f64>,
+    pub chambers: usize,
+    /// Patches of each surface, and its area, m2.
+    pub surfaces: Vec<(Vec<usize>, f64)>,
+    /// Coats of each wall that exchanges heat, and its area, m2.
+    pub walls: Vec<(Vec<usize>, f64)>,
+    pub coats: usize,
+    pub vents: usize,
+    pub motions: usize,
+}
+
+/// What a vent has passed in a window, or since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Passed {
+    left: [i64; 16],
+    energy: i128,
+    wanted: f64,
+    isentropic: f64,
+}
+
+impl Passed {
+    fn add(&mut self, sum: &VentSum, wanted: &VentTarget) {
+        for (total, left) in self.left.iter_mut().zip(sum.left) {
+            *total += left;
+        }
+        self.energy += i128::from(sum.energy);
+        self.wanted += wanted.mass;
+        self.isentropic += wanted.isentropic;
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Sum {
+    number: f64,
+    velocity: [f64; 3],
+    kinetic: f64,
+}
+
+/// The window that is being filled.
+pub struct Averages {
+    layout: Layout,
+    gases: Vec<f64>,
+    moles_per_particle: f64,
+    scales: Scales,
+    heaviest: f64,
+    start: f64,
+    steps: u64,
+    /// Sum of step lengths over the tallies.
+    weight: f64,
+    /// Zone-major, then gas, without the zone of everything.
+    sums: Vec<Sum>,
+    /// Per patch, in the window: impulse, normal impulse, hits.
+    patches: Vec<SurfaceSum>,
+    /// Per patch since the start.
+    received: Vec<[i128; 3]>,
+    /// Energy that each coat took, in the window and since the start.
+    heat: Vec<[i128; 2]>,
+    /// What each vent passed, the same.
+    passed: Vec<[Passed; 2]>,
+    /// Work of the gas on each moving wall, in the window and since the start.
+    works: Vec<[i128; 2]>,
+    /// Where walls move, the volume of each zone times the weight.
+    room: Vec<f64>,
+}
+
+/// The open window, and what walls have received.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AveragesState {
+    start: f64,
+    steps: u64,
+    weight: f64,
+    sums: Vec<Sum>,
+    /// Normal impulse and hits of each patch: the rest of its sum is not used.
+    patches: Vec<(i64, i64)>,
+    pub received: Vec<[i128; 3]>,
+    heat: Vec<[i128; 2]>,
+    passed: Vec<[Passed; 2]>,
+    works: Vec<[i128; 2]>,
+    room: Vec<f64>,
+}
+
+impl AveragesState {
+    /// An empty window that starts at a time, s: of a run that is measured from there on, and whose walls are at rest.
+    pub fn starting_at(start: f64, [zones, gases, patches, coats, vents]: [usize; 5]) -> AveragesState {
+        AveragesState {
+            start,
+            steps: 0,
+            weight: 0.0,
+            sums: vec![Sum::default(); zones * gases],
+            patches: vec![(0, 0); patches],
+            received: vec![[0; 3]; patches],
+            heat: vec![[0; 2]; coats],
+            passed: vec![[Passed::default(); 2]; vents],
+            works: Vec::new(),
+            room: Vec::new(),
+        }
+    }
+}
+
+impl Averages {
+    pub fn new(plan: &Plan, layout: Layout, patches: usize) -> Averages {
+        let scales = Scales::new(plan);
+        let zones = layout.volumes.len();
+        Averages {
+            gases: plan.gases.iter().map(|gas| gas.molar_mass).collect(),
+            moles_per_particle: plan.moles_per_particle,
+            heaviest: scales.reference_mass / plan.moles_per_particle,
+            scales,
+            start: 0.0,
+            steps: 0,
+            weight: 0.0,
+            sums: vec![Sum::default(); zones * plan.gases.len()],
+            patches: vec![SurfaceSum::default(); patches],
+            received: vec![[0; 3]; patches],
+            heat: vec![[0; 2]; layout.coats],
+            passed: vec![[Passed::default(); 2]; layout.vents],
+            works: vec![[0; 2]; layout.motions],
+            room: if layout.motions > 0 { vec![0.0; zones] } else { Vec::new() },
+            layout,
+        }
+    }
+
+    /// Adds an interval of `steps` steps of `dt` that took `samples` tallies; `wanted` is what its vents should have
+    /// passed.
+    pub fn add(&mut self, tallies: &Tallies, dt: f64, steps: u32, samples: u32, wanted: &[VentTarget]) {
+        self.steps += u64::from(steps);
+        self.weight += dt * f64::from(samples);
+        let zones = tallies.zones.iter().skip(self.gases.len());
+        for (sum, measured) in self.sums.iter_mut().zip(zones) {
+            let ZoneSum { number, velocity, kinetic, .. } = *measured;
+            sum.number += dt * number as f64;
+            sum.kinetic += dt * kinetic as f64;
+            for (total, velocity) in sum.velocity.iter_mut().zip(velocity) {
+                *total += dt * velocity as f64;
+            }
+        }
+        for ((patch, received), measured) in self.patches.iter_mut().zip(&mut self.received).zip(&tallies.surfaces) {
+            patch.normal += measured.normal;
+            patch.hits += measured.hits;
+            for (total, impulse) in received.iter_mut().zip(measured.impulse) {
+                *total += i128::from(impulse);
+            }
+        }
+        self.add_losses(tallies, wanted);
+    }
+
+    /// The volumes of the chambers and probes as drawn, m3.
+    pub fn drawn(&self) -> &[f64] {
+        &self.layout.volumes
+    }
+
+    /// Adds the mean volumes of the interval's tallies, m3, where walls move.
+    pub fn add_room(&mut self, dt: f64, samples: u32, volumes: &[f64]) {
+        for (room, volume) in self.room.iter_mut().zip(volumes) {
+            *room += dt * f64::from(samples) * volume;
+        }
+    }
+
+    fn add_losses(&mut self, tallies: &Tallies, wanted: &[VentTarget]) {
+        for (heat, coat) in self.heat.iter_mut().zip(&tallies.coats) {
+            for total in heat {
+                *total += i128::from(coat.energy);
+            }
+        }
+        for (work, sum) in self.works.iter_mut().zip(&tallies.works) {
+            for total in work {
+                *total += i128::from(sum.energy);
+            }
+        }
+        for ((passed, sum), wanted) in self.passed.iter_mut().zip(&tallies.vents).zip(wanted) {
+            for total in passed {
+                total.add(sum, wanted);
+            }
+        }
+    }
+
+    pub fn state(&self) -> AveragesState {
+        AveragesState {
+            start: self.start,
+            steps: self.steps,
+            weight: self.weight,
+            sums: self.sums.clone(),
+            patches: self.patches.iter().map(|patch| (patch.normal, patch.hits)).collect(),
+            received: self.received.clone(),
+            heat: self.heat.clone(),
+            passed: self.passed.clone(),
+            works: self.works.clone(),
+            room: self.room.clone(),
+        }
+    }
+
+    /// # Errors
+    /// If the state is that of another scene's averages; then nothing is changed.
+    pub fn restore(&mut self, state: &AveragesState) -> Result<(), RunStateError> {
+        for (what, found, expected) in [
+            ("sums over zones", state.sums.len(), self.sums.len()),
+            ("patches of wall", state.patches.len(), self.patches.len()),
+            ("impulses of patches", state.received.len(), self.received.len()),
+            ("coats of walls", state.heat.len(), self.heat.len()),
+            ("vents", state.passed.len(), self.passed.len()),
+            ("moving walls", state.works.len(), self.works.len()),
+            ("volumes of zones", state.room.len(), self.room.len()),
+        ] {
+            if found != expected {
+                return Err(RunStateError::differs(what, found as u64, expected as u64));
+            }
+        }
+        if !(state.start.is_finite() && state.weight.is_finite() && state.weight >= 0.0) {
+            return Err(RunStateError::Impossible { what: "the open window of the averages has no length" });
+        }
+        (self.start, self.steps, self.weight) = (state.start, state.steps, state.weight);
+        self.sums.clone_from(&state.sums);
+        let patch = |&(normal, hits): &(i64, i64)| SurfaceSum { normal, hits, ..SurfaceSum::default() };
+        self.patches = state.patches.iter().map(patch).collect();
+        self.received.clone_from(&state.received);
+        self.heat.clone_from(&state.heat);
+        self.passed.clone_from(&state.passed);
+        self.works.clone_from(&state.works);
+        self.room.clone_from(&state.room);
+        Ok(())
+    }
+
+    /// Whether the window holds a tally.
+    pub fn ready(&self) -> bool {
+        self.weight > 0.0
+    }
+
+    /// The row of the window that ends at `end`, s; starts the next.
+    pub fn row(&mut self, end: f64, particles: u64) -> Row {
+        let states: Vec<ZoneState> = (0..self.layout.volumes.len()).map(|zone| self.zone(zone)).collect();
+        let duration = end - self.start;
+        let surfaces = self.layout.surfaces.iter().map(|(patches, area)| self.surface(patches, *area, duration));
+        let row = Row {
+            time: 0.5 * (self.start + end),
+            window: [self.start, end],
+            step: duration / self.steps as f64,
+            particles,
+            surfaces: surfaces.collect(),
+            walls: self.layout.walls.iter().map(|(coats, area)| self.wall(coats, *area, duration)).collect(),
+            vents: self.passed.iter().map(|passed| self.vent(passed, duration)).collect(),
+            motions: self.works.iter().map(|work| self.motion(work, duration)).collect(),
+            chambers: states[..self.layout.chambers].to_vec(),
+            probes: states[self.layout.chambers..].to_vec(),
+        };
+        self.start = end;
+        self.steps = 0;
+        self.weight = 0.0;
+        self.sums.fill(Sum::default());
+        self.patches.fill(SurfaceSum::default());
+        self.heat.iter_mut().for_each(|heat| heat[0] = 0);
+        self.passed.iter_mut().for_each(|passed| passed[0] = Passed::default());
+        self.works.iter_mut().for_each(|work| work[0] = 0);
+        self.room.fill(0.0);
+        row
+    }
+
+    fn zone(&self, zone: usize) -> ZoneState {
+        let gases = self.gases.len();
+        let volume = self.room.get(zone).map_or(self.layout.volumes[zone], |room| room / self.weight);
+        let (mut mass, mut kinetic, mut number) = (0.0, 0.0, 0.0);
+        let mut momentum = [0.0; 3];
+        let mut particles = Vec::with_capacity(gases);
+        for (sum, molar_mass) in self.sums[zone * gases..(zone + 1) * gases].iter().zip(&self.gases) {
+            let own = molar_mass * self.moles_per_particle;
+            let count = sum.number / self.weight;
+            particles.push(count);
+            number += count;
+            mass += own * count;
+            kinetic += own * sum.kinetic / self.weight / self.scales.energy;
+            for (total, velocity) in momentum.iter_mut().zip(sum.velocity) {
+                *total += own * velocity / self.weight / self.scales.velocity;
+            }
+        }
+        if number == 0.0 {
+            return ZoneState { particles, volume, ..ZoneState::default() };
+        }
+        let velocity = momentum.map(|p| p / mass);
+        let bulk = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
+        let thermal = kinetic - bulk;
+        ZoneState {
+            pressure: 2.0 / 3.0 * thermal / volume,
+            temperature: 2.0 / 3.0 * thermal / (number * self.moles_per_particle * GAS_CONSTANT),
+            density: mass / volume,
+            velocity,
+            particles,
+            volume,
+        }
+    }
+
+    fn impulse_unit(&self) -> f64 {
+        self.heaviest * self.moles_per_particle / self.scales.velocity
+    }
+
+    fn surface(&self, patches: &[usize], area: f64, duration: f64) -> SurfaceState {
+        let mut state = SurfaceState::default();
+        let (mut normal, mut received) = (0i64, [0i128; 3]);
+        for &patch in patches {
+            normal += self.patches[patch].normal;
+            state.hits += self.patches[patch].hits.unsigned_abs();
+            for (total, own) in received.iter_mut().zip(self.received[patch]) {
+                *total += own;
+            }
+        }
+        state.pressure = normal as f64 * self.impulse_unit() / (area * duration);
+        state.impulse = received.map(|units| units as f64 * self.impulse_unit());
+        state
+    }
+
+    fn energy_unit(&self) -> f64 {
+        self.scales.reference_mass / self.scales.energy
+    }
+
+    fn wall(&self, coats: &[usize], area: f64, duration: f64) -> WallState {
+        let sum = |since: usize| coats.iter().map(|&coat| self.heat[coat][since]).sum::<i128>() as f64;
+        WallState { heat: sum(1) * self.energy_unit(), heat_flux: sum(0) * self.energy_unit() / (area * duration) }
+    }
+
+    fn mass(&self, passed: &Passed) -> f64 {
+        let of_gas = |(molar_mass, &left): (&f64, &i64)| molar_mass * self.moles_per_particle * left as f64;
+        self.gases.iter().zip(&passed.left).map(of_gas).sum()
+    }
+
+    fn vent(&self, [window, all]: &[Passed; 2], duration: f64) -> VentState {
+        let mass = self.mass(window);
+        let over = |mass: f64| if window.isentropic > 0.0 { mass / window.isentropic } else { 0.0 };
+        VentState {
+            mass_flow: mass / duration,
+            wanted_mass_flow: window.wanted / duration,
+            discharge: over(mass),
+            wanted_discharge: over(window.wanted),
+            mass: self.mass(all),
+            enthalpy: all.energy as f64 * self.energy_unit(),
+        }
+    }
+
+    /// Where it is the time loop knows.
+    fn motion(&self, work: &[i128; 2], duration: f64) -> MotionState {
+        let [window, all] = work.map(|work| -(work as f64) * self.energy_unit() + 0.0);
+        MotionState { work: all, power: window / duration, ..MotionState::default() }
+    }
+
+    /// All the work that walls have done on the gas since the start, J.
+    pub fn total_work(&self) -> f64 {
+        -(self.works.iter().map(|work| work[1]).sum::<i128>() as f64) * self.energy_unit() + 0.0
+    }
+
+    /// All that walls have taken since the start, J.
+    pub fn total_heat(&self) -> f64 {
+        self.heat.iter().map(|heat| heat[1]).sum::<i128>() as f64 * self.energy_unit()
+    }
+
+    /// All that has left through vents since the start: particles, kg, J.
+    pub fn total_vented(&self) -> (u64, f64, f64) {
+        let number = self.passed.iter().flat_map(|[_, all]| all.left).sum::<i64>();
+        // (The sum of nothing is -0.)
+        let mass = self.passed.iter().map(|[_, all]| self.mass(all)).sum::<f64>() + 0.0;
+        let energy = self.passed.iter().map(|[_, all]| all.energy).sum::<i128>() as f64;
+        (number.unsigned_abs(), mass, energy * self.energy_unit())
+    }
+
+    /// All that walls have received since the start, kg m/s.
+    pub fn total_impulse(&self) -> [f64; 3] {
+        let mut total = [0i128; 3];
+        for received in &self.received {
+            for axis in 0..3 {
+                total[axis] += received[axis];
+            }
+        }
+        total.map(|units| units as f64 * self.impulse_unit())
+    }
+}

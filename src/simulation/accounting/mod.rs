@@ -1,0 +1,6 @@
+//! What a run has done: averages and rows, the audit, guards, when vents open.
+
+pub(super) mod audit;
+pub(super) mod averages;
+pub(super) mod guards;
+pub(super) mod vent_watch;

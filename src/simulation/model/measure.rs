@@ -1,0 +1,56 @@
+//! What the plan needs to know of the walls.
+
+use super::moving::{Moving, extent};
+use super::places::{along, chamber_of};
+use super::surface_models::Coats;
+use crate::geometry::{Narrowest, Vessel, WallInfo};
+use crate::plan::{Measured, MeasuredVent, MeasuredWall};
+use crate::scene::{Opening, Scene};
+
+/// What the plan needs to know of the geometry.
+pub fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving, probe_volumes: &[f64]) -> Measured {
+    let (bounds_min, bounds_max) = moving.bounds(vessel);
+    let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
+    let Narrowest { gap, body } = vessel.narrowest();
+    Measured {
+        gas_volume: vessel.gas_volume(),
+        motion: moving.measured(&chamber_volumes),
+        chamber_volumes,
+        bounds_min,
+        bounds_max,
+        openings: found_openings(scene, vessel),
+        smallest_gap: gap,
+        thinnest_body: body,
+        wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
+        probe_volumes: probe_volumes.to_vec(),
+        vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
+        heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
+        walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
+    }
+}
+
+pub fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {
+    let (min, max) = extent(vessel, |of, _| of == index);
+    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity }
+}
+
+/// Holes of walls that join two chambers.
+pub fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
+    vessel
+        .holes
+        .iter()
+        .filter_map(|hole| {
+            // A little beyond either face of the wall.
+            let reach = 0.5 * hole.thickness + 1e-3 * hole.area.sqrt();
+            let side = |sign: f64| chamber_of(scene, vessel, along(hole.center, hole.normal, sign * reach));
+            let (a, b) = (side(-1.0)?, side(1.0)?);
+            (a != b).then(|| Opening {
+                name: hole.name.clone(),
+                between: [a, b],
+                area: hole.area,
+                // The radius of a round hole: see `gas::discharge`.
+                length: 2.0 * hole.area / hole.perimeter,
+            })
+        })
+        .collect()
+}

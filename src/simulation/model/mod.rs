@@ -1,0 +1,13 @@
+//! From a scene to what a run needs: the vessel, what was measured of it, the walls that move, surface models and the plan. Opens
+//! no device.
+
+pub(super) mod build;
+pub(super) mod error;
+pub(super) mod facing;
+pub(super) mod flow_only;
+pub(super) mod measure;
+pub(super) mod moving;
+pub(super) mod orifices;
+pub(super) mod outlook;
+pub(super) mod places;
+pub(super) mod surface_models;

@@ -1,0 +1,16 @@
+//! The run of a rank: set-up, steps in intervals, what is read of them late, rows, snapshots and checkpoints.
+
+pub(super) mod collect;
+pub(super) mod handover;
+pub(super) mod inspect;
+pub(super) mod interrupt;
+pub(super) mod interval;
+pub(super) mod meter;
+pub(super) mod observer;
+pub(super) mod run;
+pub(super) mod run_state;
+pub(super) mod schedule;
+pub(super) mod setup;
+pub(super) mod simulation;
+pub(super) mod snapshots;
+pub(super) mod step;

@@ -1,0 +1,50 @@
+//! The particles of all ranks, at the times that the scene asks for and at the end.
+
+use super::simulation::Simulation;
+use crate::subdomain::GpuParticle;
+
+use crate::simulation::SimulationError;
+use crate::simulation::timeloop::observer::Observer;
+
+/// Particles by id, and the rank that owns each.
+type Owned = (Vec<GpuParticle>, Vec<u32>);
+
+impl Simulation<'_> {
+    pub fn snapshot_due(&self) -> bool {
+        let asked = self.model.scene.output.snapshots;
+        let due = f64::from(self.progress.next_snapshot) / f64::from(asked.max(1));
+        asked > 0 && (self.control.clock.progress() >= due * (1.0 - 1e-12) || self.control.clock.done())
+    }
+
+    pub fn snapshot(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        let asked = self.model.scene.output.snapshots;
+        if asked == 0 {
+            return Ok(());
+        }
+        let own = self.subdomain.particles(self.device)?;
+        if let Some((particles, owners)) = self.gather(own)? {
+            if let Some(decomposition) = &self.parallel.decomposition {
+                observer.boxes(&decomposition.boxes(&self.model.plan.grid));
+            }
+            observer.snapshot(self.control.clock.time(), &particles, &owners)?;
+        }
+        while self.snapshot_due() && self.progress.next_snapshot <= asked {
+            self.progress.next_snapshot += 1;
+        }
+        Ok(())
+    }
+
+    /// All particles by id, and the rank that owns each, at rank 0. Collective.
+    pub fn gather(&self, own: Vec<GpuParticle>) -> Result<Option<Owned>, SimulationError> {
+        let Some(messages) = self.ranks.comm().gather(bytemuck::cast_slice(&own).to_vec())? else {
+            return Ok(None);
+        };
+        let mut all = Vec::new();
+        for (rank, message) in (0..).zip(messages) {
+            let particles: Vec<GpuParticle> = bytemuck::pod_collect_to_vec(&message);
+            all.extend(particles.into_iter().map(|particle| (particle, rank)));
+        }
+        all.sort_unstable_by_key(|(particle, _)| particle.id());
+        Ok(Some(all.into_iter().unzip()))
+    }
+}

@@ -1,0 +1,5 @@
+//! Control volumes: a run without particles, the end of one with, and the reference beside one.
+
+pub(super) mod reference;
+pub(super) mod switch;
+pub(super) mod uniform;
