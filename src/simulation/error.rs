@@ -3,13 +3,13 @@
 use super::accounting::guards::GuardWarning;
 use super::control::ladder::LadderError;
 use super::model::error::NoChamber;
-use super::timeloop::run_state::RunStateError;
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
 use crate::gpu::GpuError;
 use crate::output::CheckpointError;
 use crate::partition::PartitionError;
 use crate::ranks::RankError;
+use crate::simulation::control::state_error::RunStateError;
 use crate::subdomain::{StateError, TooManyParts};
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -7,6 +7,7 @@
 use crate::gpu::Device;
 use crate::partition::By;
 use crate::ranks::{Communicator, Pace, in_process};
+use crate::simulation::RowObserver;
 use crate::simulation::{
     BalanceMode, BalanceOptions, BalanceRecord, HaloOptions, Model, Observer, Options, RunState, Setup, Simulation,
     SimulationError,
@@ -117,6 +118,8 @@ struct Watched {
 /// What the ranks had to do in each interval.
 #[derive(Default)]
 struct Records(Vec<BalanceRecord>);
+
+impl RowObserver for Records {}
 
 impl Observer for Records {
     fn balance(&mut self, record: &BalanceRecord) -> Result<(), SimulationError> {

@@ -7,7 +7,9 @@ use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment as Written, Origin, OutputState,
 };
 use corpuscle::ranks::{Communicator, Solo};
-use corpuscle::simulation::{Model, Moment, Observer, Options, Request, RunState, Setup, Simulation, SimulationError};
+use corpuscle::simulation::{
+    Model, Moment, Observer, Options, Request, RowObserver, RunState, Setup, Simulation, SimulationError,
+};
 use corpuscle::subdomain::GpuParticle;
 
 use crate::whole_run::{Run, Witness};
@@ -17,6 +19,8 @@ struct Cutter {
     after: u64,
     state: Option<(RunState, Vec<GpuParticle>)>,
 }
+
+impl RowObserver for Cutter {}
 
 impl Observer for Cutter {
     fn request(&mut self, steps: u64) -> Request {

@@ -9,7 +9,7 @@ use corpuscle::output::{
 };
 use corpuscle::ranks::Solo;
 use corpuscle::simulation::{
-    Model, Moment, Observer, Options, Outcome, Request, Row, RunState, Setup, Simulation, SimulationError,
+    Model, Moment, Observer, Options, Outcome, Request, Row, RowObserver, RunState, Setup, Simulation, SimulationError,
 };
 use corpuscle::subdomain::GpuParticle;
 
@@ -29,6 +29,8 @@ struct Cutter {
     steps: u64,
     cut: Option<(RunState, Vec<GpuParticle>, f64, u64)>,
 }
+
+impl RowObserver for Cutter {}
 
 impl Observer for Cutter {
     fn request(&mut self, steps: u64) -> Request {
@@ -185,12 +187,14 @@ pub struct Continued {
 #[derive(Default)]
 struct Rows(Vec<Row>);
 
-impl Observer for Rows {
+impl RowObserver for Rows {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
         self.0.push(row.clone());
         Ok(())
     }
 }
+
+impl Observer for Rows {}
 
 /// Goes on from a state up to so many steps since the start of the run.
 pub fn go_on(model: &Model, particles: &[GpuParticle], state: &RunState, steps: u64) -> Continued {

@@ -4,6 +4,7 @@
 //! checkpoint its name; then it tells all how that went, so that an error of any rank ends all with its message, and no
 //! rank computes on before the checkpoint stands.
 
+use crate::simulation::RowObserver;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -137,6 +138,8 @@ impl<'a> Checkpoints<'a> {
 }
 
 /// The observer of every rank but rank 0.
+impl RowObserver for Checkpoints<'_> {}
+
 impl Observer for Checkpoints<'_> {
     fn request(&mut self, steps: u64) -> Request {
         Checkpoints::request(self, steps)

@@ -1,5 +1,6 @@
 //! What a run leaves behind while it goes on: rows, snapshots, and the display of its progress.
 
+use crate::simulation::RowObserver;
 use std::path::{Path, PathBuf};
 
 use crate::output::{
@@ -245,7 +246,7 @@ fn stop(error: OutputError) -> SimulationError {
     SimulationError::Observer(error.to_string())
 }
 
-impl Observer for Recorder<'_> {
+impl RowObserver for Recorder<'_> {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
         if self.stopped_at().is_some() {
             // The window that the checkpoint cuts in two: the run that goes on has the whole of it.
@@ -254,6 +255,26 @@ impl Observer for Recorder<'_> {
         self.history.row(&values(row, &self.reference)).map_err(stop)
     }
 
+    fn vent_opened(&mut self, index: usize, watch: &VentWatch) {
+        let Some(text) = watch.told(&self.model.scene, index) else { return };
+        match &self.progress {
+            Some(progress) => progress.note(&text),
+            None => tracing::info!("{text}"),
+        }
+    }
+
+    fn vents(&mut self, watches: &[VentWatch]) {
+        self.vents = watches.to_vec();
+    }
+
+    fn progress(&mut self, time: f64, steps: u64, particle_steps: u64) {
+        if let Some(progress) = &mut self.progress {
+            progress.update(time, steps, particle_steps);
+        }
+    }
+}
+
+impl Observer for Recorder<'_> {
     fn snapshot(&mut self, time: f64, particles: &[GpuParticle], owners: &[u32]) -> Result<(), SimulationError> {
         self.write_snapshot(time, particles, owners).map_err(stop)
     }
@@ -278,18 +299,6 @@ impl Observer for Recorder<'_> {
         }
     }
 
-    fn vent_opened(&mut self, index: usize, watch: &VentWatch) {
-        let Some(text) = watch.told(&self.model.scene, index) else { return };
-        match &self.progress {
-            Some(progress) => progress.note(&text),
-            None => tracing::info!("{text}"),
-        }
-    }
-
-    fn vents(&mut self, watches: &[VentWatch]) {
-        self.vents = watches.to_vec();
-    }
-
     fn request(&mut self, steps: u64) -> Request {
         self.checkpoints.as_mut().map_or(Request::None, |checkpoints| checkpoints.request(steps))
     }
@@ -302,12 +311,6 @@ impl Observer for Recorder<'_> {
             progress.note(&written.to_string());
         }
         Ok(())
-    }
-
-    fn progress(&mut self, time: f64, steps: u64, particle_steps: u64) {
-        if let Some(progress) = &mut self.progress {
-            progress.update(time, steps, particle_steps);
-        }
     }
 }
 

@@ -4,11 +4,11 @@
 //! there from the start.
 
 use super::averages::Averages;
+use crate::simulation::accounting::phases::{once_an_interval, order_of};
+use crate::simulation::control::interval::Interval;
+use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::control::surface_states::SurfaceStates;
 use crate::simulation::model::build::Model;
-use crate::simulation::timeloop::interval::Interval;
-use crate::simulation::timeloop::run_state::RunStateError;
-use crate::simulation::timeloop::step::{once_an_interval, place};
 use serde::{Deserialize, Serialize};
 
 use crate::gas::Inflow;
@@ -310,7 +310,7 @@ impl Account {
 
     pub fn phases(&self) -> PhaseTable {
         let mut rows = self.counted.phases.clone();
-        rows.sort_by_key(|(name, ..)| place(name));
+        rows.sort_by_key(|(name, ..)| order_of(name));
         PhaseTable { rows, steps: self.counted.steps, particle_steps: self.counted.particle_steps }
     }
 

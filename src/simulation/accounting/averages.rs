@@ -4,8 +4,8 @@
 //! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
 //! normal impulse of its hits over area and time.
 
+use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::control::surface_states::VentTarget;
-use crate::simulation::timeloop::run_state::RunStateError;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Plan;

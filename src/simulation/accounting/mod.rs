@@ -3,4 +3,6 @@
 pub(super) mod audit;
 pub(super) mod averages;
 pub(super) mod guards;
+pub(super) mod lists;
+pub(super) mod phases;
 pub(super) mod vent_watch;

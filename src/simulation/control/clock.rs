@@ -1,7 +1,7 @@
 //! Simulated time in integer ticks of the smallest step of the ladder, so that sums of steps are exact
 //! and the run ends exactly at its end time.
 
-use crate::simulation::timeloop::run_state::RunStateError;
+use crate::simulation::control::state_error::RunStateError;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Plan;

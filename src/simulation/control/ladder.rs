@@ -3,7 +3,7 @@
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 
 use super::local_gas::{BlockGas, Part};
-use crate::simulation::timeloop::run_state::RunStateError;
+use crate::simulation::control::state_error::RunStateError;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::{FAST_TAIL, LADDER_TAIL, Plan};

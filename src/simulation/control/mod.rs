@@ -1,6 +1,8 @@
 //! What decides of the next steps: the clock, the ladder of steps, the local gas and the states of surfaces.
 
 pub(super) mod clock;
+pub(super) mod interval;
 pub(super) mod ladder;
 pub(super) mod local_gas;
+pub(super) mod state_error;
 pub(super) mod surface_states;

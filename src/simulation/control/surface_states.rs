@@ -8,8 +8,8 @@
 //! or less than its beta would let out of a gas at rest the vent lately let out of the gas before it, which flows. Without the
 //! latter a vent would for ever owe what makes up for it, some intervals' flow in proportion.
 
+use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::model::build::Model;
-use crate::simulation::timeloop::run_state::RunStateError;
 use serde::{Deserialize, Serialize};
 
 use crate::gas::Species;

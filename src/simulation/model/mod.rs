@@ -9,5 +9,6 @@ pub(super) mod measure;
 pub(super) mod moving;
 pub(super) mod orifices;
 pub(super) mod outlook;
+pub(super) mod patches;
 pub(super) mod places;
 pub(super) mod surface_models;

@@ -13,6 +13,7 @@ mod groups;
 mod lineage;
 mod local;
 mod places;
+mod report;
 mod start;
 
 use super::model::build::Model;
@@ -25,12 +26,15 @@ use crate::subdomain::GpuParticle;
 
 use super::control::clock::Clock;
 use super::control::ladder::LadderError;
-use super::timeloop::run_state::{RunState, RunStateError};
+use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::run_state::RunState;
 
 use groups::groups;
 use lineage::Lineage;
 use local::Split;
 use places::Places;
+
+pub use report::RefineReport;
 
 /// A state from which a run can go on.
 pub struct Refined {
@@ -40,25 +44,6 @@ pub struct Refined {
     pub particles: Vec<GpuParticle>,
     pub state: RunState,
     pub report: RefineReport,
-}
-
-/// What a refinement did.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RefineReport {
-    /// s.
-    pub time: f64,
-    pub parents: u64,
-    pub particles: u64,
-    /// Children more and less than `times` the parents, summed over the gases.
-    pub added: u64,
-    pub dropped: u64,
-    /// Groups of neighbours that keep their momentum and energy.
-    pub groups: u64,
-    /// Children that found no place around their parent and stay at its own.
-    pub at_parent: u64,
-    /// The worst group's, after rounding to what is stored: of momentum over sqrt(2 mass energy), and of energy.
-    pub momentum_error: f64,
-    pub energy_error: f64,
 }
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

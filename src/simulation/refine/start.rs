@@ -13,8 +13,8 @@ use crate::simulation::accounting::guards::GuardState;
 use crate::simulation::control::clock::Clock;
 use crate::simulation::control::ladder::{Ladder, LadderError};
 use crate::simulation::model::build::Model;
-use crate::simulation::timeloop::run_state::RunState;
-use crate::simulation::timeloop::setup::patches;
+use crate::simulation::model::patches::patches;
+use crate::simulation::run_state::RunState;
 use crate::simulation::zero_d::switch::SwitchState;
 use crate::subdomain::{BlockSum, GpuParticle, Scales};
 

@@ -2,16 +2,17 @@
 //! ranks, go into the account, the averages, the step size and the balance.
 
 use super::simulation::Simulation;
+use super::submit::{InFlight, Pending};
 use crate::simulation::SimulationError;
 use crate::simulation::accounting::averages::Row;
 use crate::simulation::accounting::guards::{GuardWarning, Shown};
+use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
+use crate::simulation::control::interval::Interval;
 use crate::simulation::parallel::balance::Load;
 use crate::simulation::parallel::exchange::Traffic;
+use crate::simulation::run_state::Feedback;
 use crate::simulation::timeloop::interrupt::Request;
-use crate::simulation::timeloop::interval::{InFlight, Interval, Pending};
 use crate::simulation::timeloop::observer::Observer;
-use crate::simulation::timeloop::run_state::Feedback;
-use crate::simulation::timeloop::step::{PAIR_PHASES, once_an_interval};
 use crate::subdomain::{Remembered, Tallies};
 
 impl Simulation<'_> {

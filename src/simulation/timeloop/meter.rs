@@ -4,9 +4,8 @@ use super::simulation::Simulation;
 use crate::gpu::Constants;
 use crate::output::PhaseTable;
 use crate::simulation::SimulationError;
+use crate::simulation::accounting::lists::Lists;
 use crate::simulation::timeloop::observer::Observer;
-use crate::subdomain::Counters;
-use crate::subdomain::registry::RECHOOSE_LISTS;
 
 /// What was read of a run so far, since its start.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,26 +16,6 @@ pub struct Done {
     /// Particles that entered.
     pub entered: u64,
     pub lists: Lists,
-}
-
-/// Lengths of lists in the last steps of the intervals, summed over these.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Lists {
-    pub intervals: u64,
-    /// Flights that were tested against walls.
-    pub near_walls: u64,
-    /// Particles that chose, by round; behind the last those that would have again.
-    pub choosers: [u64; RECHOOSE_LISTS as usize],
-}
-
-impl Lists {
-    pub fn add(&mut self, counters: &Counters) {
-        self.intervals += 1;
-        self.near_walls += u64::from(counters.near_walls);
-        for (sum, own) in self.choosers.iter_mut().zip(counters.choosers) {
-            *sum += u64::from(own);
-        }
-    }
 }
 
 impl Simulation<'_> {

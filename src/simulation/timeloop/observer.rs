@@ -1,17 +1,16 @@
 //! What a run is asked for, what it tells while it goes, and what it leaves.
 
 use super::interrupt::Request;
-use super::run_state::RunState;
 use super::setup::Shuffle;
 use crate::output::{Audit, PhaseTable};
 use crate::ranks::Communicator;
-use crate::simulation::accounting::averages::Row;
 use crate::simulation::accounting::guards::GuardWarning;
-use crate::simulation::accounting::vent_watch::VentWatch;
 use crate::simulation::error::SimulationError;
 use crate::simulation::parallel::balance::{BalanceOptions, BalanceRecord};
 use crate::simulation::parallel::exchange::Traffic;
 use crate::simulation::parallel::halo_tuner::HaloOptions;
+use crate::simulation::run_state::RunState;
+use crate::simulation::zero_d::rows::RowObserver;
 use crate::subdomain::GpuParticle;
 
 /// What does not change a result (but for `hold_step`).
@@ -42,16 +41,8 @@ pub struct Options<'a> {
     pub balance: BalanceOptions,
 }
 
-/// Is told of the run as it goes.
-pub trait Observer {
-    /// A row of the history.
-    ///
-    /// # Errors
-    /// What stops the run.
-    fn row(&mut self, _row: &Row) -> Result<(), SimulationError> {
-        Ok(())
-    }
-
+/// Is told of the run as it goes, beside its rows.
+pub trait Observer: RowObserver {
     /// The particles by id at a time (s), and the rank that owns each.
     ///
     /// # Errors
@@ -74,13 +65,7 @@ pub trait Observer {
     /// Something has left its limits; each is told once.
     fn warning(&mut self, _told: &GuardWarning) {}
 
-    /// A vent has opened, by its index.
-    fn vent_opened(&mut self, _index: usize, _watch: &VentWatch) {}
-
-    /// At the end: what was seen of all vents.
-    fn vents(&mut self, _watches: &[VentWatch]) {}
-
-    /// Feedback on every rank once per interval: what this rank wants done soon. The most that any wants is done.
+    /// Asked on every rank once per interval: what this rank wants done soon. The most that any wants is done.
     fn request(&mut self, _steps: u64) -> Request {
         Request::None
     }
@@ -92,10 +77,9 @@ pub trait Observer {
     fn checkpoint(&mut self, _moment: &Moment<'_>) -> Result<(), SimulationError> {
         Ok(())
     }
-
-    /// Totals so far: simulated time (s), steps, particle-steps.
-    fn progress(&mut self, _time: f64, _steps: u64, _particle_steps: u64) {}
 }
+
+impl RowObserver for () {}
 
 impl Observer for () {}
 

@@ -5,12 +5,13 @@
 
 use super::collect::all_tallies;
 use super::interrupt::Request;
-use super::interval::{Deal, Interval, Machine};
 use super::observer::{Moment, Observer, Outcome};
 use super::simulation::Simulation;
+use super::submit::Machine;
 use crate::gpu::Recording;
 use crate::ranks::Communicator;
 use crate::simulation::accounting::audit::count_outside;
+use crate::simulation::control::interval::{Deal, Interval, Span};
 use crate::simulation::error::SimulationError;
 use crate::subdomain::Tallies;
 use std::time::Instant;
@@ -225,7 +226,7 @@ impl Simulation<'_> {
             None => Deal::ById { rank: self.ranks.comm().rank() as u32, ranks: self.ranks.comm().size() as u32 },
             Some(_) => Deal::All,
         };
-        let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
+        let mut interval = Interval::new(plan, &mut self.inflow, &Span { start, end, first_step, steps }, deal)?;
         interval.tables = self.control.surfaces.tables(start, end);
         interval.tables.shares = self.control.ladder.shares().to_vec();
         interval.tables.halvings = self.control.ladder.halvings(level);

@@ -1,20 +1,20 @@
 //! What a rank of a run has, from its start or from a state.
 
 use super::interrupt::Request;
-use super::interval::InFlight;
-use super::meter::Lists;
 use super::observer::{Observer, Options};
-use super::run_state::{Feedback, RunState, RunStateError};
 use super::setup::Setup;
+use super::submit::InFlight;
 use crate::gas::Inflow;
 use crate::gpu::{Device, PhaseTimer};
 use crate::ranks::{Communicator, Solo};
 use crate::simulation::accounting::audit::Account;
 use crate::simulation::accounting::averages::Averages;
 use crate::simulation::accounting::guards::Guards;
+use crate::simulation::accounting::lists::Lists;
 use crate::simulation::accounting::vent_watch::VentWatch;
 use crate::simulation::control::clock::Clock;
 use crate::simulation::control::ladder::Ladder;
+use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::control::surface_states::SurfaceStates;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
@@ -22,6 +22,8 @@ use crate::simulation::parallel::balance::Balance;
 use crate::simulation::parallel::decomposition::Decomposition;
 use crate::simulation::parallel::exchange::Exchange;
 use crate::simulation::parallel::halo_tuner::Tuner;
+use crate::simulation::run_state::Feedback;
+use crate::simulation::run_state::RunState;
 use crate::simulation::zero_d::switch::Switching;
 use crate::subdomain::{GpuParticle, Place, Subdomain};
 use std::collections::VecDeque;

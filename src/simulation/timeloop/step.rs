@@ -6,43 +6,6 @@ use crate::simulation::error::SimulationError;
 use crate::simulation::parallel::exchange::Exchange;
 use crate::subdomain::{StepSlot, Subdomain};
 
-/// The phases whose time goes with the entries of neighbour lists. (That of `collide`, which has none, goes with cells and particles
-/// as well as with the pairs that are tried.)
-pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
-
-/// In the order of a step; `lost` and `blocks` are once an interval.
-const PHASES: [&str; 13] = [
-    "bin",
-    "exchange",
-    "scan",
-    "sort",
-    "neighbours",
-    "collide",
-    "update",
-    "choose",
-    "settle",
-    LOST,
-    "advect",
-    TALLY,
-    BLOCKS,
-];
-/// In the first step of an interval.
-pub const LOST: &str = "lost";
-/// In some steps, of which the last of an interval is one.
-pub const TALLY: &str = "tally";
-/// In the last step of an interval.
-pub const BLOCKS: &str = "blocks";
-
-/// Where in a step a phase is.
-pub fn place(phase: &str) -> usize {
-    PHASES.iter().position(|&known| known == phase).unwrap_or(PHASES.len())
-}
-
-/// Whether a phase is once an interval, and so no part of a mean step.
-pub fn once_an_interval(phase: &str) -> bool {
-    [LOST, BLOCKS].contains(&phase)
-}
-
 /// What else a step does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sampling {

@@ -8,10 +8,10 @@
 //! same on any number of ranks.
 
 use crate::simulation::accounting::averages::Row;
+use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::facing::Known;
-use crate::simulation::timeloop::run_state::RunStateError;
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};

@@ -6,12 +6,12 @@
 //! by the chambers that its parts face. No device, no ranks, no random numbers: a run takes milliseconds.
 
 use super::reference::{continued_with_losses, heated_walls, reference_with_losses};
+use super::rows::RowObserver;
 use crate::simulation::accounting::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
 use crate::simulation::accounting::vent_watch::VentWatch;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::facing::Known;
-use crate::simulation::timeloop::observer::Observer;
 use glam::DVec3;
 
 use crate::gas::{
@@ -26,7 +26,7 @@ const WORK_PARTS: u32 = 32;
 ///
 /// # Errors
 /// If a probe or a surface lies in no chamber, or the observer stops the run.
-pub fn run_uniform(model: &Model, observer: &mut dyn Observer) -> Result<Audit, SimulationError> {
+pub fn run_uniform(model: &Model, observer: &mut dyn RowObserver) -> Result<Audit, SimulationError> {
     let rows = model.scene.output.rows.max(1);
     let bounds: Vec<f64> = (0..=rows).map(|row| model.plan.end_time * f64::from(row) / f64::from(rows)).collect();
     let solved = |times: &[f64]| reference_with_losses(model, times);
@@ -46,7 +46,7 @@ pub fn continue_uniform(
     beginning: &Beginning,
     ends: &[f64],
     earlier: Earlier<'_>,
-    observer: &mut dyn Observer,
+    observer: &mut dyn RowObserver,
 ) -> Result<Audit, SimulationError> {
     let bounds = [&[beginning.time], ends].concat();
     let solved = |times: &[f64]| continued_with_losses(model, beginning, times);
@@ -65,7 +65,7 @@ fn stretch(
     solved: Solved<'_>,
     bounds: &[f64],
     (last, watches): Earlier<'_>,
-    observer: &mut dyn Observer,
+    observer: &mut dyn RowObserver,
 ) -> Result<Audit, SimulationError> {
     let Model { plan, .. } = model;
     let rows = bounds.len() - 1;
@@ -146,7 +146,7 @@ fn stretch(
 }
 
 /// A vent opens where the line between two states reaches its pressure.
-fn watch_vents(model: &Model, watches: &mut [VentWatch], time: f64, states: &[State], observer: &mut dyn Observer) {
+fn watch_vents(model: &Model, watches: &mut [VentWatch], time: f64, states: &[State], observer: &mut dyn RowObserver) {
     for (index, (watch, vent)) in watches.iter_mut().zip(&model.scene.vents).enumerate() {
         if watch.see(vent, [time, states[model.coats.vents[index].chamber].pressure], true) {
             observer.vent_opened(index, watch);

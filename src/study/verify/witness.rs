@@ -1,5 +1,6 @@
 //! A run of which everything is kept.
 
+use crate::simulation::RowObserver;
 use std::path::Path;
 
 use crate::gpu::Device;
@@ -23,12 +24,14 @@ pub struct Witness {
     pub snapshots: Vec<(f64, Vec<GpuParticle>)>,
 }
 
-impl Observer for Witness {
+impl RowObserver for Witness {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
         self.rows.push(row.clone());
         Ok(())
     }
+}
 
+impl Observer for Witness {
     fn snapshot(&mut self, time: f64, particles: &[GpuParticle], _owners: &[u32]) -> Result<(), SimulationError> {
         self.snapshots.push((time, particles.to_vec()));
         Ok(())

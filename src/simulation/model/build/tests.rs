@@ -129,7 +129,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
     let mut ever = [[false; 2]; 8];
     for text in scenes {
         let model = model(text);
-        let (_, patches) = crate::simulation::timeloop::setup::patches(&model);
+        let (_, patches) = crate::simulation::model::patches::patches(&model);
         let patches = Patches {
             surfaces: patches.len(),
             coats: model.coats.coats.len(),

@@ -92,7 +92,7 @@ fn uniform_chambers_are_compressed_isentropically() {
     let model = Model::new(scene).unwrap();
     #[derive(Default)]
     struct Rows(Vec<crate::simulation::Row>);
-    impl crate::simulation::Observer for Rows {
+    impl crate::simulation::RowObserver for Rows {
         fn row(&mut self, row: &crate::simulation::Row) -> Result<(), crate::simulation::SimulationError> {
             self.0.push(row.clone());
             Ok(())

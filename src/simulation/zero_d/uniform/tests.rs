@@ -4,12 +4,11 @@ use crate::simulation::accounting::averages::Row;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::facing::{PARTS, parts};
-use crate::simulation::timeloop::observer::Observer;
 
 #[derive(Default)]
 struct Rows(Vec<Row>);
 
-impl Observer for Rows {
+impl RowObserver for Rows {
     fn row(&mut self, row: &Row) -> Result<(), SimulationError> {
         self.0.push(row.clone());
         Ok(())

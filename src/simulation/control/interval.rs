@@ -1,18 +1,21 @@
 //! One interval of steps: what it needs to run, and to run again. Its step size is fixed, its newborns are
 //! known, and its tallies are read one interval late.
 
-use super::step::{BLOCKS, LOST, Sampling, TALLY, step};
-use crate::simulation::error::SimulationError;
-use crate::simulation::parallel::decomposition::Decomposition;
-use crate::simulation::parallel::exchange::{Exchange, Traffic};
 use std::cmp::Ordering;
-use std::time::Instant;
 
 use crate::gas::{Inflow, Newborn};
-use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::plan::Plan;
-use crate::ranks::Reduction;
-use crate::subdomain::{GpuNewborn, GridCells, Newborns, Remembered, Scales, Steps, Subdomain, Tables, Tallies};
+use crate::subdomain::{GpuNewborn, Newborns, Scales, StateError, Tables, Tallies};
+
+/// The steps of an interval.
+#[derive(Debug, Clone, Copy)]
+pub struct Span {
+    /// s.
+    pub start: f64,
+    pub end: f64,
+    pub first_step: u64,
+    pub steps: u32,
+}
 
 /// An interval as it was decided.
 pub struct Interval {
@@ -42,48 +45,10 @@ pub struct Interval {
     pub done: Option<(u32, Box<Tallies>)>,
 }
 
-/// An interval on its way through the device.
-pub struct InFlight {
-    pub interval: Interval,
-    pub before: Remembered,
-    pub tallies: Pending,
-    /// Phases that were timed: of one step, and what is once an interval.
-    pub phases: Vec<&'static str>,
-    /// Particles on this rank, ghosts included, in the last step.
-    pub present: u32,
-    /// Cells on this rank, in the last step.
-    pub cells: GridCells,
-    /// What went between the ranks in it.
-    pub traffic: Traffic,
-}
-
-/// Tallies on their way to the host and through the ranks.
-pub enum Pending {
-    OnDevice(Readback),
-    /// This rank's, the timer's stamps, and the sums over the ranks that are being formed.
-    Reducing(Box<Tallies>, Vec<u8>, Reduction),
-}
-
-/// To whom the newborns go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Deal {
-    /// Every rank looks at all of them.
-    All,
-    /// By id: this rank of so many.
-    ById { rank: u32, ranks: u32 },
-}
-
 impl Interval {
     /// Takes the newborns of the interval from the inflow.
-    pub fn new(
-        plan: &Plan,
-        inflow: &mut Inflow,
-        start: f64,
-        end: f64,
-        first_step: u64,
-        steps: u32,
-        deal: Deal,
-    ) -> Result<Interval, SimulationError> {
+    pub fn new(plan: &Plan, inflow: &mut Inflow, span: &Span, deal: Deal) -> Result<Interval, StateError> {
+        let &Span { start, end, first_step, steps } = span;
         let dt = (end - start) / f64::from(steps);
         let scales = Scales::new(plan);
         let born: Vec<Newborn> = inflow.take_until(end);
@@ -158,6 +123,24 @@ impl Interval {
     }
 }
 
+/// To whom the newborns go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deal {
+    /// Every rank looks at all of them.
+    All,
+    /// By id: this rank of so many.
+    ById { rank: u32, ranks: u32 },
+}
+
+impl Deal {
+    fn takes(self, id: u32) -> bool {
+        match self {
+            Deal::All => true,
+            Deal::ById { rank, ranks } => id % ranks == rank,
+        }
+    }
+}
+
 /// Which of so many steps add to the zones, at their end: one in `every`, at least one, and so that the mean of their times is the
 /// middle of the interval, as it is of what walls and vents tally in every step. (Of a single step it is its end.) One in 0 is none.
 fn about_the_middle(steps: u32, every: u32) -> Vec<bool> {
@@ -180,100 +163,6 @@ fn about_the_middle(steps: u32, every: u32) -> Vec<bool> {
         }
     }
     tallied
-}
-
-impl Deal {
-    fn takes(self, id: u32) -> bool {
-        match self {
-            Deal::All => true,
-            Deal::ById { rank, ranks } => id % ranks == rank,
-        }
-    }
-}
-
-/// What an interval runs on.
-pub struct Machine<'a, 'b> {
-    pub plan: &'a Plan,
-    pub device: &'a Device,
-    pub subdomain: &'a mut Subdomain,
-    pub exchange: &'a mut Exchange<'b>,
-    pub decomposition: Option<&'a mut Decomposition>,
-    pub timer: Option<&'a PhaseTimer>,
-    /// Steps per submission.
-    pub batch: u32,
-    /// Whether neighbour lists get the room that the first step wants before it runs.
-    pub fit_lists: bool,
-}
-
-impl Machine<'_, '_> {
-    /// Encodes and submits the interval, `batch` steps a submission. Neither the batches nor the timed step
-    /// change a bit of the result.
-    pub fn submit(&mut self, interval: Interval, spare: Option<wgpu::Buffer>) -> Result<InFlight, SimulationError> {
-        let start = Instant::now();
-        let (plan, device) = (self.plan, self.device);
-        if let Some(decomposition) = self.decomposition.as_deref_mut()
-            && decomposition.is_scattered()
-        {
-            decomposition.apply(device, self.subdomain, self.exchange)?;
-        }
-        let before = self.subdomain.remember(device, spare)?;
-        if self.fit_lists {
-            self.subdomain.fit_lists(device, interval.dt, &interval.tables, &before)?;
-        }
-        let done = interval.done.as_ref().map_or(0, |(steps, _)| *steps);
-        let steps = Steps { first: interval.first_step, done, dt: interval.dt, tallied: &interval.tallied };
-        let slots = self.subdomain.begin_interval(device, &steps, &interval.entering(), &interval.tables)?;
-        let last = interval.steps - 1;
-        // The last step is timed; on a device alone, where all but the last count the next one's particles, and the first has a `bin` of its own, the one
-        // before, unless that is the first that is to be done, and of the last what that one has not.
-        let early = self.subdomain.place().is_alone() && last > done + 1;
-        let timed = if early { last - 1 } else { last };
-        // A tally is timed once, in the timed step or in the last that has one.
-        let sampled =
-            interval.tallied.iter().rposition(|&tallied| tallied).filter(|_| !interval.tallied[timed as usize]);
-        let alone = |k: u32| -> &'static [&'static str] {
-            match (k == last, k == 0, Some(k as usize) == sampled) {
-                (true, _, true) => &[TALLY, BLOCKS],
-                (true, _, false) => &[BLOCKS],
-                (false, true, true) => &[LOST, TALLY],
-                (false, true, false) => &[LOST],
-                (false, false, true) => &[TALLY],
-                (false, false, false) => &[],
-            }
-        };
-        let mut rec = Recording::new(device);
-        let (mut present, mut cells) = (0, GridCells::default());
-        for (k, mut slot) in (done..).zip(slots) {
-            let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
-            if k == timed {
-                rec.time(self.timer);
-            } else {
-                rec.time_alone(self.timer.filter(|_| !alone(k).is_empty()), alone(k));
-            }
-            self.subdomain.begin_step(&mut rec, &mut slot)?;
-            step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
-            if k == last {
-                self.subdomain.tally_blocks(&mut rec, &slot);
-                self.subdomain.count_candidates(&mut rec, &slot);
-                (present, cells) = (slot.present(), self.subdomain.cells());
-            } else if (k + 1).is_multiple_of(self.batch.max(1)) {
-                rec.submit();
-            }
-            if let Some(decomposition) = self.decomposition.as_deref_mut()
-                && decomposition.home()
-            {
-                decomposition.apply(device, self.subdomain, self.exchange)?;
-            }
-        }
-        let phases = rec.timed().to_vec();
-        let timed = self.timer.map(|timer| (timer, phases.len()));
-        let staging = self.subdomain.encode_readback(&mut rec, timed)?;
-        let submission = rec.submit();
-        let tallies = Pending::OnDevice(device.read_later(staging, submission));
-        self.exchange.ran(start.elapsed().as_secs_f64());
-        let traffic = self.exchange.recent();
-        Ok(InFlight { before, tallies, phases, present, cells, traffic, interval })
-    }
 }
 
 #[cfg(test)]

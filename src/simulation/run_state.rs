@@ -13,7 +13,7 @@ use crate::simulation::control::surface_states::{SeenGas, SurfaceMemory};
 use crate::simulation::zero_d::switch::SwitchState;
 use serde::{Deserialize, Serialize};
 
-use crate::gas::{InflowState, InflowStateError};
+use crate::gas::InflowState;
 use crate::output::{Checkpoint, CheckpointError};
 use crate::subdomain::GpuParticle;
 
@@ -68,23 +68,6 @@ pub struct Feedback {
     pub switches: bool,
 }
 
-/// Why a state cannot be taken up.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum RunStateError {
-    #[error("the state is of another run: it has {found} {what}, the plan has {expected}")]
-    Differs { what: &'static str, found: u64, expected: u64 },
-    #[error("the state is of no run: {what}")]
-    Impossible { what: &'static str },
-    #[error("the state is of another run: {0}")]
-    Inflow(#[from] InflowStateError),
-}
-
-impl RunStateError {
-    pub fn differs(what: &'static str, found: impl Into<u64>, expected: impl Into<u64>) -> RunStateError {
-        RunStateError::Differs { what, found: found.into(), expected: expected.into() }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,7 +83,7 @@ mod tests {
     use crate::subdomain::{CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 
     fn plan() -> Plan {
-        let text = include_str!("../../../scenes/tank.toml").replace("particles = 1000000", "particles = 2000");
+        let text = include_str!("../../scenes/tank.toml").replace("particles = 1000000", "particles = 2000");
         let scene = crate::scene::parse(&text, "tank.toml", std::path::Path::new("")).unwrap();
         Model::new(scene).unwrap().plan
     }
