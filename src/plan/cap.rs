@@ -51,5 +51,5 @@ pub fn diameter_cap(
 fn stays_uniform(scene: &Scene) -> bool {
     let one = scene.chambers.len() == 1 && scene.chambers[0].region.is_none();
     let still = scene.orifices.is_empty() && scene.motions.is_empty();
-    one && still && scene.walls.iter().all(|wall| wall.heat.is_none())
+    one && still && !scene.has_heat()
 }

@@ -192,7 +192,7 @@ fn jets(scene: &Scene, species: &[Species]) -> Result<(), PlanError> {
 /// the number).
 fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
-    let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
+    let coated = !scene.vents.is_empty() || !scene.has_mirrors_only();
     let has = [
         ("collisions", method != Method::None),
         ("a diameter that follows the local density", capped || method != Method::ClosestApproach),

@@ -35,7 +35,7 @@ mod warnings;
 
 use crate::gas::Species;
 use crate::geometry::Grid;
-use crate::scene::{Method, Opening};
+use crate::scene::{Method, Opening, SurfaceId};
 use serde::Serialize;
 
 pub use choice::{Alternative, Choice, Forecast, choose, modelling_errors};
@@ -71,8 +71,8 @@ pub struct Measured {
     pub probe_volumes: Vec<f64>,
     /// Of each vent of the scene.
     pub vents: Vec<MeasuredVent>,
-    /// Indices of a wall that exchanges heat and of a chamber that it borders on.
-    pub heated: Vec<(usize, usize)>,
+    /// Each surface that is no mirror or has vents, with the index of a chamber that it borders on.
+    pub coated: Vec<(SurfaceId, usize)>,
     /// Where walls move.
     pub motion: Option<MeasuredMotion>,
     /// Box, area and volume of each wall of the scene.

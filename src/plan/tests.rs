@@ -53,7 +53,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         wall_area: 1.0,
         probe_volumes: vec![],
         vents: vec![],
-        heated: vec![],
+        coated: vec![],
         motion: None,
         walls: vec![],
     };
@@ -386,11 +386,17 @@ fn heat_capacities_cover_the_walls() {
     let cold = |scene: &mut Scene| {
         let heat = WallHeat { temperature: 293.0, transfer: HeatTransfer::Accommodation(1.0) };
         let shape = Shape::Box { min: [0.0; 3], max: [0.4; 3], thickness: None, holes: vec![] };
-        scene.walls = vec![Wall { name: "tank".into(), shape, gas: GasSide::Inside, heat: Some(heat), friction: 0.0 }];
+        scene.walls = vec![Wall {
+            name: "tank".into(),
+            shape,
+            gas: GasSide::Inside,
+            surface: SurfaceModel { heat: Some(heat), friction: 0.0 },
+            parts: Vec::new(),
+        }];
     };
     let curved = planned(|scene, _| {
         cold(scene);
-        scene.walls[0].heat.as_mut().unwrap().temperature = 200.0;
+        scene.walls[0].surface.heat.as_mut().unwrap().temperature = 200.0;
         scene.gases[1].heat = HeatCapacity::Curve([23.0, 5.6e-2, -2.2e-5]);
     });
     let reasons = curved.unwrap().reasons;

@@ -17,12 +17,14 @@ mod raw;
 mod raw_values;
 mod settings;
 mod structure;
+mod surface_model;
 #[cfg(test)]
 mod tests;
 mod types;
 mod units;
 mod validate;
 mod vents;
+mod wall_surface;
 mod walls;
 mod write;
 
@@ -34,6 +36,7 @@ pub use flows::FASTEST_JET;
 pub use gases::shown_collision_number;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
+pub use surface_model::*;
 pub use types::*;
 pub use units::Quantity as Dimension;
 pub use write::to_toml;

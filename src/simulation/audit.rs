@@ -350,7 +350,7 @@ impl Account {
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
             work_by_walls: (!model.moving.is_empty()).then(|| averages.total_work()),
-            heat_to_walls: model.scene.walls.iter().any(|wall| wall.heat.is_some()).then(|| averages.total_heat()),
+            heat_to_walls: model.scene.has_heat().then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
                 .collect(),

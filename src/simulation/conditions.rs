@@ -261,8 +261,9 @@ impl<'a> Conditions<'a> {
                 let (beta, index) = (betas[vent] as f32, vent as u32);
                 tables.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
             }
+            let surface = model.scene.surface_model(coat.surface);
             let (mut thermal, mut share) = (0.0, 0.0);
-            if let Some(heat) = &model.scene.walls[coat.wall].heat {
+            if let Some(heat) = &surface.heat {
                 thermal = GAS_CONSTANT * heat.temperature / heaviest;
                 share = match self.state.current.chambers.get(coat.chamber) {
                     Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
@@ -276,7 +277,7 @@ impl<'a> Conditions<'a> {
             tables.coats.push(GpuCoat {
                 thermal: thermal as f32,
                 accommodation: share.min(1.0) as f32,
-                friction: model.scene.walls[coat.wall].friction as f32,
+                friction: surface.friction as f32,
                 first_vent,
                 end_vent: tables.vents.len() as u32,
             });
@@ -323,10 +324,10 @@ impl<'a> Conditions<'a> {
         let mut beyond: Vec<(String, f64)> = Vec::new();
         for (coat, &asked) in self.model.coats.coats.iter().zip(&self.state.most_asked) {
             if asked > 1.0 {
-                let name = &self.model.scene.walls[coat.wall].name;
-                match beyond.iter_mut().find(|(known, _)| known == name) {
+                let name = self.model.scene.surface_name(coat.surface);
+                match beyond.iter_mut().find(|(known, _)| *known == name) {
                     Some((_, most)) => *most = most.max(asked),
-                    None => beyond.push((name.clone(), asked)),
+                    None => beyond.push((name, asked)),
                 }
             }
         }

@@ -254,7 +254,7 @@ pub(super) fn measured(
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
         probe_volumes: probe_volumes.to_vec(),
         vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
-        heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
+        coated: coats.coats.iter().map(|coat| (coat.surface, coat.chamber)).collect(),
         walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
 }

@@ -30,13 +30,13 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coat
         let chamber = chamber_of(scene, vessel, middle).unwrap_or(scene.chambers.len() - 1);
         SeenProbe { chamber, volume: vessel.gas_volume_in(&probe.region) }
     });
-    let heated = coats.coats.iter().filter(|coat| scene.walls[coat.wall].heat.is_some());
+    let heated = coats.coats.iter().filter(|coat| scene.surface_model(coat.surface).heat.is_some());
     Outlook {
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         surfaces: surfaces.collect(),
         probes: probes.collect(),
         borders: borders(scene, vessel, measured),
-        heated: heated.map(|coat| SeenHeat { wall: coat.wall, chamber: coat.chamber, area: coat.area }).collect(),
+        heated: heated.map(|coat| SeenHeat { surface: coat.surface, chamber: coat.chamber, area: coat.area }).collect(),
         modelled: Vec::new(),
     }
 }

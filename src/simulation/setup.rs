@@ -240,8 +240,8 @@ fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -
         let area = members.iter().map(|&index| area_of(patches[index].0, patches[index].1)).sum();
         (members, area)
     });
-    let walls = scene.walls.iter().enumerate().filter(|(_, wall)| wall.heat.is_some()).map(|(wall, _)| {
-        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.wall == wall);
+    let walls = scene.heated_surfaces().map(|(surface, _)| {
+        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.surface == surface);
         let members: Vec<usize> = own.map(|(index, _)| index).collect();
         let area = members.iter().map(|&index| coats.coats[index].area).sum();
         (members, area)

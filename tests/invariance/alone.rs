@@ -120,7 +120,7 @@ fn dense_gas_and_a_rough_wall_have_the_same_bits_in_every_way() {
     };
     let uncapped = other(&|scene| scene.model.diameter_cap = Some(DiameterCap::Off));
     assert!(difference(&bits, &uncapped).is_some(), "no diameter was capped");
-    let smooth = other(&|scene| scene.walls[1].friction = 0.0);
+    let smooth = other(&|scene| scene.walls[1].surface.friction = 0.0);
     assert!(difference(&bits, &smooth).is_some(), "no wall was rough");
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
 use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
-use corpuscle::scene::{GasSide, Shape, Wall};
+use corpuscle::scene::{GasSide, Shape, SurfaceModel, Wall};
 use corpuscle::subdomain::{
     GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, readable_numbers, registry, share_table,
 };
@@ -83,7 +83,7 @@ pub struct World {
 }
 
 pub fn wall(shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: "wall".into(), shape, gas, heat: None, friction: 0.0 }
+    Wall { name: "wall".into(), shape, gas, surface: SurfaceModel::default(), parts: Vec::new() }
 }
 
 /// A box of gas from the origin.

@@ -69,12 +69,11 @@ pub fn families(
 
 /// What the scene is that no control volume is, or whose effect on one is not predicted.
 fn beyond_control_volumes(scene: &Scene, forecaster: &Forecaster<'_>) -> Option<&'static str> {
-    let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
     if forecaster.is_release() {
         Some("a release without a wall is no control volume")
     } else if forecaster.has_open_borders() {
         Some("gas passes where chambers touch without a wall, and between control volumes there it does not")
-    } else if !scene.vents.is_empty() || rough {
+    } else if !scene.vents.is_empty() || !scene.has_mirrors_only() {
         Some("its error beside vents, rough walls and walls that keep a temperature is not predicted yet")
     } else {
         None

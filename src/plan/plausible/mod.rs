@@ -12,7 +12,7 @@ use super::inventory::Contents;
 use super::render::{grouped, significant};
 use crate::scene::{
     Course, Curve, Dimension, GAS_CONSTANT, Gas, HeatCapacity, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape,
-    UnitSystem, Vent, VentFlow, Wall,
+    SurfaceId, UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
 use units::{as_written, atmosphere_in, likely};
 
@@ -127,7 +127,8 @@ pub fn of_scene(scene: &Scene) -> Vec<String> {
     let named = |subject: String, key: &'static str| Named { subject, key, units: scene.units };
     let mut found = vec![named("the run".into(), "end_time").check(Kind::EndTime, scene.end_time)];
     found.extend(scene.gases.iter().flat_map(|gas| of_gas(scene, gas)));
-    found.extend(scene.walls.iter().flat_map(|wall| of_wall(scene, wall)));
+    found.extend(scene.walls.iter().map(|wall| of_wall(scene, wall)));
+    found.extend(scene.surface_ids().flat_map(|id| of_surface(scene, id)));
     for chamber in &scene.chambers {
         let subject = format!("chamber `{}`", chamber.name);
         found.push(chamber_pressure(scene, &named(subject.clone(), "pressure"), chamber.pressure));
@@ -196,8 +197,7 @@ fn temperature(named: &Named<'_>, kelvin: f64) -> Option<String> {
     (!range.holds(kelvin)).then(|| named.beyond(range, kelvin, &question))
 }
 
-fn of_wall(scene: &Scene, wall: &Wall) -> Vec<Option<String>> {
-    let named = |key| Named { subject: format!("wall `{}`", wall.name), key, units: scene.units };
+fn of_wall(scene: &Scene, wall: &Wall) -> Option<String> {
     let longest = match &wall.shape {
         Shape::Box { min, max, .. } => Some(largest((0..3).map(|axis| max[axis] - min[axis]))),
         Shape::Cylinder { radius, height, .. } => Some(height.max(2.0 * radius)),
@@ -205,14 +205,25 @@ fn of_wall(scene: &Scene, wall: &Wall) -> Vec<Option<String>> {
         Shape::Plane { size, .. } => Some(size[0].max(size[1])),
         Shape::Mesh { .. } => None,
     };
-    let coefficient = wall.heat.and_then(|heat| match heat.transfer {
+    longest.and_then(|longest| extent(scene.units, wall, longest))
+}
+
+fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {
+    let Some(heat) = scene.surface_model(id).heat else { return Vec::new() };
+    let own = scene.walls[id.wall].surface.heat.filter(|_| id.part.is_some());
+    let subject = format!("wall `{}`", scene.surface_name(id));
+    let named = |key| Named { subject: subject.clone(), key, units: scene.units };
+    // What a part has from its wall is told of the wall.
+    let differs = |own: Option<f64>, value: f64| own != Some(value);
+    let coefficient = |heat: WallHeat| match heat.transfer {
         HeatTransfer::Coefficient(coefficient) => Some(coefficient),
         HeatTransfer::Accommodation(_) => None,
-    });
+    };
+    let kept = Some(heat.temperature).filter(|&kept| differs(own.map(|own| own.temperature), kept));
+    let given = coefficient(heat).filter(|&given| differs(own.and_then(coefficient), given));
     vec![
-        longest.and_then(|longest| extent(scene.units, wall, longest)),
-        wall.heat.and_then(|heat| temperature(&named("temperature"), heat.temperature)),
-        coefficient.and_then(|coefficient| named("heat_transfer").check(Kind::HeatTransfer, coefficient)),
+        kept.and_then(|kelvin| temperature(&named("temperature"), kelvin)),
+        given.and_then(|given| named("heat_transfer").check(Kind::HeatTransfer, given)),
     ]
 }
 

@@ -82,7 +82,7 @@ fn what_hits_cannot_carry_is_warned_of() {
         plan.warnings.iter().filter(|text| text.contains(part)).count()
     };
     let hot = |scene: &mut Scene| {
-        let heat = scene.walls.iter_mut().find_map(|wall| wall.heat.as_mut()).unwrap();
+        let heat = scene.walls.iter_mut().find_map(|wall| wall.surface.heat.as_mut()).unwrap();
         heat.transfer = crate::scene::HeatTransfer::Coefficient(1e7);
     };
     let [particles, volume] = [Method::ClosestApproach, Method::ControlVolume];
