@@ -121,6 +121,7 @@ impl Cavity {
     fn closed(&self, wall: &Wall) -> Wall {
         let shape = Shape::Box { min: self.min, max: self.max, thickness: None, holes: Vec::new() };
         let mut closed = Wall { shape, gas: GasSide::Inside, ..wall.clone() };
+        // The outside of the shell is behind the holes.
         closed.parts.retain(|part| part.face != Face::Outside);
         closed
     }
