@@ -91,7 +91,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: &chambers,
         openings: &openings,
     };
-    let mut warnings = warnings(scene, measured, &decided);
+    let mut warnings: Vec<String> =
+        warnings(scene, measured, &decided).into_iter().map(|warning| warning.text).collect();
     warnings.extend(shortened);
     warnings.extend(silent_orifices(scene));
     warnings.extend(facets::warnings(scene, method));
@@ -101,6 +102,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     warnings.extend(motion::warnings(scene, &species, method, measured));
     let mut inventory = Inventory::of(scene, measured, &amounts);
     inventory.doubts.extend(plausible::many_steps(scene, resolution.steps as f64));
+    inventory.doubts.extend(plausible::long_run(scene, measured, method));
     Ok(Plan {
         inventory,
         method,

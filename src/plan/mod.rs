@@ -77,19 +77,26 @@ pub struct Measured {
     pub motion: Option<MeasuredMotion>,
     /// Box, area and volume of each wall of the scene.
     pub walls: Vec<MeasuredWall>,
+    /// Whether gas space that is in no chamber lies beside a chamber without a wall between.
+    pub open_to_empty: bool,
 }
 
 /// The part of the gas space that may be in no chamber, as the inside of holes is.
 const IN_HOLES: f64 = 0.01;
 
 impl Measured {
+    /// m3 of gas space in no chamber.
+    fn empty_space(&self) -> f64 {
+        self.gas_volume - self.chamber_volumes.iter().sum::<f64>()
+    }
+
     /// That all gas space has gas at the start: what flows into empty space no control volume knows, and no forecast.
     ///
     /// # Errors
     /// If chambers leave more of it out than holes have.
     fn no_empty_space(&self, asked: &'static str) -> Result<(), PlanError> {
         let (chambers, gas) = (self.chamber_volumes.iter().sum::<f64>(), self.gas_volume);
-        if chambers < (1.0 - IN_HOLES) * gas {
+        if self.empty_space() > IN_HOLES * gas {
             return Err(PlanError::EmptySpace { asked, chambers, gas });
         }
         Ok(())
@@ -118,6 +125,8 @@ pub struct MeasuredWall {
     /// m3, what it encloses: gas in a cavity, else solid.
     pub volume: f64,
     pub cavity: bool,
+    /// Of a solid: the share of its volume that lies outside of what encloses the gas.
+    pub outside: f64,
 }
 
 /// Where a vent is.

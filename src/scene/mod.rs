@@ -26,6 +26,7 @@ mod validate;
 mod vents;
 mod wall_surface;
 mod walls;
+mod words;
 mod write;
 
 use std::io::Read;

@@ -56,7 +56,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
-        keep(settings::collision_number(&raw.model, &gases, &raw.gas), &mut problems);
+        keep(settings::collision_number(&raw.model, &gases, &raw.gas, units), &mut problems);
     }
 
     match (title, end_time, seed, model, output) {

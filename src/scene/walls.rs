@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::errors::{Problem, list, quote};
+use super::errors::{Problem, list, near_mesh, quote};
 use super::holes::holes;
 use super::numbers::{corners, direction, normalised, point, positive, sides, small_count};
 use super::parts::Parts;
@@ -227,7 +227,12 @@ fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Pat
             Err(_) if path.is_dir() => "which is a folder".to_string(),
             Err(_) => "which does not exist".to_string(),
         };
-        let hint = format!("the path is relative to the folder of the scene file: {} was meant", joined.display());
+        let hint = match near_mesh(&joined) {
+            Some(near) => {
+                format!("did you mean `{near}`? It lies in {}", joined.parent().unwrap_or(base_dir).display())
+            }
+            None => format!("the path is relative to the folder of the scene file: {} was meant", joined.display()),
+        };
         return Err(
             Problem::value(&file.span, format!("{}, {what}", quote(&file.value)), "an existing file").hint(&hint)
         );

@@ -13,7 +13,7 @@ use crate::subdomain::Memory;
 use super::coats::Coats;
 use super::flow_only::{self, Part};
 use super::moving::{Moving, extent};
-use super::outlook::outlook;
+use super::outlook::{is_open_to_empty, outlook};
 use super::uniform::{Known, NoChamber};
 
 pub struct Model {
@@ -242,7 +242,9 @@ pub(super) fn measured(
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     let Narrowest { gap, body } = vessel.narrowest();
+    let empty = vessel.gas_volume() - chamber_volumes.iter().sum::<f64>();
     Measured {
+        open_to_empty: empty > 1e-3 * vessel.gas_volume() && is_open_to_empty(scene, vessel),
         gas_volume: vessel.gas_volume(),
         motion: moving.measured(&chamber_volumes),
         chamber_volumes,
@@ -261,7 +263,8 @@ pub(super) fn measured(
 
 fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {
     let (min, max) = extent(vessel, |of, _| of == index);
-    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity }
+    let outside = vessel.outside_share(index);
+    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity, outside }
 }
 
 /// The chamber that a point of the gas belongs to.

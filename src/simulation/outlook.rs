@@ -76,6 +76,23 @@ fn borders(scene: &Scene, vessel: &Vessel, measured: &Measured) -> Vec<[usize; 2
     open.into_iter().filter(|&(pair, area)| area > OPEN * holes(pair)).map(|(pair, _)| pair).collect()
 }
 
+/// Whether chambers border, over more than the holes of walls, on gas space that is in no chamber.
+pub fn is_open_to_empty(scene: &Scene, vessel: &Vessel) -> bool {
+    let mut open = 0.0;
+    for (index, chamber) in scene.chambers.iter().enumerate() {
+        let Some(region) = &chamber.region else { continue };
+        let lift = 1e-4 * libm::cbrt(region_volume(region));
+        for (point, outward, area) in surface_of(region) {
+            let [inside, outside] = [-lift, lift].map(|distance| (point + distance * outward).to_array());
+            let leaves = chamber_of(scene, vessel, inside) == Some(index) && vessel.is_gas(outside);
+            if leaves && chamber_of(scene, vessel, outside).is_none() {
+                open += area;
+            }
+        }
+    }
+    open > OPEN * vessel.holes.iter().map(|hole| hole.area).sum::<f64>()
+}
+
 /// Points of the surface of a region with the unit normal outwards and the area that each stands for, m2.
 fn surface_of(region: &Region) -> Vec<(DVec3, DVec3, f64)> {
     let count = f64::from(POINTS);
