@@ -10,9 +10,9 @@
 //! The triangles are swept along the axis on which they are shortest; a triangle is compared with those whose boxes meet its
 //! own. What meets in less than [`SHORT`] of the wall's extent is rounding.
 
-use super::Vessel;
 use super::error::{GeometryError, Places};
 use super::sampling::map;
+use super::vessel::{Overlaps, Vessel};
 use glam::DVec3;
 
 /// Over the extent of the wall.
@@ -23,14 +23,6 @@ const BESIDE: f64 = 1e-3;
 const SLACK: f64 = 1e-9;
 /// Over the extent: how far from a plane corners lie in it.
 const FLAT: f64 = 1e-12;
-
-/// Solids of one wall that overlap each other.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Overlaps {
-    /// Pairs of triangles that cross.
-    pub count: usize,
-    pub first: Places,
-}
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {

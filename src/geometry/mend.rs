@@ -12,7 +12,7 @@
 //! What is open then is a leak.
 
 use super::closed::{is_closed, is_flat};
-use super::primitives::WallMesh;
+use super::wall_mesh::{Mended, WallMesh};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -22,19 +22,6 @@ const TOLERANCE: f64 = 1e-6;
 const LAST_PLACES: f64 = 4.0 * f32::EPSILON as f64;
 /// Each splits one edge of a triangle; a triangle has three, and its parts may be split again.
 const MOST_PASSES: usize = 16;
-
-/// What was done to a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mended {
-    /// Corners that became another one.
-    pub welded: usize,
-    /// Triangles without area that were left out.
-    pub flat: usize,
-    /// Edges that were split at corners of their neighbours.
-    pub split: usize,
-    /// m.
-    pub tolerance: f64,
-}
 
 pub(super) fn mend(mesh: &mut WallMesh) {
     let place = |v: u32| mesh.vertices[v as usize];

@@ -1,12 +1,13 @@
 //! Triangle meshes of the walls, where the gas is, its volumes and the triangle grid. All f64 and
 //! deterministic: the same walls give the same bits, whatever the number of threads.
 //!
-//! `Vessel::build` turns the walls of a scene into one checked mesh (`primitives`, `round`, `plate`, `polygon`,
-//! `mesh_file` of `stl`, `obj` and `facet`, `mend`, `closed`, `crossings`) and answers where the gas is (`lines`) and how much of it
+//! `Vessel::build` turns the walls of a scene into one checked mesh (`build` of
+//! `primitives`, `round`, `plate`, `polygon`, `mesh_file` of `stl`, `obj` and `facet`, `mend`, `closed`, `crossings`) and answers where the gas is (`lines`) and how much of it
 //! (`vessel`, `region`, `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
 //! that part the gas near them from them.
 
 mod blocks;
+mod build;
 mod cell_gas;
 mod clearance;
 mod closed;
@@ -26,24 +27,24 @@ mod primitives;
 mod region;
 mod round;
 mod sampling;
+mod soup;
 mod stl;
 mod triangle_grid;
 mod vessel;
+mod wall_mesh;
 
 pub use blocks::block_volumes;
 pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
 pub use clearance::{CLEARANCE_UNIT, Clearance, NO_PLANE, clearances};
 pub use closed::check_closed;
-pub use crossings::Overlaps;
 pub use error::{GeometryError, Places};
 pub use gaps::Narrowest;
 pub use grid::{Grid, GridError};
-pub use mend::Mended;
-pub use primitives::FoundHole;
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};
 pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, TriangleGrid};
-pub use vessel::{Triangle, Vessel, WallInfo};
+pub use vessel::{Overlaps, Triangle, Vessel, WallInfo};
+pub use wall_mesh::{FoundHole, Mended};
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 //! (`g`, all of its line), or an object (`o`) where no group was named in it.
 
 use super::facet::{Fault, triangulated};
-use super::mesh_file::{PartOf, Soup, lines, quoted};
+use super::soup::{PartOf, Soup, lines, quoted};
 use glam::DVec3;
 
 /// First words of the lines of OBJ files that say nothing of where a wall is.
@@ -46,7 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
     let (mut object, mut group) = (None, None);
     // The face that names the vertex farthest ahead: its line, and the vertex.
     let mut ahead: Option<(usize, i64)> = None;
-    for (line, statement) in statements(&super::mesh_file::decoded(bytes)) {
+    for (line, statement) in statements(&super::soup::decoded(bytes)) {
         let mut words = statement.split_whitespace();
         let wrong = |allowed: &str| format!("line {line}: found `{}`, allowed: {allowed}", quoted(&statement));
         match words.next() {

@@ -2,7 +2,7 @@
 
 use super::GeometryError;
 use super::polygon::{area, convex_overlap, perimeter, triangulate};
-use super::primitives::{FoundHole, WallMesh};
+use super::wall_mesh::{FoundHole, WallMesh};
 use crate::scene::{Face, Hole, Outline};
 use glam::{DVec2, DVec3};
 

@@ -2,7 +2,7 @@
 //! that facets lie on both sides of it. With a = 2 pi / n, a prism of n facets has the radius R sqrt(a / sin a) to its corners; a
 //! sphere the cube root of its volume over that of the polyhedron inscribed in it.
 
-use super::primitives::WallMesh;
+use super::wall_mesh::WallMesh;
 use crate::scene::{Face, Shape};
 use glam::DVec3;
 use std::collections::BTreeMap;

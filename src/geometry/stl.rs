@@ -5,7 +5,7 @@
 //! and blank lines anywhere. Normals are not looked at: which side a triangle faces is found from the surface. Lines
 //! between facets that say something else (`color ...`, comments) are passed over; within a facet they are errors.
 
-use super::mesh_file::{PartOf, Soup, quoted};
+use super::soup::{PartOf, Soup, quoted};
 
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
@@ -15,7 +15,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
     if is_binary(bytes) {
         Ok(read_binary(bytes))
     } else if is_text(bytes) {
-        read_text(&super::mesh_file::decoded(bytes))
+        read_text(&super::soup::decoded(bytes))
     } else {
         Err(no_stl(bytes))
     }
@@ -75,7 +75,7 @@ fn read_text(text: &str) -> Result<Soup, String> {
     let mut part: PartOf = None;
     let mut facet: Option<Facet> = None;
     let mut ended = false;
-    for (index, text) in super::mesh_file::lines(text).enumerate() {
+    for (index, text) in super::soup::lines(text).enumerate() {
         let line = index + 1;
         let wrong = |allowed: &str| format!("line {line}: found `{}`, allowed: {allowed}", quoted(text.trim()));
         let mut rest = text;

@@ -14,22 +14,19 @@
 //! bounded and its volume positive.
 
 use super::GeometryError;
-use super::closed::{area, check_closed, signed_volume};
-use super::crossings::Overlaps;
 use super::error::Places;
 use super::lines::{Crossing, LineIndex, intervals};
-use super::mend::Mended;
-use super::primitives::{FoundHole, mesh_of};
-use super::sampling::{Line, map, r2, sum};
-use crate::scene::{Face, GasSide, Shape, Wall};
+use super::sampling::{Line, r2, sum};
+use super::wall_mesh::{FoundHole, Mended};
+use crate::scene::Face;
 use glam::DVec3;
 
 /// Lines that look for overlaps, and those that measure them.
-const SEARCH_LINES: u64 = 1 << 14;
+pub(super) const SEARCH_LINES: u64 = 1 << 14;
 pub(super) const VOLUME_LINES: u64 = 1 << 18;
 
 /// Volumes and lengths below this fraction of the vessel's are rounding.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// Of the gas: where solids overlap by more, the gas is summed and not the overlap.
 const LITTLE: f64 = 0.01;
 /// Lines that measure how much of a solid lies outside of the cavity.
@@ -66,6 +63,14 @@ pub struct Triangle {
     pub face: Option<Face>,
 }
 
+/// Solids of one wall that overlap each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overlaps {
+    /// Pairs of triangles that cross.
+    pub count: usize,
+    pub first: Places,
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct WallInfo {
     pub name: String,
@@ -82,68 +87,25 @@ pub struct WallInfo {
 }
 
 impl Vessel {
-    /// The mesh of all walls. Mesh files are read here.
-    pub fn build(walls: &[Wall]) -> Result<Vessel, GeometryError> {
-        let mut vertices: Vec<DVec3> = Vec::new();
-        let mut triangles: Vec<Triangle> = Vec::new();
-        let (mut holes, mut infos) = (Vec::new(), Vec::new());
-        for (index, wall) in walls.iter().enumerate() {
-            let subject = subject(wall);
-            let cavity = is_cavity(wall, &subject)?;
-            let mut mesh = mesh_of(&wall.shape, index as u32, &subject)?;
-            check_closed(&subject, &mesh.vertices, &mesh.triangles)?;
-            let volume = signed_volume(&mesh.vertices, &mesh.triangles);
-            let (min, max) = bounds_of(&mesh.vertices);
-            let size = (max - min).max_element();
-            if volume.is_nan() || volume.abs() <= ROUNDING * size * size * size {
-                return Err(GeometryError::NoVolume { wall: subject });
-            }
-            if (volume < 0.0) != cavity {
-                mesh.flip();
-            }
-            infos.push(WallInfo {
-                name: wall.name.clone(),
-                area: area(&mesh.vertices, &mesh.triangles),
-                volume: volume.abs(),
-                cavity,
-                mended: mesh.mended,
-                overlaps: None,
-            });
-            let first = vertices.len() as u32;
-            let count = triangles.len() + mesh.triangles.len() + vertices.len() + mesh.vertices.len();
-            if u32::try_from(count).is_err() {
-                return Err(GeometryError::TooMany { count });
-            }
-            vertices.extend(&mesh.vertices);
-            triangles.extend(mesh.triangles.iter().zip(&mesh.faces).map(|(t, &face)| Triangle {
-                vertices: t.map(|v| v + first),
-                wall: index as u32,
-                face,
-            }));
-            holes.append(&mut mesh.holes);
-        }
-        if !infos.iter().any(|w| w.cavity) {
-            return Err(GeometryError::Unbounded);
-        }
-        let (min, max) = bounds_of(&vertices);
-        let lines = LineIndex::new(&vertices, triangles.iter().map(|t| (t.vertices, t.wall)), min, max);
-        let mut vessel = Vessel {
+    /// Walls that are meshed: where the gas is, but not how much.
+    pub(super) fn unmeasured(
+        vertices: &[DVec3],
+        triangles: Vec<Triangle>,
+        holes: Vec<FoundHole>,
+        walls: Vec<WallInfo>,
+    ) -> Vessel {
+        let (min, max) = bounds_of(vertices);
+        Vessel {
+            lines: LineIndex::new(vertices, triangles.iter().map(|t| (t.vertices, t.wall)), min, max),
             vertices: vertices.iter().map(|v| v.to_array()).collect(),
             triangles,
             holes,
-            cavities: infos.iter().filter(|w| w.cavity).count() as i32,
-            walls: infos,
+            cavities: walls.iter().filter(|w| w.cavity).count() as i32,
+            walls,
             bounds: (min.to_array(), max.to_array()),
-            lines,
             gas_volume: 0.0,
             overlap: 0.0,
-        };
-        vessel.find_inside_out(walls)?;
-        for (index, wall) in walls.iter().enumerate().filter(|(_, wall)| matches!(wall.shape, Shape::Mesh { .. })) {
-            vessel.walls[index].overlaps = vessel.find_crossings(index, &subject(wall))?;
         }
-        vessel.measure()?;
-        Ok(vessel)
     }
 
     /// The same walls, each moved by its vector, m; where the gas is, but not how much.
@@ -226,7 +188,7 @@ impl Vessel {
     }
 
     /// All crossings of a line, sorted by x.
-    fn crossings(&self, y: f64, z: f64, out: &mut Vec<Crossing>) {
+    pub(super) fn crossings(&self, y: f64, z: f64, out: &mut Vec<Crossing>) {
         out.clear();
         self.lines.cross(y, z, |c| out.push(c));
         out.sort_by(|a, b| a.x.total_cmp(&b.x).then((a.wall, a.sign).cmp(&(b.wall, b.sign))));
@@ -243,38 +205,14 @@ impl Vessel {
         self.overlap > 0.0
     }
 
-    /// A wall's own number of solids is nowhere negative, and nowhere above one for a cavity. (Parts of a solid
-    /// may overlap: their union is the solid.)
-    fn find_inside_out(&self, walls: &[Wall]) -> Result<(), GeometryError> {
-        let (min, max) = self.bounds;
-        let tolerance = 1e-9 * (max[0] - min[0]);
-        let outside: Vec<i32> = self.walls.iter().map(|w| i32::from(w.cavity)).collect();
-        let found = map(SEARCH_LINES as usize, |i, line| {
-            let [y, z] = self.place(i as u64);
-            self.crossings(y, z, &mut line.crossings);
-            let mut depth = outside.clone();
-            line.crossings.windows(2).find_map(|pair| {
-                depth[pair[0].wall as usize] -= pair[0].sign;
-                let wall = (0..depth.len()).find(|&w| depth[w] < 0 || depth[w] > 1 && self.walls[w].cavity)?;
-                (pair[1].x - pair[0].x > tolerance).then(|| (wall, DVec3::new((pair[0].x + pair[1].x) / 2.0, y, z)))
-            })
-        });
-        match found.into_iter().flatten().next() {
-            Some((wall, place)) => {
-                Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: Places::one(place) })
-            }
-            None => Ok(()),
-        }
-    }
-
     /// Line `i` of the sequence over the bounds: (y, z).
-    fn place(&self, i: u64) -> [f64; 2] {
+    pub(super) fn place(&self, i: u64) -> [f64; 2] {
         let (min, max) = self.bounds;
         let [u, v] = r2(i);
         [min[1] + u * (max[1] - min[1]), min[2] + v * (max[2] - min[2])]
     }
 
-    fn measure(&mut self) -> Result<(), GeometryError> {
+    pub(super) fn measure(&mut self) -> Result<(), GeometryError> {
         let of_walls: Vec<Extent> = (0..self.walls.len()).map(|wall| self.extent_of(wall)).collect();
         let shared = self.walls.iter().zip(&of_walls).filter(|(wall, _)| wall.cavity).map(|(_, extent)| *extent);
         let bounds = (DVec3::from(self.bounds.0), DVec3::from(self.bounds.1));
@@ -409,28 +347,7 @@ fn volume_of(extent: &Extent) -> f64 {
     (extent.1 - extent.0).element_product()
 }
 
-/// How errors name a wall.
-fn subject(wall: &Wall) -> String {
-    match &wall.shape {
-        Shape::Mesh { path, .. } => format!("wall `{}` ({})", wall.name, path.display()),
-        _ => format!("wall `{}`", wall.name),
-    }
-}
-
-/// Is the solid outside the surface? Shapes with a thickness are solids; mesh files may be either.
-fn is_cavity(wall: &Wall, subject: &str) -> Result<bool, GeometryError> {
-    let thick = matches!(wall.shape, Shape::Box { thickness: Some(_), .. } | Shape::Plane { .. });
-    let (found, allowed) = match (wall.gas, thick) {
-        (GasSide::Inside, false) => return Ok(true),
-        (GasSide::Outside, _) | (GasSide::Both, true) => return Ok(false),
-        (GasSide::Both, false) if matches!(wall.shape, Shape::Mesh { .. }) => return Ok(false),
-        (GasSide::Both, false) => ("both", "inside or outside"),
-        (GasSide::Inside, true) => ("inside", "both"),
-    };
-    Err(GeometryError::Side { wall: subject.into(), found, allowed })
-}
-
-fn bounds_of(vertices: &[DVec3]) -> (DVec3, DVec3) {
+pub(super) fn bounds_of(vertices: &[DVec3]) -> (DVec3, DVec3) {
     let far = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
     vertices.iter().fold(far, |(min, max), v| (min.min(*v), max.max(*v)))
 }
