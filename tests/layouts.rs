@@ -4,11 +4,11 @@
 use std::collections::BTreeSet;
 use std::mem::offset_of;
 
-use corpuscle::gpu::{KERNELS, KernelSource};
+use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
     CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
+    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 

@@ -4,8 +4,9 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::kernel::Kept;
-use super::{Form, GpuError};
+use super::GpuError;
+use super::pipeline_cache::PipelineCache;
+use super::source::Form;
 
 /// How long a submission may take before a GPU counts as hung, and before a CPU adapter does, which is slow
 /// but does not hang.
@@ -97,7 +98,7 @@ pub struct Device {
     timestamps: bool,
     form: Form,
     trouble: Arc<Mutex<Option<String>>>,
-    kept: Kept,
+    pipeline_cache: PipelineCache,
 }
 
 impl Device {
@@ -158,7 +159,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, form, trouble, kept: Kept::default() })
+        Ok(Device { device, queue, adapter, timestamps, form, trouble, pipeline_cache: PipelineCache::default() })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -188,8 +189,8 @@ impl Device {
         &self.device
     }
 
-    pub(super) fn kept(&self) -> &Kept {
-        &self.kept
+    pub(super) fn pipeline_cache(&self) -> &PipelineCache {
+        &self.pipeline_cache
     }
 
     pub fn queue(&self) -> &wgpu::Queue {

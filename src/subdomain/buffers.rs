@@ -3,22 +3,17 @@
 use crate::gpu::{Device, Form, GpuError};
 
 use super::cell_table::CellTable;
-use super::constants::{Features, WORKGROUP};
+use super::constants::Features;
 use super::counters;
 use super::layout::{
     GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
     GpuWeights, GpuZone,
 };
 use super::registry;
+use super::sizes::{CHUNK, FEW_STRETCHES, MOTION_ENTRIES, STRETCH};
 use super::state::share_table;
 use super::walls::Walls;
 
-/// Cells per thread of the scan.
-pub const CHUNK: u64 = 64;
-/// Those of a workgroup, of a thread each.
-pub const STRETCH: u64 = CHUNK * WORKGROUP as u64;
-/// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
-pub const FEW_STRETCHES: u64 = 64;
 /// Whether so many bins are few stretches.
 pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
@@ -28,13 +23,6 @@ pub fn few_stretches(bins: u64) -> bool {
 pub fn choose_empties(form: Form, bins: u64) -> bool {
     form == Form::Gpu || few_stretches(bins)
 }
-/// Cells that a thread empties, at most (`shaders/reset.wgsl`).
-pub const EMPTIED_CELLS: u64 = 16;
-/// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
-pub const SURFACE_COPIES: usize = 16;
-/// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
-pub const MOTION_ENTRIES: usize = 128;
-
 /// Words of a particle's record, its flight and the first entries of its neighbour list (`shaders/shared/neighbour_list.wgsl`): the room
 /// of a particle.
 pub const RECORD: u64 = 8;
@@ -116,6 +104,16 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
+/// Entries of the tables whose sizes go with the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TableRoom {
+    pub coats: u64,
+    pub vents: u64,
+    pub parted: u64,
+    pub moved: u64,
+    pub shares: u64,
+}
+
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
@@ -149,7 +147,7 @@ impl FixedBuffers {
         device: &Device,
         words: TallyWords,
         step_slots: u64,
-        [coats, vents, parted, moved, shares]: [u64; 5],
+        tables: TableRoom,
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
@@ -162,12 +160,12 @@ impl FixedBuffers {
             rechoose_dispatches: device.indirect("rechoose_dispatches", registry::LISTS.into())?,
             asked_dispatches: device.indirect("asked_dispatches", registry::LISTS.into())?,
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
-            coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
-            vents: device.storage::<GpuVent>("vents", vents.max(1))?,
+            coats: device.storage::<GpuCoat>("coats", tables.coats.max(1))?,
+            vents: device.storage::<GpuVent>("vents", tables.vents.max(1))?,
             motions: device.uniform("motions", (MOTION_ENTRIES * size_of::<GpuMotion>()) as u64)?,
-            parted: device.storage::<u32>("parted", parted)?,
-            moved: device.storage::<u32>("moved", moved)?,
-            shares: device.storage::<u32>("shares", shares.max(1))?,
+            parted: device.storage::<u32>("parted", tables.parted)?,
+            moved: device.storage::<u32>("moved", tables.moved)?,
+            shares: device.storage::<u32>("shares", tables.shares.max(1))?,
         })
     }
 }

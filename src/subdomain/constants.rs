@@ -6,23 +6,15 @@ use crate::gpu::{Device, Form};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::{CHUNK, FEW_STRETCHES, SURFACE_COPIES};
 use super::nearness;
 use super::registry::{COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
+use super::sizes::{CHUNK, FEW_STRETCHES, SURFACE_COPIES, WORKGROUP};
 use super::walls::Walls;
 
 const MOST_TALLY_LOOPS: u32 = 32;
 /// So many workgroups give a GPU enough to do.
 const FILLING_GROUPS: u64 = 1024;
-/// Threads of a workgroup. Part of the plan's bits: a driver may contract differently for another size.
-pub const WORKGROUP: u32 = 64;
-/// Particles of a cell of the method `cell` that a thread puts in order by itself, at most: as `shaders/shared/members.wgsl`
-/// has it, whose sorting network is made for so many (held against it in `tests/layouts.rs`).
-pub const MEMBERS: u32 = 12;
-/// And of more, slots that one thread puts in order.
-pub const CROWD: u32 = 64;
-
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
 const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
@@ -68,12 +60,12 @@ pub fn merges(plan: &Plan, form: Form) -> bool {
     form == Form::Gpu && plan.particles <= MOST_MERGED
 }
 
-/// The most particle-steps of a run on a software device whose kernels read [`NUMBERS`]: up to here they save more in compilation than they cost in steps
+/// The most particle-steps of a run on a software device with [`RUNTIME_CONSTANTS`]: up to here they save more in compilation than they cost in steps
 /// (`docs/performance.md`).
-pub const MOST_READ: f64 = 1e8;
+pub const MOST_WITH_RUNTIME_CONSTANTS: f64 = 1e8;
 
-/// Constants that are numbers of a scene, which kernels can read. (What branches ask of constants alone is compiled in.)
-const NUMBERS: [&str; 29] = [
+/// Constants that are numbers of a scene, which kernels can read from a uniform. (What branches ask of constants alone is compiled in.)
+const RUNTIME_CONSTANTS: [&str; 29] = [
     "BLOCKS",
     "BLOCKS_X",
     "BLOCKS_Y",
@@ -105,15 +97,15 @@ const NUMBERS: [&str; 29] = [
     "WORKS_AT",
 ];
 
-/// The constants that the kernels of a plan read.
-pub fn numbers_read(device: &Device, plan: &Plan) -> &'static [&'static str] {
-    let is_short = plan.particles as f64 * plan.estimated_steps <= MOST_READ;
-    if is_short { readable_numbers(device) } else { &[] }
+/// The runtime constants of the kernels of a plan.
+pub fn runtime_constants_of(device: &Device, plan: &Plan) -> &'static [&'static str] {
+    let is_short = plan.particles as f64 * plan.estimated_steps <= MOST_WITH_RUNTIME_CONSTANTS;
+    if is_short { runtime_constants(device) } else { &[] }
 }
 
-/// Those that the kernels of short runs read. A GPU's compile all: it may round otherwise where it knows a number.
-pub fn readable_numbers(device: &Device) -> &'static [&'static str] {
-    if device.adapter().is_cpu() { &NUMBERS } else { &[] }
+/// Those of the kernels of short runs. A GPU's have all compiled in: it may round otherwise where it knows a number.
+pub fn runtime_constants(device: &Device) -> &'static [&'static str] {
+    if device.adapter().is_cpu() { &RUNTIME_CONSTANTS } else { &[] }
 }
 
 /// What walls have tallies for.

@@ -1,7 +1,7 @@
 //! The counters of the registry, read once per step interval.
 
-use super::constants::WORKGROUP;
 use super::registry::*;
+use super::sizes::WORKGROUP;
 
 /// Words that are read: all of them.
 pub const WORDS: usize = COUNTER_WORDS as usize;

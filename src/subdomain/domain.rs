@@ -3,13 +3,14 @@
 use crate::gpu::{Device, Form, GpuError};
 use crate::plan::Plan;
 
-use super::buffers::{DomainBuffers, SURFACE_COPIES, TallyWords};
+use super::buffers::{DomainBuffers, TallyWords};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, merges, numbers_read, tally_loops};
+use super::constants::{Features, Patches, block_counts, constants, merges, runtime_constants_of, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};
 use super::scales::Scales;
+use super::sizes::SURFACE_COPIES;
 use super::state::{gas_table, mode_table};
 use super::walls::{Drawn, Walls};
 
@@ -46,7 +47,7 @@ pub struct Domain {
     pub(super) plan: Plan,
     pub(super) features: Features,
     pub(super) constants: Vec<(&'static str, f64)>,
-    reads_numbers: bool,
+    has_runtime_constants: bool,
     pub(super) compiled: Compiled,
     /// Of the kernels.
     pub(super) form: Form,
@@ -85,12 +86,12 @@ impl Domain {
         };
         let tally_loops = tally_loops(device, plan);
         let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);
-        let numbers = if input.kernels == KernelChoice::Fixed { &[] } else { numbers_read(device, plan) };
+        let runtime = if input.kernels == KernelChoice::Fixed { &[] } else { runtime_constants_of(device, plan) };
         Ok(Domain {
             plan: plan.clone(),
             features,
-            reads_numbers: !numbers.is_empty(),
-            compiled: Compiled::new(device, features, &constants, numbers)?,
+            has_runtime_constants: !runtime.is_empty(),
+            compiled: Compiled::new(device, features, &constants, runtime)?,
             form: device.form(),
             tally_loops,
             constants,
@@ -117,8 +118,13 @@ impl Domain {
         self.features
     }
 
-    /// Whether its kernels read the numbers of the scene.
-    pub fn reads_numbers(&self) -> bool {
-        self.reads_numbers
+    /// Whether its kernels read numbers of the scene from a uniform.
+    pub fn has_runtime_constants(&self) -> bool {
+        self.has_runtime_constants
+    }
+
+    /// The most particles that room is made for ahead of need: a device alone has at most all that the plan has.
+    pub(super) fn most_particles(&self) -> u64 {
+        if self.features.halo { u64::MAX } else { self.plan.particles }
     }
 }

@@ -4,6 +4,7 @@ use crate::gpu::{BoundKernel, Constants, Device, GpuError, Kernel};
 
 use super::buffers::Buffers;
 use super::constants::Features;
+use super::shaders::shader;
 
 /// What a scene needs is there; what it lacks is not compiled.
 pub struct Kernels<K> {
@@ -189,17 +190,17 @@ fn second(name: &str) -> Option<&'static Second> {
 pub struct Compiled(Vec<(&'static str, Kernel)>);
 
 impl Compiled {
-    /// `numbers` are the constants that are read.
+    /// `runtime` names the runtime constants.
     pub fn new(
         device: &Device,
         features: Features,
         constants: &Constants,
-        numbers: &[&str],
+        runtime: &[&str],
     ) -> Result<Compiled, GpuError> {
         let mut compiled = Vec::new();
         Kernels::build(features, |name| {
             if second(name).is_none() {
-                compiled.push((name, Kernel::reading(device, name, constants, numbers)?));
+                compiled.push((name, Kernel::with_runtime_constants(device, shader(name)?, constants, runtime)?));
             }
             Ok::<(), GpuError>(())
         })?;

@@ -2,11 +2,10 @@
 
 use crate::gpu::{BoundKernel, Recording};
 
-use super::Subdomain;
-use super::buffers::STRETCH;
-use super::constants::WORKGROUP;
+use super::device_gas::Subdomain;
 use super::kernels::{CollisionKernels, Settle};
 use super::registry::{LIST_ASKED, LIST_PAIRS, LIST_RECHOOSE};
+use super::sizes::{STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
 
 impl Subdomain {

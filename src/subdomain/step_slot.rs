@@ -1,5 +1,8 @@
 //! An interval of steps as its dispatches see it: its steps, who enters in them, and what the host tells of walls and gas.
 
+use crate::plan::Plan;
+
+use super::constants::Features;
 use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuVent};
 
 /// One step of an interval, as its dispatches see it.
@@ -95,4 +98,10 @@ impl StepSlot {
     pub fn arrived(&self) -> u32 {
         self.arrivals
     }
+}
+
+/// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
+/// the ghosts that were asked.
+pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
+    (plan.rounds + 1) * if features.halo { 2 } else { 1 }
 }

@@ -199,7 +199,7 @@ fn numbers_read_and_compiled_in_give_the_same_bits() {
             let simulation = Simulation::among(&model, &device, &setup, &alone, Options::default());
             let outcome = simulation.and_then(|simulation| simulation.run(&mut witness)).expect("a run");
             let run = Run { rows: witness.rows, snapshots: witness.snapshots, outcome };
-            (setup.domain.reads_numbers(), Bits::of(&run))
+            (setup.domain.has_runtime_constants(), Bits::of(&run))
         });
         assert_eq!((read.0, fixed.0), (device.adapter().is_cpu(), false), "{} particles", model.plan.particles);
         assert_same("numbers compiled in", &read.1, &fixed.1);

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::gpu::KERNELS;
+use corpuscle::subdomain::KERNELS;
 use naga::{AddressSpace, Block, Expression, Function, Handle, Module, Statement, TypeInner};
 
 /// Members of the uniform `step` that differ from step to step of an interval. (`round` and what goes with it take as many values as a plan has rounds.)

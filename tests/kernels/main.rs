@@ -82,7 +82,7 @@ fn every_kernel_has_its_test() {
         "tally",
         "weigh",
     ];
-    let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
+    let known: Vec<&str> = corpuscle::subdomain::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);
 }
 
@@ -94,6 +94,6 @@ fn only_kernels_that_no_rounding_matters_to_know_whether_a_device_is_alone() {
     // Beside the declaration.
     let asks = |source: &str| source.matches("HALO").count() > 1;
     let found: Vec<&str> =
-        corpuscle::gpu::KERNELS.iter().filter(|kernel| asks(kernel.source)).map(|kernel| kernel.name).collect();
+        corpuscle::subdomain::KERNELS.iter().filter(|kernel| asks(kernel.source)).map(|kernel| kernel.name).collect();
     assert_eq!(found, ["match_pairs", "neighbours"]);
 }

@@ -57,7 +57,7 @@ impl Probe {
             "outputs" => Some(&outputs),
             _ => Some(&counters),
         };
-        let kernel = Kernel::of(device, source, &self.constants).expect("a kernel");
+        let kernel = Kernel::new(device, source, &self.constants).expect("a kernel");
         let bound = kernel.bind(device, buffers).expect("its buffers");
         let mut recording = Recording::new(device);
         bound.dispatch(&mut recording.phase("probe"), 0, groups);

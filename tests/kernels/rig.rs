@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
-use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
+use corpuscle::gpu::{Form, Kernel, Recording};
 use corpuscle::scene::{GasSide, Shape, SurfaceModel, Wall};
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, readable_numbers, registry, share_table,
+    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, registry, runtime_constants, shader,
+    share_table,
 };
 
 pub use crate::devices::device;
@@ -381,10 +382,10 @@ impl Rig {
 
     /// Runs a kernel over workgroups.
     pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
-        let source = KERNELS.iter().find(|source| source.name == kernel).expect("a shader of this name");
+        let source = shader(kernel).expect("a shader of this name");
         // As in a run of so few particles: most tests then have the same kernels, each compiled once.
-        let numbers = readable_numbers(device());
-        let compiled = Kernel::in_form(device(), self.form, source, &self.constants, numbers).expect("a kernel");
+        let runtime = runtime_constants(device());
+        let compiled = Kernel::in_form(device(), self.form, source, &self.constants, runtime).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
         let mut recording = Recording::new(device());
         bound.dispatch(&mut recording.phase(source.phases.first().unwrap_or(&"test")), 0, groups);

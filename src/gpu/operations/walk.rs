@@ -9,7 +9,8 @@ use wgpu::naga::{
     Override, ScalarKind, Statement, TypeInner, UnaryOperator, VectorSize,
 };
 
-use super::{Constants, Item, Operations, Stretch};
+use super::stretch::{Item, Operations, Stretch};
+use crate::gpu::source::Constants;
 
 /// A kernel with all of its functions.
 pub struct Whole<'a> {

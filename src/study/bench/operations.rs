@@ -17,9 +17,9 @@
 //! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
 //! operations over time are less than what is really done.
 
-use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
+use crate::gpu::{Constants, GpuError, Operations, Stretch};
 use crate::scene::Method;
-use crate::subdomain::CROWD;
+use crate::subdomain::{CROWD, KERNELS};
 
 use super::work::{CHUNK, Work};
 
