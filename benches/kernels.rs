@@ -338,7 +338,7 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
-        forms: [None; 2],
+        variants: [None; 2],
     }))
 }
 

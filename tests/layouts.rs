@@ -7,8 +7,8 @@ use std::mem::offset_of;
 use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
-    CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
+    CROWD, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
+    GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -73,11 +73,11 @@ fn twins() -> Vec<Twin> {
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
-        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, motion),
+        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
         twin!(
             "Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, drawn_low, pad3, drawn_size, pad4
         ),
-        twin!("Coat", GpuCoat, thermal, accommodation, friction, first_vent, end_vent),
+        twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
@@ -109,7 +109,7 @@ fn differences(module: &Module, twin: &Twin) -> Option<Vec<String>> {
 
 fn modules() -> Vec<(&'static str, Module)> {
     let parse = |source| naga::front::wgsl::parse_str(source).expect("the build has parsed it");
-    let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.forms[0], kernel.forms[1]];
+    let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.variants[0], kernel.variants[1]];
     KERNELS
         .iter()
         .flat_map(|kernel| sources(kernel).into_iter().flatten().map(|source| (kernel.name, parse(source))))
@@ -218,7 +218,7 @@ fn constants_of_kernels_are_those_of_the_host() {
     }
 }
 
-/// In their form for software devices kernels count on it.
+/// In their variant for software devices kernels count on it.
 #[test]
 fn workgroups_have_whole_subgroups() {
     assert!(corpuscle::subdomain::WORKGROUP.is_multiple_of(corpuscle::gpu::WORKGROUP_DIVISOR));

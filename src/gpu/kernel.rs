@@ -5,7 +5,7 @@
 
 use super::pipeline_cache::{Compiled, Made};
 use super::runtime_constants::RuntimeConstants;
-use super::source::{Access, Binding, Constants, Form, KernelSource};
+use super::source::{Access, Binding, Constants, KernelSource, KernelVariant};
 use super::{Device, GpuError};
 
 pub struct Kernel {
@@ -48,22 +48,22 @@ impl Kernel {
         constants: &Constants,
         runtime: &[&str],
     ) -> Result<Kernel, GpuError> {
-        Kernel::in_form(device, device.form(), source, constants, runtime)
+        Kernel::in_variant(device, device.variant(), source, constants, runtime)
     }
 
-    /// Compiles it in a form that the device need not take, but must be able to run; `runtime` names its runtime constants.
+    /// Compiles it in a variant that the device need not take, but must be able to run; `runtime` names its runtime constants.
     ///
     /// # Errors
     /// As [`Kernel::with_runtime_constants`].
-    pub fn in_form(
+    pub fn in_variant(
         device: &Device,
-        form: Form,
+        variant: KernelVariant,
         source: &'static KernelSource,
         constants: &Constants,
         runtime: &[&str],
     ) -> Result<Kernel, GpuError> {
         let refused = |reason: String| GpuError::Kernel { kernel: source.name.into(), reason };
-        let mut made = Made { source: source.text(form), taken: Vec::new(), runtime: Vec::new() };
+        let mut made = Made { source: source.text(variant), taken: Vec::new(), runtime: Vec::new() };
         for (constant, needed) in source.overrides {
             match constants.iter().find(|(given, _)| given == constant) {
                 Some(_) if runtime.contains(constant) => made.runtime.push(constant),
@@ -255,7 +255,7 @@ mod tests {
         let device = Device::open(None).expect("a device");
         let after = |edge: f64, loops: f64, runtime: &[&str]| {
             let constants = [("EDGE", edge), ("LOOPS", loops)];
-            Kernel::in_form(&device, Form::Plain, &PROBE, &constants, runtime).expect("a kernel");
+            Kernel::in_variant(&device, KernelVariant::Plain, &PROBE, &constants, runtime).expect("a kernel");
             device.pipeline_cache().len()
         };
         assert_eq!(after(0.1, 1.0, &[]), 0, "what is made for one scene serves no other");

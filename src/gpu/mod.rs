@@ -14,7 +14,7 @@ pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
 pub use kernel::{BoundKernel, Kernel, Pass, fold};
 pub use operations::{Operations, Stretch};
 pub use runtime_constants::RuntimeConstants;
-pub use source::{Access, Binding, Constants, Form, KernelSource};
+pub use source::{Access, Binding, Constants, KernelSource, KernelVariant};
 pub use timer::{PhaseTimer, Recording};
 
 /// Trouble with the device: exit code 3.

@@ -2,7 +2,7 @@
 //!
 //! Each addition, multiplication, division, comparison, shift, logical operation, conversion, selection, root or other function of a number
 //! is one operation, of a vector one for each component; a scalar product of n components is 2 n - 1, a cross product 9, a
-//! fused multiply-add 2, an atomic 1. Of several forms of a kernel it is the plain one. What is made of constants alone is none, nor is moving, packing, or reading and writing with the addresses that
+//! fused multiply-add 2, an atomic 1. Of several variants of a kernel it is the plain one. What is made of constants alone is none, nor is moving, packing, or reading and writing with the addresses that
 //! the source does not spell out, nor a change of sign. Divisions and functions take a device longer than the one operation that they count.
 //!
 //! What a kernel is compiled without is not counted, both sides of `&&` and `||` are. What stands in a branch or in a loop is a [`Stretch`] of its own:
@@ -16,7 +16,7 @@ use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::GpuError;
 use super::source::{Constants, KernelSource};
-use walk::Whole;
+use walk::WholeKernel;
 
 pub use stretch::{Operations, Stretch};
 
@@ -32,7 +32,7 @@ impl Stretch {
         let info = checked.map_err(|error| refused(error.to_string()))?;
         let place = module.entry_points.iter().position(|entry| entry.name == kernel.entry_point);
         let place = place.ok_or_else(|| refused("no entry point".into()))?;
-        let whole = Whole { module: &module, info: &info, constants, source: kernel.source };
+        let whole = WholeKernel { module: &module, info: &info, constants, source: kernel.source };
         Ok(whole.function(&module.entry_points[place].function, info.get_entry_point(place)))
     }
 }

@@ -30,8 +30,8 @@ pub struct KernelSource {
     /// Name, and whether a value must be given.
     pub overrides: &'static [(&'static str, bool)],
     pub source: &'static str,
-    /// The same in the forms behind [`Form::Plain`], where they are others.
-    pub forms: [Option<&'static str>; 2],
+    /// The same in the variants behind [`KernelVariant::Plain`], where they are others.
+    pub variants: [Option<&'static str>; 2],
 }
 
 impl KernelSource {
@@ -45,23 +45,23 @@ impl KernelSource {
             bindings: &[],
             overrides: &[],
             source,
-            forms: [None; 2],
+            variants: [None; 2],
         }
     }
 
-    pub fn text(&self, form: Form) -> &'static str {
-        let other = match form {
-            Form::Plain => None,
-            Form::Software => self.forms[0],
-            Form::Gpu => self.forms[1],
+    pub fn text(&self, variant: KernelVariant) -> &'static str {
+        let other = match variant {
+            KernelVariant::Plain => None,
+            KernelVariant::Software => self.variants[0],
+            KernelVariant::Gpu => self.variants[1],
         };
         other.unwrap_or(self.source)
     }
 }
 
-/// The forms of kernels, which all give the same to the last bit where a driver rounds alike in each, as software devices do. A run has one.
+/// The variants of kernels, which all give the same to the last bit where a driver rounds alike in each, as software devices do. A run has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub enum KernelVariant {
     /// For any device.
     Plain,
     /// For a software device whose subgroups are full (`shaders/shared/*.software.wgsl`).
@@ -70,13 +70,13 @@ pub enum Form {
     Gpu,
 }
 
-impl Form {
+impl KernelVariant {
     /// What a bench calls it.
     pub fn name(self) -> &'static str {
         match self {
-            Form::Plain => "plain",
-            Form::Software => "software",
-            Form::Gpu => "gpu",
+            KernelVariant::Plain => "plain",
+            KernelVariant::Software => "software",
+            KernelVariant::Gpu => "gpu",
         }
     }
 }

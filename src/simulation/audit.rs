@@ -169,7 +169,7 @@ impl Account {
     /// The energy that walls took, also as work, and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
     /// over them.
     fn lost(&self, tallies: &Tallies) -> (f64, f64) {
-        let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
+        let coats = tallies.surface_models.iter().map(|coat| (coat.energy, coat.tallied));
         let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
         let (energy, tallied) = coats
             .chain(vents)

@@ -265,7 +265,7 @@ impl Averages {
     }
 
     fn add_losses(&mut self, tallies: &Tallies, wanted: &[Wanted]) {
-        for (heat, coat) in self.heat.iter_mut().zip(&tallies.coats) {
+        for (heat, coat) in self.heat.iter_mut().zip(&tallies.surface_models) {
             for total in heat {
                 *total += i128::from(coat.energy);
             }

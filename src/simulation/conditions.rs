@@ -14,7 +14,7 @@ use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer};
-use crate::subdomain::{GpuCoat, GpuVent, Scales, Tables, Tallies, ZoneSum};
+use crate::subdomain::{GpuSurfaceModel, GpuVent, Scales, Tables, Tallies, ZoneSum};
 
 use super::model::Model;
 use super::run_state::StateError;
@@ -274,7 +274,7 @@ impl<'a> Conditions<'a> {
                     self.state.most_asked[index] = self.state.most_asked[index].max(share);
                 }
             }
-            tables.coats.push(GpuCoat {
+            tables.surface_models.push(GpuSurfaceModel {
                 thermal: thermal as f32,
                 accommodation: share.min(1.0) as f32,
                 friction: surface.friction as f32,
@@ -361,7 +361,7 @@ mod tests {
                 counters: Counters::default(),
                 zones: vec![zone; 2],
                 surfaces: Vec::new(),
-                coats: Vec::new(),
+                surface_models: Vec::new(),
                 vents: vec![VentSum { left: of_gas, ..VentSum::default() }],
                 works: Vec::new(),
                 blocks: Vec::new(),

@@ -462,7 +462,7 @@ impl<'a> Simulation<'a> {
         };
         let mut interval = Interval::new(plan, &mut self.inflow, start, end, first_step, steps, deal)?;
         interval.tables = self.conditions.tables(start, end);
-        interval.tables.shares = self.ladder.shares().to_vec();
+        interval.tables.cross_section_shares = self.ladder.shares().to_vec();
         interval.tables.halvings = self.ladder.halvings(level);
         let moving = &self.model.moving;
         if !moving.is_empty() {

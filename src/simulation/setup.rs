@@ -61,7 +61,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::Whole)
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::AllFeatures)
     }
 
     /// With the kernels of many particles also where these are few: for tests of those.
@@ -129,7 +129,7 @@ impl Setup {
         let zones = zones(model);
         let tallied = Patches {
             surfaces: patches.len(),
-            coats: model.coats.coats.len(),
+            surface_models: model.coats.coats.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{BoundKernel, Constants, Device, Form, GpuError};
+use crate::gpu::{BoundKernel, Constants, Device, GpuError, KernelVariant};
 
 use super::buffers::{
     Buffers, CellBuffers, ExchangeBuffers, ExchangeRoom, FIRST_TAILS, FixedBuffers, ParticleBuffers, TableRoom,
@@ -54,13 +54,14 @@ impl Subdomain {
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
         let slots = u64::from(plan.steps_per_interval) * u64::from(uniforms(plan, features));
-        let shares = if features.capped { block_counts(plan).iter().map(|&n| u64::from(n)).product() } else { 1 };
+        let cross_section_shares =
+            if features.capped { block_counts(plan).iter().map(|&n| u64::from(n)).product() } else { 1 };
         let tables = TableRoom {
-            coats: domain.patches.coats as u64,
+            surface_models: domain.patches.surface_models as u64,
             vents: domain.vent_entries as u64,
-            parted: domain.parted_cells,
+            divided: domain.divided_cells,
             moved: domain.moved_cells,
-            shares,
+            cross_section_shares,
         };
         let fixed = FixedBuffers::new(device, domain.words, slots, tables)?;
         // Room for what is there, and for some that come: of an inflow, or from other devices.
@@ -91,7 +92,7 @@ impl Subdomain {
             staging: Vec::new(),
             spare_staging: Vec::new(),
             emptied: false,
-            short_lists: if domain.form == Form::Gpu { SHORT_LIST } else { 0 },
+            short_lists: if domain.variant == KernelVariant::Gpu { SHORT_LIST } else { 0 },
             watched: None,
             domain,
         };
@@ -123,7 +124,7 @@ impl Subdomain {
 
     /// Bytes of the buffers that grow with the cells, lists of walls included.
     pub fn cell_bytes(&self) -> u64 {
-        let lists = self.fixed.parted.size() + self.fixed.moved.size();
+        let lists = self.fixed.divided.size() + self.fixed.moved.size();
         self.cell.bytes() + self.domain.buffers.cell_bytes() + lists
     }
 

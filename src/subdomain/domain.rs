@@ -1,6 +1,6 @@
 //! What all subdomains of one device share: the plan, the compiled kernels, the walls, the zones.
 
-use crate::gpu::{Device, Form, GpuError};
+use crate::gpu::{Device, GpuError, KernelVariant};
 use crate::plan::Plan;
 
 use super::buffers::{DomainBuffers, TallyWords};
@@ -40,7 +40,7 @@ pub enum KernelChoice {
     /// As of many particles, also where these are few.
     ForMany,
     /// Of many, and for what the scene lacks too.
-    Whole,
+    AllFeatures,
 }
 
 pub struct Domain {
@@ -50,7 +50,7 @@ pub struct Domain {
     has_runtime_constants: bool,
     pub(super) compiled: Compiled,
     /// Of the kernels.
-    pub(super) form: Form,
+    pub(super) variant: KernelVariant,
     /// Of a thread of the tally.
     pub(super) tally_loops: u32,
     pub(super) buffers: DomainBuffers,
@@ -60,7 +60,7 @@ pub struct Domain {
     pub(super) blocks: usize,
     pub(super) zones: usize,
     /// Cells whose gas walls part.
-    pub(super) parted_cells: u64,
+    pub(super) divided_cells: u64,
     /// Cells that moving walls may touch, at most.
     pub(super) moved_cells: u64,
     /// Where the walls that move are drawn.
@@ -72,11 +72,13 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let needed = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
+        let needed = Features::of(plan, input.patches, input.cells.divided > 0, input.among_others);
         let features = match input.kernels {
-            KernelChoice::Fitting | KernelChoice::Fixed => Features { merged: merges(plan, device.form()), ..needed },
+            KernelChoice::Fitting | KernelChoice::Fixed => {
+                Features { merged: merges(plan, device.variant()), ..needed }
+            }
             KernelChoice::ForMany => needed,
-            KernelChoice::Whole => needed.whole(),
+            KernelChoice::AllFeatures => needed.with_all(),
         };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
@@ -92,7 +94,7 @@ impl Domain {
             features,
             has_runtime_constants: !runtime.is_empty(),
             compiled: Compiled::new(device, features, &constants, runtime)?,
-            form: device.form(),
+            variant: device.variant(),
             tally_loops,
             constants,
             buffers: DomainBuffers::new(
@@ -108,7 +110,7 @@ impl Domain {
             vent_entries: input.vent_entries,
             blocks,
             zones: input.zones.len(),
-            parted_cells: input.cells.parted,
+            divided_cells: input.cells.divided,
             moved_cells: input.cells.still.len() as u64,
             drawn: input.walls.drawn.clone(),
         })

@@ -1,6 +1,6 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
-use crate::gpu::{BoundKernel, Device, Form, Pass, Recording};
+use crate::gpu::{BoundKernel, Device, KernelVariant, Pass, Recording};
 
 use super::buffers::{CellBuffers, RECORD, choose_empties, few_stretches};
 use super::counters;
@@ -8,7 +8,7 @@ use super::device_gas::Subdomain;
 use super::dispatch::{all, threads};
 use super::kernels::Flights;
 use super::registry::{
-    LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_INCOMPLETE, LIST_MOVED, LIST_PARTED,
+    LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED,
 };
 use super::sizes::{CHUNK, EMPTIED_CELLS, MEMBERS, STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
@@ -109,8 +109,8 @@ impl Subdomain {
             // (Each has several particles.)
             let arguments = (&self.fixed.dispatches, LIST_CROWDS);
             self.over_list(&kernels.collide_crowded, (device, pass), offset, arguments, (step.total / MEMBERS).into());
-            if let Some(parted) = &kernels.parted {
-                parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
+            if let Some(divided) = &kernels.divided {
+                divided.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_DIVIDED);
             }
             if let Some(moved) = &kernels.moved {
                 moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
@@ -147,7 +147,7 @@ impl Subdomain {
 
     /// Of a list that is in parts on a GPU.
     pub(super) fn places(&self, most: u64) -> u64 {
-        if self.domain.form == Form::Gpu { counters::places_in_parts(most) } else { most }
+        if self.domain.variant == KernelVariant::Gpu { counters::places_in_shards(most) } else { most }
     }
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
@@ -156,7 +156,7 @@ impl Subdomain {
             let bytes = 4 * RECORD * u64::from(step.total);
             rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
         }
-        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.form, self.bins());
+        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.variant, self.bins());
         if self.kernels.sort.is_some() && self.place.is_alone() && !empties {
             rec.encoder().clear_buffer(self.cell.counts(), 0, Some(CellBuffers::start_bytes(self.bins())));
         }
@@ -168,7 +168,7 @@ impl Subdomain {
         let pass = &mut rec.phase("advect");
         match &self.kernels.flights {
             Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
-            Flights::Parted { advect, bounce } => {
+            Flights::Split { advect, bounce } => {
                 advect.dispatch(pass, offset, groups);
                 let arguments = (&self.fixed.dispatches, BOUNCES[step.slot as usize % 2]);
                 self.over_list(bounce, (device, pass), offset, arguments, step.total.into());

@@ -5,7 +5,7 @@ use crate::gpu::{Device, GpuError, Recording};
 use super::counters;
 use super::device_gas::Subdomain;
 use super::nearness;
-use super::recall::{Kept, Remembered};
+use super::recall::{Backup, Remembered};
 use super::registry::{COUNT_DROPPED, LIST_TAILS};
 use super::step_slot::{Newborns, StepSlot, Tables};
 
@@ -23,10 +23,10 @@ impl Subdomain {
         tables: &Tables,
         before: &Remembered,
     ) -> Result<(), GpuError> {
-        if !self.domain.features.rounds || self.count == 0 || matches!(before.kept, Kept::Nothing) {
+        if !self.domain.features.rounds || self.count == 0 || matches!(before.backup, Backup::Nothing) {
             return Ok(());
         }
-        device.write(&self.fixed.shares, 0, &tables.shares);
+        device.write(&self.fixed.cross_section_shares, 0, &tables.cross_section_shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let slot = StepSlot { dt: dt as f32, near2, ..self.at_rest(device) };
         self.write_parameters(device, &slot);
@@ -40,7 +40,7 @@ impl Subdomain {
         self.emptied = false;
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
         let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
-        if let Kept::Held = before.kept {
+        if let Backup::Stall = before.backup {
             self.recall(device, self.count - words[COUNT_DROPPED as usize], &nobody, 0);
         } else {
             self.restore(device, before, &nobody)?;

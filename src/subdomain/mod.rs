@@ -1,7 +1,7 @@
 //! One device's gas: the particle buffers and the kernels of each phase of the step.
 //!
 //! Invariants: between steps `particles` holds every particle once, in the order of their cells where
-//! there are collisions (of a device alone that is held, for want of room, `sorted` does until the host goes on); positions are fixed-point on the plan's grid; nothing is read back but the
+//! there are collisions (of a device alone that is stalled, for want of room, `sorted` does until the host goes on); positions are fixed-point on the plan's grid; nothing is read back but the
 //! tallies of an interval, one interval late, and whole states on request.
 
 mod buffers;
@@ -37,13 +37,13 @@ mod walls;
 pub use buffers::{choose_empties, few_stretches, most_particles};
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, block_counts, constants, merges, runtime_constants};
-pub use counters::{Counters, places_in_parts};
+pub use counters::{Counters, places_in_shards};
 pub use device_gas::Subdomain;
 pub use domain::{Domain, DomainInput, KernelChoice};
 pub use exchange::{Messages, Outgoing};
 pub use layout::{
-    GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
-    GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
+    GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
 pub use place::{Cells, Ghosts, GridCells, Place};
@@ -53,5 +53,5 @@ pub use shaders::{KERNELS, shader};
 pub use sizes::{CHUNK, CROWD, EMPTIED_CELLS, MEMBERS, MOTION_ENTRIES, WORKGROUP};
 pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
-pub use tallies::{BlockSum, CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
+pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;

@@ -8,13 +8,13 @@ use super::device_gas::Subdomain;
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::place::Cells;
-use super::registry::INTERVAL;
+use super::registry::INTERVAL_STEPS;
 use super::step_slot::{Newborns, StepSlot, Steps, Tables, uniforms};
 
 /// `GHOSTS_ALL` and so on of `shaders/shared/step.wgsl`.
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
-const GHOSTS_ASKED: u32 = 2;
+const GHOSTS_ON_DEMAND: u32 = 2;
 
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
@@ -32,10 +32,10 @@ impl Subdomain {
         let Steps { first, done, dt, tallied } = *steps;
         self.emptied = false;
         // Work that was submitted before has seen the tables of its own interval.
-        device.write(&self.fixed.coats, 0, &tables.coats);
+        device.write(&self.fixed.surface_models, 0, &tables.surface_models);
         device.write(&self.fixed.vents, 0, &tables.vents);
         self.place_walls(device, &tables.motions);
-        device.write(&self.fixed.shares, 0, &tables.shares);
+        device.write(&self.fixed.cross_section_shares, 0, &tables.cross_section_shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
         let Newborns { of_step, list, .. } = *newborns;
@@ -77,7 +77,7 @@ impl Subdomain {
         }
         device.write(&self.fixed.step, 0, &bytes);
         let counted = if flies_to_bins { done + slots.len() as u32 } else { 0 };
-        device.write(&self.fixed.held, 4 * u64::from(INTERVAL), &[counted]);
+        device.write(&self.fixed.step_state, 4 * u64::from(INTERVAL_STEPS), &[counted]);
         Ok(slots)
     }
 
@@ -131,10 +131,10 @@ impl Subdomain {
                 // The arrivals are binned after the others.
                 first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
                 inner_high,
-                ghosts: match (self.place.asks(), at < rounds) {
+                ghosts: match (self.place.has_on_demand_ghosts(), at < rounds) {
                     (false, _) => GHOSTS_ALL,
                     (true, true) => GHOSTS_WAIT,
-                    (true, false) => GHOSTS_ASKED,
+                    (true, false) => GHOSTS_ON_DEMAND,
                 },
                 peers: self.place.peers.len() as u32,
                 near_peers: self.place.near as u32,
@@ -189,7 +189,7 @@ impl Subdomain {
     }
 
     /// Of the pass over those that were asked.
-    pub(super) fn asked_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
+    pub(super) fn on_demand_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
         self.offset(device, step, self.domain.plan.rounds + 1 + round)
     }
 }

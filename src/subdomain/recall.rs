@@ -13,15 +13,15 @@ use super::step_slot::Newborns;
 
 /// How an interval can be run again with larger buffers.
 pub struct Remembered {
-    pub(super) kept: Kept,
+    pub(super) backup: Backup,
     count: u32,
 }
 
-pub(super) enum Kept {
+pub(super) enum Backup {
     /// No interval is ever run again.
     Nothing,
-    /// A device alone is held where it had too little room, and goes on from there (`shaders/complete_lists.wgsl`).
-    Held,
+    /// A device alone stalls where it had too little room, and goes on from there (`shaders/complete_lists.wgsl`).
+    Stall,
     /// Whether one must is known when all ranks' tallies are: each interval has a copy of the particles before it.
     Copy(wgpu::Buffer),
 }
@@ -29,9 +29,9 @@ pub(super) enum Kept {
 impl Remembered {
     /// Memory that can be used again.
     pub fn spare(self) -> Option<wgpu::Buffer> {
-        match self.kept {
-            Kept::Copy(buffer) => Some(buffer),
-            Kept::Nothing | Kept::Held => None,
+        match self.backup {
+            Backup::Copy(buffer) => Some(buffer),
+            Backup::Nothing | Backup::Stall => None,
         }
     }
 }
@@ -45,7 +45,7 @@ impl Subdomain {
     /// If the device has no memory for the copy.
     pub fn remember(&mut self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
         let Features { rounds, halo, .. } = self.domain.features;
-        let kept = if halo {
+        let backup = if halo {
             let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
             let copy = match spare.filter(|buffer| buffer.size() >= bytes) {
                 Some(buffer) => buffer,
@@ -54,17 +54,17 @@ impl Subdomain {
             let mut encoder = device.encoder();
             encoder.copy_buffer_to_buffer(&self.particle.particles, 0, &copy, 0, bytes);
             device.submit(encoder);
-            Kept::Copy(copy)
+            Backup::Copy(copy)
         } else if rounds {
-            Kept::Held
+            Backup::Stall
         } else {
-            Kept::Nothing
+            Backup::Nothing
         };
-        Ok(Remembered { kept, count: self.count })
+        Ok(Remembered { backup, count: self.count })
     }
 
     /// Back to where the first interval that had too little room can go on with more: the step of it, as if nothing had run since. That is its
-    /// first, and its tallies count for nothing, or on a device alone the one that was held, and its tallies are those of the steps before.
+    /// first, and its tallies count for nothing, or on a device alone the one that stalled, and its tallies are those of the steps before.
     /// What has been tallied since the last read is cleared. `None`, and nothing is done, of one of which nothing was kept.
     ///
     /// # Errors
@@ -75,9 +75,9 @@ impl Subdomain {
         remembered: &Remembered,
         newborns: &Newborns<'_>,
     ) -> Result<Option<u32>, GpuError> {
-        match &remembered.kept {
-            Kept::Nothing => Ok(None),
-            Kept::Copy(copy) => {
+        match &remembered.backup {
+            Backup::Nothing => Ok(None),
+            Backup::Copy(copy) => {
                 let bytes = u64::from(remembered.count) * size_of::<GpuParticle>() as u64;
                 let mut encoder = device.encoder();
                 encoder.copy_buffer_to_buffer(copy, 0, &self.particle.particles, 0, bytes);
@@ -86,11 +86,12 @@ impl Subdomain {
                 self.clear_tallies(device);
                 Ok(Some(0))
             }
-            Kept::Held => {
-                let words: Vec<u32> = device.read(&self.fixed.held, registry::HELD_WORDS as usize)?;
-                let (held, present) = (words[0], words[1]);
-                let known = (held as usize) <= newborns.of_step.len() && u64::from(present) <= self.particle.capacity;
-                let step = held.checked_sub(1).filter(|_| known);
+            Backup::Stall => {
+                let words: Vec<u32> = device.read(&self.fixed.stalled, registry::STALLED_WORDS as usize)?;
+                let (stalled, present) = (words[0], words[1]);
+                let known =
+                    (stalled as usize) <= newborns.of_step.len() && u64::from(present) <= self.particle.capacity;
+                let step = stalled.checked_sub(1).filter(|_| known);
                 if let Some(step) = step {
                     self.recall(device, present, newborns, step);
                 }
@@ -115,8 +116,8 @@ impl Subdomain {
 
     fn clear_tallies(&self, device: &Device) {
         let mut encoder = device.encoder();
-        let FixedBuffers { counters, held, zone_sums, surface_sums, block_sums, .. } = &self.fixed;
-        for buffer in [counters, held, zone_sums, surface_sums, block_sums] {
+        let FixedBuffers { counters, stalled, step_state, zone_sums, surface_sums, block_sums, .. } = &self.fixed;
+        for buffer in [counters, stalled, step_state, zone_sums, surface_sums, block_sums] {
             encoder.clear_buffer(buffer, 0, None);
         }
         device.submit(encoder);

@@ -33,7 +33,7 @@ impl Subdomain {
             (&self.particle.particles, &grown.particles),
             (&self.particle.bins, &grown.bins),
             (&self.particle.newborns, &grown.newborns),
-            // Where a device alone is held they are the particles, and the host may not know yet that it is.
+            // Where a device alone is stalled they are the particles, and the host may not know yet that it is.
             (&self.particle.sorted, &grown.sorted),
         ] {
             encoder.copy_buffer_to_buffer(old, 0, new, 0, old.size().min(new.size()));

@@ -19,7 +19,7 @@ mod tests {
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     use super::*;
-    use crate::gpu::{Form, RuntimeConstants, Stretch};
+    use crate::gpu::{KernelVariant, RuntimeConstants, Stretch};
 
     #[test]
     fn every_kernel_of_a_step_can_be_counted() {
@@ -44,11 +44,11 @@ mod tests {
 
     /// All that could be a runtime constant is made one: if that is valid, so is any part of it.
     #[test]
-    fn every_kernel_in_every_form_can_have_runtime_constants() {
+    fn every_kernel_in_every_variant_can_have_runtime_constants() {
         let mut found = 0;
         for kernel in KERNELS {
-            for form in [Form::Plain, Form::Software, Form::Gpu] {
-                let text = kernel.text(form);
+            for variant in [KernelVariant::Plain, KernelVariant::Software, KernelVariant::Gpu] {
+                let text = kernel.text(variant);
                 let numbers = text.lines().filter_map(|line| line.strip_prefix("override ")?.split_once(':'));
                 let numbers = numbers.filter(|(name, rest)| {
                     !rest.trim_start().starts_with("bool") && !["WORKGROUP", "SCAN_THREADS"].contains(name)

@@ -3,7 +3,7 @@
 use crate::plan::Plan;
 
 use super::constants::Features;
-use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuVent};
+use super::layout::{GpuMotion, GpuNewborn, GpuSurfaceModel, GpuVent};
 
 /// One step of an interval, as its dispatches see it.
 #[derive(Debug, Clone, Copy)]
@@ -28,15 +28,15 @@ pub struct StepSlot {
     pub(super) binned: bool,
 }
 
-/// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
+/// What surface models and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
 /// of its steps, `MOST_MOTIONS` entries for each, empty where none does.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tables {
-    pub coats: Vec<GpuCoat>,
+    pub surface_models: Vec<GpuSurfaceModel>,
     pub vents: Vec<GpuVent>,
     pub motions: Vec<GpuMotion>,
     /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
-    pub shares: Vec<u32>,
+    pub cross_section_shares: Vec<u32>,
     /// By how many halvings less the fastest pairs fly in these steps than in the longest.
     pub halvings: u32,
 }

@@ -5,7 +5,6 @@
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
-mod asked;
 mod binned;
 mod blocks;
 mod bounce;
@@ -13,14 +12,11 @@ mod branches;
 mod ceilings;
 mod choose;
 mod closed;
-mod coats;
 mod collide;
 mod devices;
 mod exchange;
 mod fly;
-mod forms;
 mod halo;
-mod held;
 mod lists;
 mod local;
 mod match_pairs;
@@ -28,6 +24,7 @@ mod merged;
 mod moved;
 mod neighbour_lists;
 mod neighbours;
+mod on_demand;
 mod philox;
 mod probe;
 mod rig;
@@ -35,7 +32,10 @@ mod scan;
 mod screen;
 mod settle;
 mod sort;
+mod stalled;
+mod surface_models;
 mod tally;
+mod variants;
 mod weigh;
 
 /// No kernel goes untested: the table of kernels is the list of those the files here run.
@@ -56,7 +56,7 @@ fn every_kernel_has_its_test() {
         "collide",
         "collide_crowded",
         "collide_moved",
-        "collide_parted",
+        "collide_divided",
         "complete_lists",
         "fill_outbox",
         "fill_updates",
@@ -65,7 +65,7 @@ fn every_kernel_has_its_test() {
         "match_pairs",
         "message_starts",
         "neighbours",
-        "neighbours_asked",
+        "neighbours_on_demand",
         "order",
         "pack",
         "pack_updates",

@@ -13,7 +13,7 @@ use super::stretch::{Item, Operations, Stretch};
 use crate::gpu::source::Constants;
 
 /// A kernel with all of its functions.
-pub struct Whole<'a> {
+pub struct WholeKernel<'a> {
     pub module: &'a Module,
     pub info: &'a ModuleInfo,
     pub constants: &'a Constants,
@@ -22,7 +22,7 @@ pub struct Whole<'a> {
 
 /// A function on the way through it.
 struct Walk<'a> {
-    whole: &'a Whole<'a>,
+    whole: &'a WholeKernel<'a>,
     function: &'a Function,
     info: &'a FunctionInfo,
     /// Values of its variables, as far as they are known.
@@ -31,7 +31,7 @@ struct Walk<'a> {
     results: HashMap<Handle<Expression>, f64>,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> WholeKernel<'a> {
     pub fn function(&'a self, function: &'a Function, info: &'a FunctionInfo) -> Stretch {
         let mut walk = Walk { whole: self, function, info, known: HashMap::new(), results: HashMap::new() };
         for (variable, declared) in function.local_variables.iter() {
@@ -63,7 +63,7 @@ impl<'a> Whole<'a> {
 
     fn global(&self, expression: Handle<Expression>) -> Option<f64> {
         match self.module.global_expressions[expression] {
-            Expression::Literal(literal) => Whole::literal(literal),
+            Expression::Literal(literal) => WholeKernel::literal(literal),
             _ => None,
         }
     }
@@ -190,7 +190,7 @@ impl Walk<'_> {
         let Expression::Load { pointer } = self.function.expressions[left] else { return None };
         let Expression::LocalVariable(variable) = self.function.expressions[pointer] else { return None };
         let end = match self.function.expressions[right] {
-            Expression::Literal(literal) => Whole::literal(literal)?,
+            Expression::Literal(literal) => WholeKernel::literal(literal)?,
             Expression::Constant(constant) => self.whole.constant(constant)?,
             _ => return None,
         };
@@ -245,7 +245,7 @@ impl Walk<'_> {
     fn value(&self, expression: Handle<Expression>) -> Option<f64> {
         let truth = |yes: bool| f64::from(u8::from(yes));
         match self.function.expressions[expression] {
-            Expression::Literal(literal) => Whole::literal(literal),
+            Expression::Literal(literal) => WholeKernel::literal(literal),
             Expression::Constant(constant) => self.whole.constant(constant),
             Expression::Override(constant) => self.whole.overridden(constant),
             Expression::CallResult(_) => self.results.get(&expression).copied(),

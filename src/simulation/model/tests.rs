@@ -132,7 +132,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
         let (_, patches) = crate::simulation::setup::patches(&model);
         let patches = Patches {
             surfaces: patches.len(),
-            coats: model.coats.coats.len(),
+            surface_models: model.coats.coats.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };
@@ -143,7 +143,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             ("heat capacities that depend on the temperature", features.curves),
             ("inflow", features.orifices),
             ("measured surfaces", features.surfaces),
-            ("walls that are no mirrors", features.coats),
+            ("walls that are no mirrors", features.surface_models),
             ("vents", features.vents),
             ("walls that move", features.moving),
         ];
