@@ -29,7 +29,7 @@ macro_rules! twin {
 #[repr(C)]
 #[allow(dead_code)] // Only its layout is used.
 struct Packed {
-    place: [u32; 4],
+    position_tag: [u32; 4],
     motion: [f32; 4],
 }
 
@@ -69,7 +69,7 @@ fn twins() -> Vec<Twin> {
             next_newborns
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
-        twin!("Packed", Packed, place, motion),
+        twin!("Packed", Packed, position_tag, motion),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),

@@ -125,7 +125,7 @@ fn files_that_use_each_other_end() {
 
 /// Another variant of a shared file makes another source of the kernels that use it, as valid as the first.
 #[test]
-fn a_form_of_a_shared_file_makes_another_source() {
+fn a_variant_of_a_shared_file_makes_another_source() {
     let twice = DOUBLE.replace("TWO * x", "x + x");
     let second = |text: &str| {
         folder(&[
