@@ -163,7 +163,7 @@ fn every_struct_in_a_buffer_has_a_twin() {
 /// The same 32 bytes: position and tag, velocity and spin.
 #[test]
 fn a_packed_particle_is_a_particle() {
-    let words = [offset_of!(Packed, place), offset_of!(Packed, motion)].map(|at| [at, at + 12]);
+    let words = [offset_of!(Packed, position_tag), offset_of!(Packed, motion)].map(|at| [at, at + 12]);
     let [[position, tag], [velocity, spin]] = words;
     assert_eq!(size_of::<Packed>(), size_of::<GpuParticle>());
     assert_eq!([position, tag], [offset_of!(GpuParticle, position), offset_of!(GpuParticle, tag)]);
