@@ -41,9 +41,9 @@ const REGISTRY_PATH: &str = "src/subdomain/registry.rs";
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
-/// The forms that a shared file may have beside its own, in the order of `Form` (src/gpu/kernel.rs), and what the sources made of them may ask.
-pub const FORMS: [&str; 2] = ["software", "gpu"];
-const CAPABILITIES_OF_FORMS: Capabilities = Capabilities::SUBGROUP;
+/// The variants that a shared file may have beside its own, in the order of `KernelVariant` (src/gpu/kernel.rs), and what the sources made of them may ask.
+pub const VARIANTS: [&str; 2] = ["software", "gpu"];
+const CAPABILITIES_OF_VARIANTS: Capabilities = Capabilities::SUBGROUP;
 
 /// What a build is made of.
 const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
@@ -54,8 +54,8 @@ const FNV_PRIME: u64 = 0x100_0000_01b3;
 pub struct Kernel {
     pub name: String,
     pub source: String,
-    /// Those of the other forms, where they are others.
-    pub forms: [Option<String>; FORMS.len()],
+    /// Those of the other variants, where they are others.
+    pub variants: [Option<String>; VARIANTS.len()],
     pub entry_point: String,
     /// The phases of the step in which it is dispatched.
     pub phases: Vec<String>,
@@ -65,7 +65,7 @@ pub struct Kernel {
     pub overrides: Vec<(String, bool)>,
     /// Buffers, and by what other names the shader has them.
     aliases: Vec<(String, String)>,
-    parts: Vec<Part>,
+    files_of_source: Vec<SourceFile>,
 }
 
 /// A buffer that an entry point uses.
@@ -81,7 +81,7 @@ pub struct Bound {
 }
 
 /// One file's place in the source of a kernel.
-struct Part {
+struct SourceFile {
     path: PathBuf,
     /// Bytes of the kernel's source.
     start: usize,
@@ -162,10 +162,10 @@ pub fn kernels(folder: &Path, registry: Registry<'_>) -> Result<(Vec<Kernel>, Ve
     let mut used = Vec::new();
     for path in wgsl_files(folder)? {
         if path.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some()) {
-            errors.push(format!("{}: error: only files of shared/ have forms", path.display()));
+            errors.push(format!("{}: error: only files of shared/ have variants", path.display()));
             continue;
         }
-        match Kernel::with_forms(Files { folder, registry }, &path, &mut used) {
+        match Kernel::with_variants(Files { folder, registry }, &path, &mut used) {
             Ok(kernel) => kernels.push(kernel),
             Err(error) => errors.push(error),
         }
@@ -182,7 +182,7 @@ pub fn kernels(folder: &Path, registry: Registry<'_>) -> Result<(Vec<Kernel>, Ve
 pub fn table(kernels: &[Kernel]) -> String {
     let mut rust = String::from("pub static KERNELS: &[KernelSource] = &[\n");
     for kernel in kernels {
-        let Kernel { name, source, forms, entry_point, phases, .. } = kernel;
+        let Kernel { name, source, variants, entry_point, phases, .. } = kernel;
         rust +=
             &format!("KernelSource {{ name: {name:?}, entry_point: {entry_point:?}, phases: &{phases:?}, bindings: &[");
         for Bound { index, name, access, stepped } in &kernel.bindings {
@@ -190,7 +190,7 @@ pub fn table(kernels: &[Kernel]) -> String {
                 "Binding {{ index: {index}, name: {name:?}, access: Access::{access}, stepped: {stepped:?} }}, "
             );
         }
-        rust += &format!("], overrides: &{:?}, source: {source:?}, forms: {forms:?} }},\n", kernel.overrides);
+        rust += &format!("], overrides: &{:?}, source: {source:?}, variants: {variants:?} }},\n", kernel.overrides);
     }
     rust + "];\n"
 }
@@ -204,49 +204,49 @@ struct Files<'a> {
 
 impl Kernel {
     /// A kernel with all of its sources, each of them valid. What files it uses is added to `used`.
-    fn with_forms(files: Files<'_>, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
+    fn with_variants(files: Files<'_>, path: &Path, used: &mut Vec<PathBuf>) -> Result<Kernel, String> {
         let mut kernel = Kernel::assemble(files, path, None)?;
         kernel.validate(CAPABILITIES, files.registry)?;
-        used.extend(kernel.parts.iter().map(|part| part.path.clone()));
-        for (at, form) in FORMS.into_iter().enumerate() {
-            let mut other = Kernel::assemble(files, path, Some(form))?;
-            used.extend(other.parts.iter().map(|part| part.path.clone()));
+        used.extend(kernel.files_of_source.iter().map(|part| part.path.clone()));
+        for (at, variant) in VARIANTS.into_iter().enumerate() {
+            let mut other = Kernel::assemble(files, path, Some(variant))?;
+            used.extend(other.files_of_source.iter().map(|part| part.path.clone()));
             if other.source == kernel.source {
                 continue;
             }
-            other.validate(CAPABILITIES_OF_FORMS, files.registry)?;
+            other.validate(CAPABILITIES_OF_VARIANTS, files.registry)?;
             let sorted = |mut overrides: Vec<(String, bool)>| {
                 overrides.sort();
                 overrides
             };
             let overrides = [&other, &kernel].map(|kernel| sorted(kernel.overrides.clone()));
             if other.bindings != kernel.bindings || overrides[0] != overrides[1] {
-                let message = format!("in its form {form} it has other bindings or constants");
+                let message = format!("in its variant {variant} it has other bindings or constants");
                 return Err(other.report(&message, Vec::new(), Vec::new()));
             }
-            kernel.forms[at] = Some(other.source);
+            kernel.variants[at] = Some(other.source);
         }
         Ok(kernel)
     }
 
-    fn assemble(files: Files<'_>, path: &Path, form: Option<&str>) -> Result<Kernel, String> {
+    fn assemble(files: Files<'_>, path: &Path, variant: Option<&str>) -> Result<Kernel, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut kernel = Kernel {
             name,
             source: String::new(),
-            forms: Default::default(),
+            variants: Default::default(),
             entry_point: String::new(),
             phases: Vec::new(),
             bindings: Vec::new(),
             overrides: Vec::new(),
             aliases: Vec::new(),
-            parts: vec![Part { path: PathBuf::from(REGISTRY_PATH), start: 0 }],
+            files_of_source: vec![SourceFile { path: PathBuf::from(REGISTRY_PATH), start: 0 }],
         };
         for (name, value) in files.registry.numbers.iter().copied().flatten() {
             kernel.source += &format!("const {name}: u32 = {value}u;\n");
         }
         let mut texts = Vec::new();
-        collect(files.folder, path, form, &mut Vec::new(), &mut texts)?;
+        collect(files.folder, path, variant, &mut Vec::new(), &mut texts)?;
         // A kernel's own line goes before those of the files that it uses.
         for (path, text) in texts.iter().rev() {
             for (line, alias) in marked(text, "binds:") {
@@ -265,7 +265,7 @@ impl Kernel {
         for (path, text) in texts {
             kernel.append(files.registry, path, &text)?;
         }
-        let own = kernel.parts.last().map_or(0, |part| part.start);
+        let own = kernel.files_of_source.last().map_or(0, |part| part.start);
         let phases = marked(&kernel.source[own..], "phase:").flat_map(|(_, names)| names.split_whitespace());
         kernel.phases = phases.map(str::to_owned).collect();
         Ok(kernel)
@@ -291,7 +291,7 @@ impl Kernel {
             self.source += line;
             self.source.push('\n');
         }
-        self.parts.push(Part { path, start });
+        self.files_of_source.push(SourceFile { path, start });
         Ok(())
     }
 
@@ -340,13 +340,13 @@ impl Kernel {
 
     /// naga's message with each place mapped from the joined source back to its file.
     fn report(&self, message: &str, labels: Vec<(naga::Span, String)>, notes: Vec<String>) -> String {
-        let kernel = self.parts.last().map_or(Path::new(""), |part| &part.path);
+        let kernel = self.files_of_source.last().map_or(Path::new(""), |part| &part.path);
         let mut text = format!("error in kernel {}: {message}\n", kernel.display());
         for (span, label) in labels {
             let Some(range) = span.to_range() else {
                 continue;
             };
-            let Some(part) = self.parts.iter().rev().find(|part| part.start <= range.start) else {
+            let Some(part) = self.files_of_source.iter().rev().find(|part| part.start <= range.start) else {
                 continue;
             };
             let before = &self.source[part.start..range.start];
@@ -370,7 +370,7 @@ impl Kernel {
 fn collect(
     folder: &Path,
     path: &Path,
-    form: Option<&str>,
+    variant: Option<&str>,
     visited: &mut Vec<PathBuf>,
     texts: &mut Vec<(PathBuf, String)>,
 ) -> Result<(), String> {
@@ -380,7 +380,7 @@ fn collect(
         marked(&text, "uses:").flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
     {
         let mut shared = folder.join("shared").join(used);
-        let other = form.map(|form| shared.with_extension(format!("{form}.wgsl")));
+        let other = variant.map(|variant| shared.with_extension(format!("{variant}.wgsl")));
         if let Some(other) = other.filter(|other| other.is_file()) {
             shared = other;
         }
@@ -390,7 +390,7 @@ fn collect(
         if !shared.is_file() {
             return Err(format!("{}:{line}: error: uses {used}, but there is no {}", path.display(), shared.display()));
         }
-        collect(folder, &shared, form, visited, texts)?;
+        collect(folder, &shared, variant, visited, texts)?;
     }
     texts.push((path.to_path_buf(), text));
     Ok(())

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use corpuscle::gas::{Draws, Purpose};
 use corpuscle::gpu::{Access, Binding, BoundKernel, Device, Kernel, KernelSource, Recording, fold};
-use corpuscle::subdomain::GpuStep;
+use corpuscle::subdomain::{GpuStep, shader};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -141,7 +141,7 @@ impl Bench {
         ];
         let source =
             source("search", include_str!("kernels/search.wgsl"), &buffers.each_ref().map(|(n, _)| *n), &constants);
-        let kernel = self.bind(&Kernel::of(device, source, &constants)?, &buffers)?;
+        let kernel = self.bind(&Kernel::new(device, source, &constants)?, &buffers)?;
         Ok(Way {
             name: name.to_owned(),
             dispatches: vec![(kernel, self.groups(self.count, workgroup))],
@@ -191,7 +191,7 @@ impl Bench {
             ("scan_stretches", [1, 1, 1]),
             ("scan_cells", self.groups(chunks, 64)),
         ] {
-            dispatches.push((self.bind(&Kernel::new(device, name, &constants)?, &buffers)?, groups));
+            dispatches.push((self.bind(&Kernel::new(device, shader(name)?, &constants)?, &buffers)?, groups));
         }
         Ok(Way {
             name: format!("chunks of {chunk} cells, a thread each"),
@@ -229,7 +229,7 @@ impl Bench {
             let buffers = [("values", values[level].clone()), ("sums", sums[level].clone()), ("totals", totals)];
             let text = include_str!("kernels/scan_tree.wgsl");
             let source = source("scan_tree", text, &["values", "sums", "totals"], &constants);
-            let kernel = self.bind(&Kernel::of(device, source, &constants)?, &buffers)?;
+            let kernel = self.bind(&Kernel::new(device, source, &constants)?, &buffers)?;
             dispatches.push((kernel, self.groups(count, span as u32)));
         }
         for level in (0..levels.len()).rev() {
@@ -239,7 +239,7 @@ impl Bench {
             let buffers = [("before", before), ("sums", sums[level].clone()), ("values", values[level].clone())];
             let text = include_str!("kernels/scan_add.wgsl");
             let source = source("scan_add", text, &["before", "sums", "values"], &constants);
-            let kernel = self.bind(&Kernel::of(device, source, &constants)?, &buffers)?;
+            let kernel = self.bind(&Kernel::new(device, source, &constants)?, &buffers)?;
             dispatches.push((kernel, self.groups(count, workgroup)));
         }
         Ok(Way {
@@ -280,7 +280,7 @@ impl Bench {
                 ];
                 let constants = [("COUNT", self.count as f64)];
                 let source = source(entry, text, &["order", "particles", "ordered"], &constants);
-                let kernel = self.bind(&Kernel::of(device, source, &constants)?, &buffers)?;
+                let kernel = self.bind(&Kernel::new(device, source, &constants)?, &buffers)?;
                 ways.push(Way {
                     name: name.to_owned(),
                     dispatches: vec![(kernel, self.groups(self.count, 64))],
@@ -338,7 +338,7 @@ fn source(
         bindings: Vec::leak(bindings),
         overrides: Vec::leak(overrides),
         source: text,
-        forms: [None; 2],
+        variants: [None; 2],
     }))
 }
 

@@ -4,7 +4,7 @@
 // device alone counts the particles of the cells for the step that follows in the interval, and puts its newborns behind the others.
 //
 // Reads `sorted` and in `particles` the flights (without collisions the particles, and `newborns`), the classes and clearances of the cells and `motions`; writes `stretch_sums`, `bins`, `cell_counts`, `particles` (where they were in `sorted`; dead slots in place of ghosts), and appends
-// those that meet a wall, or without rounds may meet one or enter in this step (noted in `layers`), to `bouncing`. One thread per
+// those that meet a wall, or without rounds may meet one or enter in this step (noted in `marks`), to `bouncing`. One thread per
 // particle, which writes its own slot, for each of those newborns, and as many as there are stretches of cells.
 
 var<uniform> step: Step;

@@ -12,14 +12,14 @@ var<storage, read_write> slots: array<u32>;
 var<storage, read_write> crowded: array<u32>;
 
 // Walls part the gas of some cell.
-override PARTED_GAS: bool = true;
+override DIVIDED_GAS: bool = true;
 
 // Whether other kernels work on a cell as well, which want its particles in order.
-fn parted_or_moved(cell: vec3<u32>) -> bool {
+fn divided_or_moved(cell: vec3<u32>) -> bool {
     if (moving_in(cell)) {
         return true;
     }
-    return PARTED_GAS && (cell_volume[cell_index(cell)] & PARTED) != 0u;
+    return DIVIDED_GAS && (cell_volume[cell_index(cell)] & DIVIDED) != 0u;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -28,7 +28,7 @@ fn arrange(thread: Thread) {
     if (step.peers > 0u) {
         // Places behind the last particle: particles have been dropped that are nowhere near this device.
         if (i >= cell_start[step.bins] && i < step.total) {
-            layers[i] = LAYER;
+            marks[i] = LAYER;
         }
     }
     if (i >= step.count + step.newborns + step.arrivals) {
@@ -41,9 +41,9 @@ fn arrange(thread: Thread) {
     let begin = cell_start[bin.x];
     let place = begin + bin.y;
     let end = cell_start[bin.x + 1u];
-    let listed = !fits_a_thread(begin, end) || parted_or_moved(nearest_cell(particles[i].place.xyz));
+    let listed = !fits_a_thread(begin, end) || divided_or_moved(nearest_cell(particles[i].position_tag.xyz));
     if (listed || end - begin > MEMBERS) {
-        slots[place] = id_of(particles[i].place.w);
+        slots[place] = id_of(particles[i].position_tag.w);
     }
     if (listed) {
         crowded[append(LIST_CROWDED)] = i;

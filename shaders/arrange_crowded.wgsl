@@ -5,7 +5,7 @@
 //
 // A particle belongs to the first part whose point it sees, or if it sees none, to the one with the nearest point.
 //
-// Reads `crowded`, `bins`, `cell_start`, `slots`, `particles`, `cell_volume`, `cell_parts` and the walls; writes `sorted` and `layers` (lay.wgsl). One thread
+// Reads `crowded`, `bins`, `cell_start`, `slots`, `particles`, `cell_volume`, `cell_parts` and the walls; writes `sorted` and `marks` (lay.wgsl). One thread
 // per entry of `crowded`.
 
 var<storage, read> bins: array<vec2<u32>>;
@@ -16,7 +16,7 @@ var<storage, read> crowded: array<u32>;
 var<storage, read> cell_parts: array<Part>;
 
 // Walls part the gas of some cell.
-override PARTED_GAS: bool = true;
+override DIVIDED_GAS: bool = true;
 
 // The place of a particle by (cell, id): its cell's start plus the number of lower ids in the cell, whatever order the slots have.
 fn place_by_id(cell: u32, own_id: u32) -> u32 {
@@ -55,13 +55,13 @@ fn arrange_crowded(thread: Thread) {
     }
     let i = crowded[place_in_list];
     let cell = bins[i].x;
-    let place = place_by_id(cell, id_of(particles[i].place.w));
+    let place = place_by_id(cell, id_of(particles[i].position_tag.w));
     lay(i, place, cell);
     // (Where walls may be that move `collide_moved` finds the parts.)
-    if (PARTED_GAS && !moving_in(cell_of(cell))) {
+    if (DIVIDED_GAS && !moving_in(cell_of(cell))) {
         let entry = cell_volume[index_of(cell)];
-        if ((entry & PARTED) != 0u) {
-            layers[place] = part_of(particles[i].place.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;
+        if ((entry & DIVIDED) != 0u) {
+            marks[place] = part_of(particles[i].position_tag.xyz, first_part(entry), parts_of(entry)) << PART_SHIFT;
             tell_cut_short();
         }
     }

@@ -7,13 +7,13 @@
 // Reads `particles` and `newborns`; writes `particles[count ..]`, `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
 // owned here nor lies in the halo) and the counts (`cell_start`, the buffer in which `scan_cells` finds them, zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
-// within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is held
-// (HELD) nobody is in any cell, and nobody enters.
+// within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is stalled
+// (STALLED) nobody is in any cell, and nobody enters.
 
 override ROUNDS_OF_PAIRS: bool = true;
 
 var<uniform> step: Step;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
 var<storage, read_write> particles: array<Packed>;
 var<storage, read_write> bins: array<vec2<u32>>;
 var<storage, read_write> cell_start: array<atomic<u32>>;
@@ -25,11 +25,11 @@ fn bin(thread: Thread) {
     if (i >= step.count + step.newborns + step.arrivals) {
         return;
     }
-    if ((ROUNDS_OF_PAIRS && held[HELD] > 0u) || !enter(i)) {
+    if ((ROUNDS_OF_PAIRS && stalled[STALLED] > 0u) || !enter(i)) {
         bins[i] = vec2<u32>(NOBODY, 0u);
         return;
     }
-    let place = particles[i].place;
+    let place = particles[i].position_tag;
     let cell = flown_cell(place.xyz, particles[i].motion.xyz);
     let there = place.w != NOBODY;
     if (there && has_bin(cell)) {

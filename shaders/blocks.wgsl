@@ -17,7 +17,7 @@ override LEVELS: u32;
 override BLOCK_ENERGY_SCALE: f32;
 
 var<uniform> step: Step;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
 var<uniform> gases: array<Gas, 16>;
 var<storage, read> particles: array<Particle>;
 var<storage, read_write> counters: array<atomic<u32>>;
@@ -26,7 +26,7 @@ var<storage, read_write> sums: array<atomic<u32>>;
 @compute @workgroup_size(WORKGROUP)
 fn blocks(thread: Thread) {
     let i = linear(thread);
-    if (i >= step.total || held[HELD] > 0u) {
+    if (i >= step.total || stalled[STALLED] > 0u) {
         return;
     }
     let particle = particles[i];

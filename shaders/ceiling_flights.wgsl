@@ -12,8 +12,8 @@ var<storage, read_write> copy_to: array<Packed>;
 fn ceiling_flights(thread: Thread) {
     let k = linear(thread);
     if (k < arrayLength(&copy_to)) {
-        let place = copy_to[k].place;
+        let place = copy_to[k].position_tag;
         let moved = rounded(copy_to[k].motion.xyz * QUANTA);
-        copy_to[k].place = vec4<u32>(place.xyz + bitcast<vec3<u32>>(moved), place.w);
+        copy_to[k].position_tag = vec4<u32>(place.xyz + bitcast<vec3<u32>>(moved), place.w);
     }
 }

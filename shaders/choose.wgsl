@@ -1,5 +1,5 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl stretches.wgsl emptying.wgsl
-//! binds: asked_dispatches as dispatches
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl on_demand.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl stretches.wgsl emptying.wgsl
+//! binds: on_demand_dispatches as dispatches
 //! phase: choose lost
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
@@ -7,8 +7,8 @@
 // Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time), in the first round of a
 // device alone also `cell_start`, which it empties, if need be by more threads than choose.
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
-// collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (asked.wgsl)
-// choose nobody, and are appended to `asked` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
+// collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (on_demand.wgsl)
+// choose nobody, and are appended to `on_demand` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
 // the order of the candidates. Seen from the other particle of a pair, r and g have the other sign and all that is made of
 // them here has the same bits, so that both agree on its time.
 
@@ -21,7 +21,7 @@ var<storage, read> flights: array<vec4<u32>>;
 var<storage, read> neighbour_count: array<u32>;
 var<storage, read_write> choices: array<vec2<u32>>;
 
-var<storage, read_write> layers: array<atomic<u32>>;
+var<storage, read_write> marks: array<atomic<u32>>;
 
 var<storage, read_write> cell_start: array<vec4<u32>>;
 
@@ -42,7 +42,7 @@ fn choose(thread: Thread) {
     if (s == NOBODY) {
         return;
     }
-    if (step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&layers[s]) & LAYER)) {
+    if (step.ghosts == GHOSTS_WAIT && waits(atomicLoad(&marks[s]) & LAYER)) {
         return;
     }
     var best = vec2<u32>(NOBODY, 0u);
@@ -53,7 +53,7 @@ fn choose(thread: Thread) {
         choices[s] = best;
         return;
     }
-    let place = sorted[s].place;
+    let place = sorted[s].position_tag;
     let velocity = sorted[s].motion.xyz;
     let own_flight = flight_of(flights[2u * s]);
     let own_latest = min(step.dt, own_flight.wall);
@@ -65,7 +65,7 @@ fn choose(thread: Thread) {
         if (listed > DIRECT && k >= DIRECT - 1u) {
             j = word_at(tail + k);
         }
-        let other = sorted[j].place;
+        let other = sorted[j].position_tag;
         let r = between(place.xyz, other.xyz);
         let g = sorted[j].motion.xyz - velocity;
         let g2 = dot(g, g);
@@ -112,9 +112,9 @@ fn choose(thread: Thread) {
         best_id = other_id;
     }
     choices[s] = best;
-    if (step.ghosts == GHOSTS_WAIT && best.x != NOBODY && waits(atomicLoad(&layers[best.x]) & LAYER)) {
-        if ((atomicOr(&layers[best.x], ASKED) & ASKED) == 0u) {
-            asked[append(LIST_ASKED)] = best.x;
+    if (step.ghosts == GHOSTS_WAIT && best.x != NOBODY && waits(atomicLoad(&marks[best.x]) & LAYER)) {
+        if ((atomicOr(&marks[best.x], REQUESTED) & REQUESTED) == 0u) {
+            on_demand[append(LIST_ON_DEMAND)] = best.x;
         }
     }
 }

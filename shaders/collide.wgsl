@@ -5,12 +5,12 @@
 // The particles of a bin lie in its cell, so the first one's place tells which it is.
 //
 // Reads `cell_start`, `cell_volume`, `motions`, `wall_list`; reads and writes `sorted`, appends the cells that walls part
-// to `parted`, those that moving walls may touch to `moved`, others of more particles to `crowds`, and among other devices leaves the
+// to `divided`, those that moving walls may touch to `moved`, others of more particles to `crowds`, and among other devices leaves the
 // number of a cell's candidates with its first particle, in `neighbour_count`, for the balance. One thread per cell; each works on its
 // own particles, in order of their ids, in which these need not lie. Collisions are at the start of the step, where positions hold and no particle has met a wall.
 
 var<storage, read_write> neighbour_count: array<u32>;
-var<storage, read_write> parted: array<u32>;
+var<storage, read_write> divided: array<u32>;
 var<storage, read_write> moved: array<u32>;
 var<storage, read_write> crowds: array<u32>;
 
@@ -25,7 +25,7 @@ fn member(begin: u32, k: u32, part: u32) -> u32 {
 fn key(begin: u32, count: u32, k: u32) -> u32 {
     var found = NOBODY;
     if (k < count) {
-        found = (sorted[begin + k].place.w << NUMBER_BITS) | k;
+        found = (sorted[begin + k].position_tag.w << NUMBER_BITS) | k;
     }
     return found;
 }
@@ -157,18 +157,18 @@ fn collide(thread: Thread) {
     let bin_end = cell_start[bin + 1u];
     var candidates = 0u;
     if (bin_end > begin + 1u) {
-        let here = nearest_cell(sorted[begin].place.xyz);
+        let here = nearest_cell(sorted[begin].position_tag.xyz);
         let cell = cell_index(here);
         let entry = cell_volume[cell];
         var count = bin_end - begin;
         if (moving_in(here)) {
             moved[append_group(LIST_MOVED)] = bin;
-        } else if ((entry & PARTED) != 0u) {
-            parted[append(LIST_PARTED)] = bin;
+        } else if ((entry & DIVIDED) != 0u) {
+            divided[append(LIST_DIVIDED)] = bin;
         } else {
             if (count <= MEMBERS) {
                 put_in_order(begin, count);
-                while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+                while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].position_tag.w))) {
                     count--;
                 }
                 if (count > 1u) {

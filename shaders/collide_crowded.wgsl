@@ -182,7 +182,7 @@ fn collide_crowded(thread: Thread) {
         through(s, end);
     }
     var count = end - begin;
-    while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].place.w))) {
+    while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].position_tag.w))) {
         count--;
     }
     if (count > 1u) {

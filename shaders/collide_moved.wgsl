@@ -14,7 +14,7 @@
 // cell. A pair that a wall parts does not collide, whatever the parts are.
 //
 // Reads `moved`, `cell_start`, `cell_volume`, `still_gas`, `motions` and the walls; reads and writes `sorted`, the
-// part of each particle in `layers`, and of its own cell `order_by_id`. One workgroup per entry of `moved`, whose threads share the points and the particles
+// part of each particle in `marks`, and of its own cell `order_by_id`. One workgroup per entry of `moved`, whose threads share the points and the particles
 // (a software device gives up loops that are too long); the first of them collides. Each works on its own cell; what is
 // shared are sets and sums of integers, which have no order.
 
@@ -54,8 +54,8 @@ var<private> part_of_place: array<u32, 8>;
 var<private> place_count: u32;
 
 fn hidden(s: u32, t: u32) -> bool {
-    let q = sorted[t].place.xyz;
-    return !clear_of(Ways(sorted[s].place.xyz, q, q, q), vec3<bool>(true, false, false)).x;
+    let q = sorted[t].position_tag.xyz;
+    return !clear_of(Ways(sorted[s].position_tag.xyz, q, q, q), vec3<bool>(true, false, false)).x;
 }
 
 // In the lists of rows: the triangle's number, and whether it is also in the row before along y and along z.
@@ -349,7 +349,7 @@ fn part_of(place: vec3<u32>) -> u32 {
 fn volume_of(part: u32) -> f32 {
     let entry = cell_volume[cell_index(here)];
     // The box around a wall is larger than the wall.
-    if (atomicLoad(&close_count) == 0u && (entry & PARTED) == 0u) {
+    if (atomicLoad(&close_count) == 0u && (entry & DIVIDED) == 0u) {
         return bitcast<f32>(entry);
     }
     let still = still_gas[cell_index(here)];
@@ -440,7 +440,7 @@ fn collide_moved(
     let end = select(begin, last_of(begin, cell_start[bin + 1u]), listed);
     var s = begin + thread;
     for (; s < end; s += WORKGROUP) {
-        put_in_part(s, part_of(sorted[s].place.xyz));
+        put_in_part(s, part_of(sorted[s].position_tag.xyz));
     }
     through(s, end);
     storageBarrier();

@@ -1,13 +1,13 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl newborn.wgsl walls.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl on_demand.wgsl search.wgsl newborn.wgsl walls.wgsl
 //! phase: neighbours choose lost
 // Completes what `order` and `neighbours` have left incomplete: the flights that may meet a wall, of which it finds when they do; the lists longer than DIRECT, which are
 // searched once more, with a tail; and those near walls, from which it takes who stands behind a wall where the flights start.
 //
-// Reads what the search does, `sorted` and the walls; reads and writes flights and lists in `neighbours`, `neighbour_count`, `layers`; writes `counters`. One thread per
+// Reads what the search does, `sorted` and the walls; reads and writes flights and lists in `neighbours`, `neighbour_count`, `marks`; writes `counters`. One thread per
 // entry of the list that these have left, or per ghost that was asked and has its list yet to be completed.
 //
 // Where a tail is, is a matter of the order of the threads; what is in it is not. If there is no room for all, the list keeps what it
-// has, and the room that was wanted is kept for the host. A device alone is held (HELD): it leaves `sorted` as it is, from which the
+// has, and the room that was wanted is kept for the host. A device alone is stalled (STALLED): it leaves `sorted` as it is, from which the
 // host goes on with more room. Among others, of whom one alone may be short of room, the interval is run again.
 //
 // When ghosts are asked rounds may have changed flights, and so the start of the step is taken from `firsts` and `newborns`. The test of a pair
@@ -15,10 +15,10 @@
 
 var<uniform> step: Step;
 var<storage, read> sorted: array<Particle>;
-var<storage, read_write> layers: array<u32>;
+var<storage, read_write> marks: array<u32>;
 var<storage, read> firsts: array<Particle>;
 var<storage, read> incomplete: array<u32>;
-var<storage, read_write> held: array<atomic<u32>>;
+var<storage, read_write> stalled: array<atomic<u32>>;
 
 // Gives a list a tail; false where there is no room for it.
 fn lengthen(s: u32) -> bool {
@@ -28,8 +28,8 @@ fn lengthen(s: u32) -> bool {
     if (begin + more > 4u * arrayLength(&neighbours) - RECORD * stride) {
         atomicMax(&counters[TAILS_WANTED], begin + more);
         if (step.depth == 0u) {
-            atomicStore(&held[HELD], step.slot + 1u);
-            atomicStore(&held[HELD_PARTICLES], cell_start[step.bins]);
+            atomicStore(&stalled[STALLED], step.slot + 1u);
+            atomicStore(&stalled[STALLED_PARTICLES], cell_start[step.bins]);
         }
         atomicStore(&neighbour_count[s], DIRECT);
         return false;
@@ -42,7 +42,7 @@ fn lengthen(s: u32) -> bool {
 
 // Where a flight starts in this step.
 fn first_place(s: u32) -> vec3<u32> {
-    if (step.ghosts == GHOSTS_ASKED) {
+    if (step.ghosts == GHOSTS_ON_DEMAND) {
         let particle = firsts[s];
         return shifted(particle.position, particle.velocity, birth_time(id_of(particle.tag)));
     }
@@ -60,13 +60,13 @@ fn screen(s: u32) {
     let tail = word(last);
     let tag = sorted[s].tag;
     let place = first_place(s);
-    let middle = middles[s];
+    let midpoint = midpoints[s];
     var kept = 0u;
     var k = 0u;
     for (; k < listed; k++) {
         let j = word(entry_of(s, k, listed, tail));
         var apart = false;
-        if (((middle | middles[j]) & NEAR_WALL) != 0u) {
+        if (((midpoint | midpoints[j]) & NEAR_WALL) != 0u) {
             let there = first_place(j);
             let first = id_of(tag) < id_of(sorted[j].tag);
             apart = blocked(select(there, place, first), select(place, there, first), 0.0);
@@ -88,8 +88,8 @@ fn screen(s: u32) {
 fn complete_lists(thread: Thread) {
     let entry = linear(thread);
     var s = NOBODY;
-    if (step.ghosts == GHOSTS_ASKED) {
-        s = asked_of(entry);
+    if (step.ghosts == GHOSTS_ON_DEMAND) {
+        s = on_demand_chooser(entry);
     } else if (entry < atomicLoad(&counters[LIST_INCOMPLETE])) {
         s = incomplete[entry];
     }
@@ -97,20 +97,20 @@ fn complete_lists(thread: Thread) {
         return;
     }
     // (Ghosts that are asked may have collided since; when they meet a wall they knew before.)
-    if (step.ghosts != GHOSTS_ASKED && (layers[s] & NEAR) != 0u) {
+    if (step.ghosts != GHOSTS_ON_DEMAND && (marks[s] & NEAR) != 0u) {
         atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         let start = bitcast<f32>(neighbours[2u * s].x);
         let hit = first_hit(sorted[s].position, sorted[s].velocity, start, step.dt);
         neighbours[2u * s].y = bitcast<u32>(hit.time);
     }
     // A pass over those that were asked later finds it done.
-    let marks = layers[s];
-    layers[s] = marks & ~INCOMPLETE;
+    let mark = marks[s];
+    marks[s] = mark & ~INCOMPLETE;
     var whole = true;
-    if ((marks & LONG) != 0u) {
+    if ((mark & LONG) != 0u) {
         whole = lengthen(s);
     }
-    if (whole && (marks & UNSCREENED) != 0u) {
+    if (whole && (mark & UNSCREENED) != 0u) {
         screen(s);
     }
     tell_cut_short();

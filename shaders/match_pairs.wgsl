@@ -1,8 +1,8 @@
-//! uses: step.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl chooser.wgsl mutual.wgsl
+//! uses: step.wgsl local.wgsl particle.wgsl lists.wgsl on_demand.wgsl chooser.wgsl mutual.wgsl
 //! phase: settle lost
 // Settle, part 1: the pairs whose choices are mutual.
 //
-// Reads `choices`, `sorted`, `layers`; writes `pairs` (indices, lower id first) and their count in `counters`.
+// Reads `choices`, `sorted`, `marks`; writes `pairs` (indices, lower id first) and their count in `counters`.
 // One thread per particle that has just chosen. The pairs are disjoint, so their order in the list does not matter. In the
 // extra round that counts lost events the pairs are only counted.
 
@@ -10,13 +10,13 @@
 override ROUNDS: u32;
 
 var<uniform> step: Step;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
 var<storage, read> sorted: array<Particle>;
 var<storage, read_write> pairs: array<vec2<u32>>;
-var<storage, read> layers: array<u32>;
+var<storage, read> marks: array<u32>;
 
 fn mark_of(s: u32) -> u32 {
-    return layers[s];
+    return marks[s];
 }
 
 fn tag_of(s: u32) -> u32 {
@@ -30,7 +30,7 @@ fn among_others() -> bool {
 @compute @workgroup_size(WORKGROUP)
 fn match_pairs(thread: Thread) {
     let s = chooser(linear(thread));
-    if (s == NOBODY || held[HELD] > 0u) {
+    if (s == NOBODY || stalled[STALLED] > 0u) {
         return;
     }
     let mine = mutual(s);

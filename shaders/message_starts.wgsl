@@ -1,4 +1,4 @@
-//! uses: step.wgsl shares.wgsl
+//! uses: step.wgsl workgroup_sums.wgsl
 //! phase: exchange update
 // Exchange and update, part 2: where each peer's message begins among all that is sent.
 //
@@ -18,13 +18,13 @@ fn message_starts(@builtin(local_invocation_index) thread: u32) {
     for (var p = begin; p < end; p++) {
         sum += peer_counts[p];
     }
-    shares[thread] = sum;
+    workgroup_sums[thread] = sum;
     workgroupBarrier();
     if (begin >= end) {
         // Not to look at all that is before a share of nothing.
         return;
     }
-    var before = shares_before(thread);
+    var before = sums_before(thread);
     for (var p = begin; p < end; p++) {
         peer_starts[p] = before;
         before += peer_counts[p];

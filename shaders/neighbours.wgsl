@@ -1,10 +1,10 @@
-//! uses: step.wgsl local.wgsl lists.wgsl asked.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
+//! uses: step.wgsl local.wgsl lists.wgsl on_demand.wgsl search.wgsl sieve.wgsl touch.wgsl first_flight.wgsl
 //! binds: rechoose_dispatches as dispatches
 //! phase: neighbours
 // The flights with which the particles start the step (capped diameters want them sooner, start_flights.wgsl), and the neighbour lists, as far as they
 // are short (search.wgsl).
 //
-// Reads what the search does, `sorted` and `newborns`; reads and writes `layers`; writes `neighbours` and `neighbour_count` (zero before), and of ghosts `choices`, where
+// Reads what the search does, `sorted` and `newborns`; reads and writes `marks`; writes `neighbours` and `neighbour_count` (zero before), and of ghosts `choices`, where
 // nobody has chosen; appends lists that are longer, or have neighbours that may be
 // behind a wall, to `incomplete`, for `complete_lists`, and to `rechoose` those that may collide (sieve.wgsl). One thread per particle, which looks for
 // partners from its own place in the order on, and writes each pair it finds into both lists: half of the cells, of the
@@ -30,14 +30,14 @@ fn listed_of(s: u32) -> Listed {
     if (!HALO || step.depth == 0u) {
         return Listed(true, true);
     }
-    let layer = atomicLoad(&layers[s]) & LAYER;
+    let layer = atomicLoad(&marks[s]) & LAYER;
     let all = has_list_at(layer);
     return Listed(all, all || notes_at(layer));
 }
 
 // Marks a list as incomplete. (Who may meet a wall is marked as such, and was appended with the mark.)
 fn to_complete(list: u32, mark: u32) {
-    if ((atomicOr(&layers[list], mark) & (INCOMPLETE | NEAR)) == 0u) {
+    if ((atomicOr(&marks[list], mark) & (INCOMPLETE | NEAR)) == 0u) {
         incomplete[append(LIST_INCOMPLETE)] = list;
     }
 }
@@ -66,7 +66,7 @@ struct Taken {
     collides: bool,
 }
 
-fn take_found(s: u32, velocity: vec3<f32>, own: Listed, middle: u32, found_partners: vec4<u32>, found_places: vec4<u32>, found: u32) -> Taken {
+fn take_found(s: u32, velocity: vec3<f32>, own: Listed, midpoint: u32, found_partners: vec4<u32>, found_places: vec4<u32>, found: u32) -> Taken {
     var partners = found_partners;
     var places = found_places;
     var taken = Taken(0u, false);
@@ -80,8 +80,8 @@ fn take_found(s: u32, velocity: vec3<f32>, own: Listed, middle: u32, found_partn
         let other = places.x;
         partners = partners.yzww;
         places = places.yzww;
-        let near_wall = ((middle | other) & NEAR_WALL) != 0u;
-        let collide = may_collide(middle, other, sorted[j].motion.xyz - velocity);
+        let near_wall = ((midpoint | other) & NEAR_WALL) != 0u;
+        let collide = may_collide(midpoint, other, sorted[j].motion.xyz - velocity);
         let theirs = listed_of(j);
         if (own.all) {
             enter(s, own_place + p, j);
@@ -124,14 +124,14 @@ fn neighbours_of(thread: Thread) {
     if (s >= min(step.total, cell_start[step.bins])) {
         return;
     }
-    if (HALO && step.depth > 0u && (atomicLoad(&layers[s]) & LAYER) != 0u) {
+    if (HALO && step.depth > 0u && (atomicLoad(&marks[s]) & LAYER) != 0u) {
         choices[s].x = NOBODY;
     }
     if (!CAPPED) {
         neighbours[2u * s] = first_flight(s, 0u);
     }
-    let middle = middles[s];
-    let reach = reach_of(s, middle);
+    let midpoint = midpoints[s];
+    let reach = reach_of(s, midpoint);
     // What comes after it of its own row, and the four rows after that.
     let y_step = step.size.x;
     let z_step = step.size.x * step.size.y;
@@ -168,8 +168,8 @@ fn neighbours_of(thread: Thread) {
             base = select(base, r3.x - e2, k >= e2);
             base = select(base, r4.x - e3, k >= e3);
             let j = select(s, base + k, k < e4);
-            let other = middles[j];
-            if (j != s && may_meet(middle, other, j, n)) {
+            let other = midpoints[j];
+            if (j != s && may_meet(midpoint, other, j, n)) {
                 let next = vec4<u32>(found) == vec4<u32>(0u, 1u, 2u, 3u);
                 partners = select(partners, vec4<u32>(j), next);
                 places = select(places, vec4<u32>(other), next);
@@ -184,7 +184,7 @@ fn neighbours_of(thread: Thread) {
             list_choosers(s, 0u, last, fresh);
         }
         last = partners;
-        let taken = take_found(s, velocity, own, middle, partners, places, found);
+        let taken = take_found(s, velocity, own, midpoint, partners, places, found);
         fresh = taken.fresh;
         chooses = chooses || taken.collides;
     }

@@ -1,9 +1,9 @@
-//! uses: step.wgsl grid.wgsl middle.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
+//! uses: step.wgsl grid.wgsl midpoint.wgsl local.wgsl particle.wgsl lists.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl halo.wgsl sendings.wgsl
 //! binds: rechoose_dispatches as dispatches
 //! phase: exchange
 // Exchange, part 1: which particles go to which devices: to every one that owns their cell or needs them as ghosts.
 //
-// Reads `border`, `particles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
+// Reads `border`, `particles`, `peers`, `cross_section_shares`; appends to `sendings` (and counts beyond the
 // buffer's end: the host then makes it larger and packs again) and adds to `peer_counts`. One thread per entry of
 // `border`. The order of what is sent depends on the order of the threads; the receiver sorts.
 
@@ -22,7 +22,7 @@ fn pack(thread: Thread) {
     let place = vec3<i32>(cell);
     let index = border[entry].x;
     let particle = particles[index];
-    let middle = packed(middle_of(particle.position, particle.velocity));
+    let midpoint = packed(midpoint_of(particle.position, particle.velocity));
     var reach = 0;
     if (step.depth > 0u) {
         // With room to spare: whoever is brought up to date later has been sent here.
@@ -33,7 +33,7 @@ fn pack(thread: Thread) {
         if (owns(peers[p], place, i32(step.depth))) {
             let own = owns(peers[p], place, 0);
             owned = owned || own;
-            if (!own && from_box2(middle, cell, peers[p].low, peers[p].high) >= reach * reach) {
+            if (!own && from_box2(midpoint, cell, peers[p].low, peers[p].high) >= reach * reach) {
                 continue;
             }
             let k = append(LIST_OUTBOX);

@@ -4,14 +4,14 @@
 // that needs them as ghosts. (It may have others near its border, as newborns or as its own of the step before: no chain
 // leads to those, so what becomes of them changes nothing.)
 //
-// Reads `changed`, `cells`, `middles`, `peers`, `shares`; appends to `sendings` (and counts beyond the
-// buffer's end: the host then makes it larger and packs again), adds to `peer_counts` and clears the marks in `layers`.
+// Reads `changed`, `cells`, `midpoints`, `peers`, `cross_section_shares`; appends to `sendings` (and counts beyond the
+// buffer's end: the host then makes it larger and packs again), adds to `peer_counts` and clears the mark in `marks`.
 // One thread per entry of `changed`. The receiver finds the ghost by cell and id, so order does not matter.
 
 var<uniform> step: Step;
-var<storage, read> middles: array<u32>;
+var<storage, read> midpoints: array<u32>;
 var<storage, read> cells: array<u32>;
-var<storage, read_write> layers: array<u32>;
+var<storage, read_write> marks: array<u32>;
 var<storage, read> changed: array<u32>;
 var<storage, read_write> peer_counts: array<atomic<u32>>;
 
@@ -22,12 +22,12 @@ fn pack_updates(thread: Thread) {
         return;
     }
     let s = changed[entry];
-    layers[s] &= ~LISTED;
+    marks[s] &= ~LISTED;
     let cell = cell_of(cells[s]);
     let reach = chain_reach(cell, step.depth);
     for (var p = 0u; p < step.near_peers; p++) {
         if (owns(peers[p], vec3<i32>(cell), i32(step.depth))
-            && from_box2(middles[s], cell, peers[p].low, peers[p].high) < reach * reach) {
+            && from_box2(midpoints[s], cell, peers[p].low, peers[p].high) < reach * reach) {
             let k = append(LIST_UPDATES);
             if (k < arrayLength(&sendings)) {
                 sendings[k] = Sending(s, p, atomicAdd(&peer_counts[p], 1u));

@@ -1,6 +1,6 @@
 //! uses: step.wgsl particle.wgsl newborn.wgsl
 //! phase: lists
-// Puts the particles back as they were before a step that was held after its search (HELD), on a device alone.
+// Puts the particles back as they were before a step that was stalled after its search (STALLED), on a device alone.
 //
 // Reads `sorted`; writes `particles`, where those that entered in this step leave dead slots: they enter again. One thread per
 // particle, which writes its own slot.
@@ -16,8 +16,8 @@ fn recall(thread: Thread) {
         return;
     }
     var particle = sorted[k];
-    if (is_newborn(id_of(particle.place.w))) {
-        particle.place.w = NOBODY;
+    if (is_newborn(id_of(particle.position_tag.w))) {
+        particle.position_tag.w = NOBODY;
     }
     particles[k] = particle;
 }

@@ -1,9 +1,9 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl asked.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl listed.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl on_demand.wgsl touch.wgsl touch_neighbours.wgsl neighbour_list.wgsl listed.wgsl update.wgsl coarse.wgsl cap.wgsl nearness.wgsl
 //! binds: rechoose_dispatches as dispatches
 //! phase: update
 // Update, part 2: what the owners of the ghosts did to them.
 //
-// Reads `updates_in`, `cell_start`, `layers`, the lists of neighbours behind the flights, `middles`; writes `sorted` and `flights`, and lets the ghost choose
+// Reads `updates_in`, `cell_start`, `marks`, the lists of neighbours behind the flights, `midpoints`; writes `sorted` and `flights`, and lets the ghost choose
 // again and those who may have it in their lists.
 // One thread per update, each of another ghost, which is found in its cell by its id; one that is not there
 // is counted, and the host stops the run.
@@ -12,12 +12,12 @@ var<uniform> step: Step;
 var<storage, read> cell_start: array<u32>;
 var<storage, read_write> sorted: array<Packed>;
 var<storage, read_write> flights: array<vec4<u32>>;
-var<storage, read> middles: array<u32>;
+var<storage, read> midpoints: array<u32>;
 var<storage, read> updates_in: array<Update>;
 
 // Those who choose and may have a particle in their lists that has none itself, or not all of it.
 fn touch_around(s: u32, cell: vec3<u32>, thread: u32) {
-    let middle = middles[s];
+    let midpoint = midpoints[s];
     let near = near2(FULL_SHARE);
     // In layers of cells farther out nobody chooses.
     let around = step.depth - 1u;
@@ -28,8 +28,8 @@ fn touch_around(s: u32, cell: vec3<u32>, thread: u32) {
             let row = local_index(vec3<u32>(low.x, y, z));
             let last = cell_start[row + max(high.x, low.x) - low.x];
             for (var j = cell_start[row]; j < last; j++) {
-                let away = packed_between(middle, middles[j]);
-                if (dot(away, away) < near && (atomicLoad(&layers[j]) & LAYER) < step.depth) {
+                let away = packed_between(midpoint, midpoints[j]);
+                if (dot(away, away) < near && (atomicLoad(&marks[j]) & LAYER) < step.depth) {
                     touch(j, thread);
                 }
             }
@@ -51,7 +51,7 @@ fn receive(thread: Thread) {
     let bin = local_index(cell);
     let end = cell_start[bin + 1u];
     var s = cell_start[bin];
-    while (s < end && sorted[s].place.w != after.place.w) {
+    while (s < end && sorted[s].position_tag.w != after.position_tag.w) {
         s++;
     }
     if (s == end) {
@@ -61,10 +61,10 @@ fn receive(thread: Thread) {
     sorted[s] = after;
     flights[2u * s] = packed_flight(updates_in[entry].flight);
     if (updates_in[entry].flight.wall < step.dt) {
-        atomicOr(&layers[s], TURNED_TO_WALL);
+        atomicOr(&marks[s], TURNED_TO_WALL);
     }
     touch(s, number);
-    let layer = atomicLoad(&layers[s]) & LAYER;
+    let layer = atomicLoad(&marks[s]) & LAYER;
     if (has_list_at(layer) || (notes_at(layer) && neighbour_count[s] <= DIRECT)) {
         touch_neighbours(neighbour_count[s], direct_of(s), 0u, vec4<u32>(0u), number);
     } else {

@@ -8,7 +8,7 @@
 // count is read, but where threads do their chunks together (starts.gpu.wgsl).
 
 var<uniform> step: Step;
-var<storage, read_write> held: array<u32>;
+var<storage, read_write> step_state: array<u32>;
 var<storage, read> chunk_sums: array<vec4<u32>>;
 var<storage, read_write> cell_start: array<vec4<u32>>;
 var<storage, read> stretch_sums: array<vec4<u32>>;
@@ -48,7 +48,7 @@ fn scan_cells(thread: Thread) {
     before += sum.x + sum.y + sum.z + sum.w;
     let own = among[chunk % 4u];
     if (chunk == step.bins / CHUNK) {
-        held[PRESENT] = before + own;
+        step_state[PRESENT] = before + own;
     }
     write_starts(thread, chunk, before, own);
 }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl shares.wgsl lists.wgsl emptied.wgsl stretches.wgsl starts_of_chunk.wgsl
+//! uses: step.wgsl workgroup_sums.wgsl lists.wgsl emptied.wgsl stretches.wgsl starts_of_chunk.wgsl
 //! binds: counts_apart as cell_counts
 //! phase: scan
 // Scan in one, of few cells (merged.wgsl): where each cell's particles start, in place of how many they are; and on a device alone empties the lists of
@@ -7,7 +7,7 @@
 // Reads counts and writes starts as `scan_cells` does; writes PRESENT. One workgroup; each thread takes one contiguous share, by fours.
 
 var<uniform> step: Step;
-var<storage, read_write> held: array<u32>;
+var<storage, read_write> step_state: array<u32>;
 var<storage, read_write> cell_start: array<vec4<u32>>;
 var<storage, read_write> cell_counts: array<vec4<u32>>;
 
@@ -27,11 +27,11 @@ fn scan_merged(@builtin(local_invocation_index) thread: u32) {
         sum += counts_of(four) + counts_of(four + 1u) + counts_of(four + 2u) + counts_of(four + 3u);
         sum += counts_of(four + 4u) + counts_of(four + 5u) + counts_of(four + 6u) + counts_of(four + 7u);
     }
-    shares[thread] = sum.x + sum.y + sum.z + sum.w;
+    workgroup_sums[thread] = sum.x + sum.y + sum.z + sum.w;
     workgroupBarrier();
-    let before = shares_before(thread);
+    let before = sums_before(thread);
     if (thread == SCAN_THREADS - 1u) {
-        held[PRESENT] = before + shares[thread];
+        step_state[PRESENT] = before + workgroup_sums[thread];
     }
     write_starts_of_fours(begin, end, before);
 }

@@ -1,4 +1,4 @@
-//! uses: step.wgsl shares.wgsl stretches.wgsl
+//! uses: step.wgsl workgroup_sums.wgsl stretches.wgsl
 //! phase: scan
 // Scan, part 2, where there are more than a few stretches: their sums become exclusive prefix sums.
 //
@@ -26,9 +26,9 @@ fn scan_stretches(@builtin(local_invocation_index) thread: u32) {
         let four = four_from(k, end);
         sum += four.x + four.y + four.z + four.w;
     }
-    shares[thread] = sum;
+    workgroup_sums[thread] = sum;
     workgroupBarrier();
-    var before = shares_before(thread);
+    var before = sums_before(thread);
     for (var k = begin; k < end; k += 4u) {
         let four = four_from(k, end);
         for (var j = 0u; j < min(4u, end - k); j++) {

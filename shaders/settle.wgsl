@@ -13,8 +13,8 @@ var<storage, read> pairs: array<vec2<u32>>;
 @compute @workgroup_size(WORKGROUP)
 fn settle(thread: Thread) {
     let k = linear(thread);
-    let number = number_in_part(k);
-    let count = entries_in_part(k, step.round, step.total / 2u);
+    let number = number_in_shard(k);
+    let count = entries_in_shard(k, step.round, step.total / 2u);
     if (number >= count) {
         return;
     }

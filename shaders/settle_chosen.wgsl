@@ -9,14 +9,14 @@
 // collided with others, and keep their tags, which are written again as they were.
 
 var<uniform> step: Step;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
 
 fn mark_of(s: u32) -> u32 {
-    return atomicLoad(&layers[s]);
+    return atomicLoad(&marks[s]);
 }
 
 fn tag_of(s: u32) -> u32 {
-    return sorted[s].place.w;
+    return sorted[s].position_tag.w;
 }
 
 // (Known only on the way: the same pipeline on one device as on several.)
@@ -28,7 +28,7 @@ fn among_others() -> bool {
 fn settle_chosen(thread: Thread) {
     let k = linear(thread);
     let s = listed_chooser(k);
-    if (s == NOBODY || held[HELD] > 0u) {
+    if (s == NOBODY || stalled[STALLED] > 0u) {
         return;
     }
     let mine = mutual(s);

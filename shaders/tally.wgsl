@@ -44,7 +44,7 @@ override CHUNK_LOOPS: u32 = 32;
 const ENERGY_RANGE: f32 = 4.29e9;
 
 var<uniform> step: Step;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
 var<storage, read> particles: array<Packed>;
 var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read_write> sums: array<atomic<u32>>;
@@ -163,7 +163,7 @@ fn tally(
     let first_gas = 2u * group.z;
     // Once, not for each particle.
     let here = zones[zone];
-    let count = select(step.total, 0u, held[HELD] > 0u);
+    let count = select(step.total, 0u, stalled[STALLED] > 0u);
     var sums_of_first = Sums();
     var sums_of_second = Sums();
     for (var k = 0u; k < CHUNK_LOOPS; k++) {
@@ -171,7 +171,7 @@ fn tally(
         if (i >= count) {
             break;
         }
-        let place = particles[i].place;
+        let place = particles[i].position_tag;
         if (place.w == NOBODY) {
             continue;
         }

@@ -4,7 +4,7 @@
 // Where the work of the last step was: sums of the particles' weights over the planes of cells of the boxes
 // that are to be cut (recursive coordinate bisection), and the entries of all neighbour lists, those of ghosts apart.
 //
-// Reads `cells`, `layers`, `neighbour_count` and the tree of cuts so far, `cuts`; writes the integer tally `sums`,
+// Reads `cells`, `marks`, `neighbour_count` and the tree of cuts so far, `cuts`; writes the integer tally `sums`,
 // two words a plane. One thread per particle, which descends the tree; ghosts are weighed by their owners.
 // Sums of integers do not depend on order.
 
@@ -24,7 +24,7 @@ var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read> neighbour_count: array<u32>;
 var<storage, read_write> sums: array<atomic<u32>>;
 var<storage, read> cells: array<u32>;
-var<storage, read> layers: array<u32>;
+var<storage, read> marks: array<u32>;
 var<uniform> weights: Weights;
 // A cut: axis, plane, the entries below and above. An open box: OPEN, the axis to cut, its lowest plane, its
 // place in the histogram. A part: OPEN + 1.
@@ -36,8 +36,8 @@ fn weigh(thread: Thread) {
     if (s >= step.total) {
         return;
     }
-    let mark = layers[s];
-    // Of the outermost ghosts these are no candidates (asked.wgsl).
+    let mark = marks[s];
+    // Of the outermost ghosts these are no candidates (on_demand.wgsl).
     let listed = select(neighbour_count[s], 0u, step.depth > 0u && (mark & LAYER) >= step.depth);
     if (weights.cuts == 0u) {
         atomicAdd(&counters[CANDIDATES], listed);

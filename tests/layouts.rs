@@ -4,11 +4,11 @@
 use std::collections::BTreeSet;
 use std::mem::offset_of;
 
-use corpuscle::gpu::{KERNELS, KernelSource};
+use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
-    CROWD, GpuCoat, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep,
-    GpuStillGas, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, MEMBERS,
+    CROWD, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
+    GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -29,7 +29,7 @@ macro_rules! twin {
 #[repr(C)]
 #[allow(dead_code)] // Only its layout is used.
 struct Packed {
-    place: [u32; 4],
+    position_tag: [u32; 4],
     motion: [f32; 4],
 }
 
@@ -69,15 +69,15 @@ fn twins() -> Vec<Twin> {
             next_newborns
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
-        twin!("Packed", Packed, place, motion),
+        twin!("Packed", Packed, position_tag, motion),
         // The tail padding is not named in the shader.
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
-        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, coat, normal, motion),
+        twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
         twin!(
             "Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, drawn_low, pad3, drawn_size, pad4
         ),
-        twin!("Coat", GpuCoat, thermal, accommodation, friction, first_vent, end_vent),
+        twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
@@ -109,7 +109,7 @@ fn differences(module: &Module, twin: &Twin) -> Option<Vec<String>> {
 
 fn modules() -> Vec<(&'static str, Module)> {
     let parse = |source| naga::front::wgsl::parse_str(source).expect("the build has parsed it");
-    let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.forms[0], kernel.forms[1]];
+    let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.variants[0], kernel.variants[1]];
     KERNELS
         .iter()
         .flat_map(|kernel| sources(kernel).into_iter().flatten().map(|source| (kernel.name, parse(source))))
@@ -163,7 +163,7 @@ fn every_struct_in_a_buffer_has_a_twin() {
 /// The same 32 bytes: position and tag, velocity and spin.
 #[test]
 fn a_packed_particle_is_a_particle() {
-    let words = [offset_of!(Packed, place), offset_of!(Packed, motion)].map(|at| [at, at + 12]);
+    let words = [offset_of!(Packed, position_tag), offset_of!(Packed, motion)].map(|at| [at, at + 12]);
     let [[position, tag], [velocity, spin]] = words;
     assert_eq!(size_of::<Packed>(), size_of::<GpuParticle>());
     assert_eq!([position, tag], [offset_of!(GpuParticle, position), offset_of!(GpuParticle, tag)]);
@@ -218,7 +218,7 @@ fn constants_of_kernels_are_those_of_the_host() {
     }
 }
 
-/// In their form for software devices kernels count on it.
+/// In their variant for software devices kernels count on it.
 #[test]
 fn workgroups_have_whole_subgroups() {
     assert!(corpuscle::subdomain::WORKGROUP.is_multiple_of(corpuscle::gpu::WORKGROUP_DIVISOR));

@@ -123,9 +123,9 @@ fn files_that_use_each_other_end() {
     assert_eq!(build::kernels(dir.path(), REGISTRY).unwrap().0.len(), 1);
 }
 
-/// Another form of a shared file makes another source of the kernels that use it, as valid as the first.
+/// Another variant of a shared file makes another source of the kernels that use it, as valid as the first.
 #[test]
-fn a_form_of_a_shared_file_makes_another_source() {
+fn a_variant_of_a_shared_file_makes_another_source() {
     let twice = DOUBLE.replace("TWO * x", "x + x");
     let second = |text: &str| {
         folder(&[
@@ -140,14 +140,14 @@ fn a_form_of_a_shared_file_makes_another_source() {
     let (kernels, unused) = build::kernels(dir.path(), REGISTRY).unwrap();
     assert!(unused.is_empty(), "{unused:?}");
     assert!(kernels[0].source.contains("TWO * x") && !kernels[0].source.contains("x + x"));
-    let [for_software, for_gpus] = &kernels[0].forms;
+    let [for_software, for_gpus] = &kernels[0].variants;
     let for_software = for_software.as_ref().expect("another source");
     assert!(for_software.contains("x + x") && !for_software.contains("TWO * x"), "{for_software}");
     assert_eq!(for_gpus, &None, "there is no such form");
-    assert_eq!(kernels[1].forms, [None, None], "it uses no file of which there are other forms");
+    assert_eq!(kernels[1].variants, [None, None], "it uses no file of which there are other variants");
 
     let kernel = error(&[("advect.software.wgsl", "fn main() {}\n")]);
-    assert!(kernel.contains("shaders/advect.software.wgsl: error: only files of shared/ have forms"), "{kernel}");
+    assert!(kernel.contains("shaders/advect.software.wgsl: error: only files of shared/ have variants"), "{kernel}");
     let broken = |text: &str| build::kernels(second(text).path(), REGISTRY).err().expect("an error");
     let named = broken(&twice.replace("x + x", "x + y"));
     assert!(named.contains("double.software.wgsl:4:"), "{named}");

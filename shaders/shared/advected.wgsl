@@ -1,7 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl flying.wgsl binned.wgsl
 // The flight of a particle to the end of the step. (Those that meet walls, or may, are left to `meet_walls` of what uses this.)
 
-var<storage, read_write> layers: array<u32>;
+var<storage, read_write> marks: array<u32>;
 var<storage, read_write> stretch_sums: array<u32>;
 
 // The list that the step before has filled.
@@ -24,20 +24,20 @@ fn advect_slot(s: u32) {
         empty_bounces();
         atomicStore(&counters[COUNT_DROPPED], 0u);
     }
-    let alone = held[INTERVAL] > 0u;
+    let alone = step_state[INTERVAL_STEPS] > 0u;
     if (COLLISIONS && alone) {
         empty_sums(s);
     }
-    let held_back = ROUNDS_OF_PAIRS && held[HELD] > 0u;
-    if (bins_next() && s < step.total + step.next_newborns && (held_back || s >= step.total)) {
-        // Those who enter in the step that follows; on a device that is held nobody.
-        if (!held_back && enter_among(s, step.newborns + step.next_newborns)) {
-            bin_next(s, particles[s].place.xyz, particles[s].motion.xyz);
+    let stalled_here = ROUNDS_OF_PAIRS && stalled[STALLED] > 0u;
+    if (bins_next() && s < step.total + step.next_newborns && (stalled_here || s >= step.total)) {
+        // Those who enter in the step that follows; on a device that is stalled nobody.
+        if (!stalled_here && enter_among(s, step.newborns + step.next_newborns)) {
+            bin_next(s, particles[s].position_tag.xyz, particles[s].motion.xyz);
         } else {
             bin_nobody(s);
         }
     }
-    if (s >= step.total || held_back) {
+    if (s >= step.total || stalled_here) {
         return;
     }
     var place: vec4<u32>;
@@ -45,24 +45,24 @@ fn advect_slot(s: u32) {
     var mark = 0u;
     if (COLLISIONS) {
         if (ROUNDS_OF_PAIRS || !alone) {
-            mark = layers[s];
+            mark = marks[s];
         }
         // A slot behind the last particle, or a ghost.
-        let nobody = select(s >= held[PRESENT], (mark & LAYER) != 0u, !alone);
+        let nobody = select(s >= step_state[PRESENT], (mark & LAYER) != 0u, !alone);
         if (nobody) {
-            particles[s].place.w = NOBODY;
+            particles[s].position_tag.w = NOBODY;
             if (bins_next()) {
                 bin_nobody(s);
             }
             return;
         }
-        place = sorted[s].place;
+        place = sorted[s].position_tag;
         motion = sorted[s].motion;
     } else {
         if (!enter(s)) {
             return;
         }
-        place = particles[s].place;
+        place = particles[s].position_tag;
         if (VENTS && place.w == NOBODY) {
             return;
         }
@@ -75,7 +75,7 @@ fn advect_slot(s: u32) {
         // Its flight, where the particle will be, knows when; of most it is known that they meet none.
         meets_wall = false;
         if ((mark & (NEAR | TURNED_TO_WALL)) != 0u) {
-            meets_wall = flight_of(particles[s].place).wall < step.dt;
+            meets_wall = flight_of(particles[s].position_tag).wall < step.dt;
         }
     } else {
         // (What enters in this step, which is rare, starts at a time of its own.)
@@ -84,7 +84,7 @@ fn advect_slot(s: u32) {
     if (meets_wall) {
         if (COLLISIONS && !ROUNDS_OF_PAIRS) {
             if (!alone) {
-                layers[s] |= NEAR;
+                marks[s] |= NEAR;
             }
             atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         }
@@ -104,6 +104,6 @@ fn advect_slot(s: u32) {
             bin_next(s, end, velocity);
         }
     } else {
-        particles[s].place = vec4<u32>(end, place.w);
+        particles[s].position_tag = vec4<u32>(end, place.w);
     }
 }

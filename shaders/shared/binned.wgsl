@@ -8,7 +8,7 @@ var<storage, read_write> bins: array<vec2<u32>>;
 var<storage, read_write> cell_counts: array<atomic<u32>>;
 
 fn bins_next() -> bool {
-    return COLLISIONS && step.slot + 1u < held[INTERVAL];
+    return COLLISIONS && step.slot + 1u < step_state[INTERVAL_STEPS];
 }
 
 fn bin_nobody(i: u32) {

@@ -1,16 +1,16 @@
-//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl coats.wgsl flying.wgsl binned.wgsl
+//! uses: step.wgsl grid.wgsl newborn.wgsl gas.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl surface_models.wgsl flying.wgsl binned.wgsl
 //! binds: surface_sums as sums
 // The flight of a particle that meets walls to the end of the step, off every wall on the way: as off a mirror, or
-// as the wall's coat has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
+// as the wall's surface model has it, diffusely with the temperature of the wall or with their speed, or out through a vent. A wall that moves does
 // so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions `particles`), the walls,
-// `coats` and `vents`; writes `particles` (NOBODY for one that has left), counts it in its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces,
-// the coats, the vents and the moving walls that the scene has.
+// `surface_models` and `vents`; writes `particles` (NOBODY for one that has left), counts it in its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces,
+// the surface models, the vents and the moving walls that the scene has.
 
 override SPIN: bool = true;
 override SURFACES: bool = true;
-override COATS: bool = true;
+override SURFACE_MODELS: bool = true;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
 // Impulse over reference mass to tally units.
@@ -18,8 +18,8 @@ override IMPULSE_SCALE: f32 = 1.0;
 
 // Energy over reference mass to tally units.
 override ENERGY_SCALE: f32 = 1.0;
-// Where the tallies of coats and vents start in `sums`.
-override COATS_AT: u32 = 0;
+// Where the tallies of surface models and vents start in `sums`.
+override SURFACE_MODELS_AT: u32 = 0;
 override VENTS_AT: u32 = 0;
 // And where those of moving walls do.
 override WORKS_AT: u32 = 0;
@@ -105,7 +105,7 @@ fn bounce_off(s: u32, entry: u32) {
     }
     if (ROUNDS_OF_PAIRS) {
         // Where the particle will be.
-        time = bitcast<f32>(particles[s].place.x);
+        time = bitcast<f32>(particles[s].position_tag.x);
     } else {
         time = birth_time(id_of(particle.tag));
     }
@@ -142,11 +142,11 @@ fn bounce_off(s: u32, entry: u32) {
         let relative = old - carried;
         var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
         var kept = true;
-        if (COATS && triangle.coat != NOBODY) {
-            let coat = coats[triangle.coat];
+        if (SURFACE_MODELS && triangle.surface_model != NOBODY) {
+            let surface_model = surface_models[triangle.surface_model];
             let draw = wall_draw(particle.tag, bounces, 0u);
             if (VENTS) {
-                let v = vent_at(coat, shifted(particle.position, old, hit.time));
+                let v = vent_at(surface_model, shifted(particle.position, old, hit.time));
                 if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
                     if (SURFACES && triangle.surface != NOBODY) {
                         tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
@@ -157,19 +157,19 @@ fn bounce_off(s: u32, entry: u32) {
                 }
             }
             let chance = unit_interval(draw.y);
-            if (chance < coat.accommodation) {
+            if (chance < surface_model.accommodation) {
                 kept = false;
-                let away = emitted(triangle.normal, coat.thermal / gas.mass, particle.tag, bounces, draw.z);
+                let away = emitted(triangle.normal, surface_model.thermal / gas.mass, particle.tag, bounces, draw.z);
                 turned = away;
                 var spin = 0.0;
                 if (SPIN && gas.exchange > 0.0) {
-                    let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, coat.thermal, draw.w);
-                    spin = coat.thermal * gamma_variate(shape, particle.tag, bounces);
+                    let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, surface_model.thermal, draw.w);
+                    spin = surface_model.thermal * gamma_variate(shape, particle.tag, bounces);
                 }
                 let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
-                tally_energy(COATS_AT + triangle.coat * COAT_WORDS, kinetic + (particle.spin - spin));
+                tally_energy(SURFACE_MODELS_AT + triangle.surface_model * SURFACE_MODEL_WORDS, kinetic + (particle.spin - spin));
                 particle.spin = spin;
-            } else if (chance - coat.accommodation < coat.friction * (1.0 - coat.accommodation)) {
+            } else if (chance - surface_model.accommodation < surface_model.friction * (1.0 - surface_model.accommodation)) {
                 turned = scattered(triangle.normal, particle.tag, bounces, draw.z);
             }
         }
@@ -181,7 +181,7 @@ fn bounce_off(s: u32, entry: u32) {
         var work = 0.0;
         if (MOVING && triangle.motion != NOBODY) {
             work = gas.mass * dot(carried, turned - old);
-            tally_energy(WORKS_AT + triangle.motion * COAT_WORDS, -work);
+            tally_energy(WORKS_AT + triangle.motion * SURFACE_MODEL_WORDS, -work);
         }
         if (SPIN && kept && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
@@ -202,7 +202,7 @@ fn bounce_off(s: u32, entry: u32) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
     }
     if (VENTS && particle.tag == NOBODY) {
-        particles[s].place.w = NOBODY;
+        particles[s].position_tag.w = NOBODY;
         if (bins_next()) {
             bin_nobody(s);
         }

@@ -8,7 +8,7 @@ struct Part {
 
 // Per cell its volume, m3 (the bits of an f32), or this mark, and below it the number of its parts and the first of
 // them in `cell_parts`.
-const PARTED: u32 = 0x80000000;
+const DIVIDED: u32 = 0x80000000;
 
 // The gas that walls at rest leave of a cell that moving walls may touch: which points of its lattice are gas, a bit for
 // each, and the volume, m3.
@@ -19,7 +19,7 @@ struct StillGas {
 
 var<storage, read> cell_volume: array<u32>;
 
-// Where in a particle's word of `layers` its part is.
+// Where in a particle's word of `marks` its part is.
 const PART_SHIFT: u32 = 16;
 
 fn parts_of(entry: u32) -> u32 {

@@ -102,8 +102,8 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
         }
         let draw2 = philox(vec4<u32>(step.index, cell, 4u * done.candidates + 1u, part), key);
         // A collision changes no place.
-        let i = Particle(vec3<u32>(0u), sorted[s].place.w, motion_i.xyz, motion_i.w);
-        let j = Particle(vec3<u32>(0u), sorted[t].place.w, motion_j.xyz, motion_j.w);
+        let i = Particle(vec3<u32>(0u), sorted[s].position_tag.w, motion_i.xyz, motion_i.w);
+        let j = Particle(vec3<u32>(0u), sorted[t].position_tag.w, motion_j.xyz, motion_j.w);
         let mass_i = gases[kind_of(i.tag)].mass;
         let mass_j = gases[kind_of(j.tag)].mass;
         let mu = mass_i * mass_j / (mass_i + mass_j);

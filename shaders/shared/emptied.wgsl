@@ -1,4 +1,4 @@
-//! uses: lists.wgsl list_parts.wgsl
+//! uses: lists.wgsl list_shards.wgsl
 // Lists as they are before the first entry, for those who empty them.
 
 var<storage, read_write> rechoose_dispatches: array<atomic<u32>>;
@@ -18,5 +18,5 @@ fn empty_done_list(list: u32) {
     if (list != LIST_BOUNCE && list != LIST_BOUNCE_ODD && list != COUNT_DROPPED) {
         empty_list(list);
     }
-    empty_parts(list);
+    empty_shards(list);
 }

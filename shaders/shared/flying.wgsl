@@ -6,4 +6,5 @@ override VENTS: bool = true;
 
 var<storage, read_write> particles: array<Packed>;
 var<storage, read> sorted: array<Packed>;
-var<storage, read> held: array<u32>;
+var<storage, read> stalled: array<u32>;
+var<storage, read> step_state: array<u32>;

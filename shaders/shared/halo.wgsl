@@ -8,7 +8,7 @@
 // settled n links away is known to n + 2. Mid-step points are those of the search, in integers, so all devices agree.
 
 // What is left of the cross-section in each coarse block.
-var<storage, read> shares: array<u32>;
+var<storage, read> cross_section_shares: array<u32>;
 
 // The least integer of which the square is at least x.
 fn root_up(x: i32) -> i32 {
@@ -30,7 +30,7 @@ fn most_share(cell: vec3<u32>, around: u32) -> u32 {
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
-                most = max(most, shares[(z * BLOCKS_Y + y) * BLOCKS_X + x]);
+                most = max(most, cross_section_shares[(z * BLOCKS_Y + y) * BLOCKS_X + x]);
             }
         }
     }
@@ -42,7 +42,7 @@ fn chain_reach(cell: vec3<u32>, links: u32) -> i32 {
     var own = FULL_SHARE;
     var widest = FULL_SHARE;
     if (CAPPED) {
-        own = shares[block_of(cell)];
+        own = cross_section_shares[block_of(cell)];
         widest = most_share(cell, links - 1u);
     }
     return root_up(near2(own)) + (i32(links) - 1) * root_up(near2(widest));
@@ -50,9 +50,9 @@ fn chain_reach(cell: vec3<u32>, links: u32) -> i32 {
 
 // The square of the distance of a point, packed, from a box of cells, low <= c < high, in 1/128 cells. Beyond the border of
 // the grid cells go on: `nearest_cell` counts what is there as theirs.
-fn from_box2(middle: u32, cell: vec3<u32>, low: vec3<i32>, high: vec3<i32>) -> i32 {
+fn from_box2(midpoint: u32, cell: vec3<u32>, low: vec3<i32>, high: vec3<i32>) -> i32 {
     let corner = vec3<i32>(cell) * 128;
-    let part = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(1023u));
+    let part = vec3<i32>(vec3<u32>(midpoint, midpoint >> 10u, midpoint >> 20u) & vec3<u32>(1023u));
     let at = corner + extractBits(part - corner, 0u, 10u);
     let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 1;
     let below = select(low * 128 - at, vec3<i32>(0), low <= vec3<i32>(1));

@@ -15,7 +15,7 @@ var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read_write> dispatches: array<atomic<u32>>;
 
 // (A kernel dispatched over one list may append to another, so `settle` and `settle_chosen`, which are dispatched over pairs and by no list, `pack`, over
-// the border, and `order`, `neighbours` and `receive`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `asked_dispatches`.)
+// the border, and `order`, `neighbours` and `receive`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `on_demand_dispatches`.)
 //
 // Makes sure that a list's dispatch has this workgroup.
 fn cover(list: u32, group: u32) {

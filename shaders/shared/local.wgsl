@@ -29,15 +29,15 @@ fn layer_of(c: vec3<u32>) -> u32 {
     return max(away.x, max(away.y, away.z));
 }
 
-// `layers` holds a particle's layer (0 of the own, halo.wgsl) and these marks: another device may have it as a ghost; it is in the list
-// `changed`; it may meet a wall in this step; it is in the list `asked`, its neighbours have been searched; its list of neighbours
+// `marks` holds a particle's layer (0 of the own, halo.wgsl) and these marks: another device may have it as a ghost; it is in the list
+// `changed`; it may meet a wall in this step; it is in the list `on_demand`, its neighbours have been searched; its list of neighbours
 // is yet to be screened, is yet to get its tail; it may meet a wall after a collision. Above them is a bit for each round: it is in the list of those that choose in it, or one of the
 // outermost ghosts, who never are. (Where nobody chooses, the part of a particle in its cell is kept there, cell_gas.wgsl.)
 const LAYER: u32 = 0xff;
 const SHARED: u32 = 0x100;
 const LISTED: u32 = 0x200;
 const NEAR: u32 = 0x400;
-const ASKED: u32 = 0x800;
+const REQUESTED: u32 = 0x800;
 const SEARCHED: u32 = 0x1000;
 const UNSCREENED: u32 = 0x2000;
 const LONG: u32 = 0x4000;

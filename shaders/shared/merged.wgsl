@@ -1,4 +1,4 @@
-//! uses: step.wgsl parted_lists.wgsl particle.wgsl
+//! uses: step.wgsl sharded_lists.wgsl particle.wgsl
 // Kernels that could be one are, in plans of few particles on a GPU, where a dispatch takes as long as what it does.
 
 override MERGED: bool = false;
@@ -10,7 +10,7 @@ fn first_place_of(round: u32) -> u32 {
 
 // The particle of a thread over that list, or NOBODY.
 fn listed_chooser(thread: u32) -> u32 {
-    if (number_in_part(thread) >= entries_in_part(thread, LIST_RECHOOSE + step.round, step.total)) {
+    if (number_in_shard(thread) >= entries_in_shard(thread, LIST_RECHOOSE + step.round, step.total)) {
         return NOBODY;
     }
     return rechoose[first_place_of(step.round) + thread];

@@ -23,12 +23,12 @@ struct Flight {
 
 // The same bytes in as few reads and writes as there are: position and tag; velocity and spin.
 struct Packed {
-    place: vec4<u32>,
+    position_tag: vec4<u32>,
     motion: vec4<f32>,
 }
 
 fn particle_of(whole: Packed) -> Particle {
-    return Particle(whole.place.xyz, whole.place.w, whole.motion.xyz, whole.motion.w);
+    return Particle(whole.position_tag.xyz, whole.position_tag.w, whole.motion.xyz, whole.motion.w);
 }
 
 fn packed_of(particle: Particle) -> Packed {

@@ -1,22 +1,22 @@
 //! uses: dsmc.wgsl cell_gas.wgsl
 // Cells whose gas is in parts, each of which collides by itself: the part of each particle is kept in the upper half of its
-// word in `layers` (the lower half is the halo's), and while a part collides its members' places are in those of the cell in `order_by_id`.
+// word in `marks` (the lower half is the halo's), and while a part collides its members' places are in those of the cell in `order_by_id`.
 
 var<storage, read_write> neighbour_count: array<u32>;
-var<storage, read_write> layers: array<u32>;
+var<storage, read_write> marks: array<u32>;
 var<storage, read_write> order_by_id: array<u32>;
 
 // The particles begin .. end of a bin, by id, that can collide.
 fn last_of(begin: u32, bin_end: u32) -> u32 {
     var end = bin_end;
-    while (end > begin && is_newborn(id_of(sorted[end - 1u].place.w))) {
+    while (end > begin && is_newborn(id_of(sorted[end - 1u].position_tag.w))) {
         end--;
     }
     return end;
 }
 
 fn put_in_part(s: u32, part: u32) {
-    layers[s] = (layers[s] & 0xffffu) | (part << PART_SHIFT);
+    marks[s] = (marks[s] & 0xffffu) | (part << PART_SHIFT);
 }
 
 // The k-th particle of the part that was found last.
@@ -29,7 +29,7 @@ fn find_members(begin: u32, end: u32, part: u32) -> u32 {
     var count = 0u;
     var s = begin;
     for (; s < end; s++) {
-        if ((layers[s] >> PART_SHIFT) == part) {
+        if ((marks[s] >> PART_SHIFT) == part) {
             order_by_id[begin + count] = s;
             count++;
         }

@@ -4,10 +4,10 @@
 // least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
 // farther away are passed over.
 //
-// Reads `middles`, `cells`, `cell_start`, where the diameter is capped the flights in `neighbours`; writes lists in `neighbours`.
+// Reads `midpoints`, `cells`, `cell_start`, where the diameter is capped the flights in `neighbours`; writes lists in `neighbours`.
 
 var<storage, read> cell_start: array<u32>;
-var<storage, read> middles: array<u32>;
+var<storage, read> midpoints: array<u32>;
 // By fours, for the sake of flights. (Threads write other words of one four, each by the component alone, as SPIR-V has it.)
 var<storage, read_write> neighbours: array<vec4<u32>>;
 var<storage, read_write> neighbour_count: array<atomic<u32>>;
@@ -49,15 +49,15 @@ struct Reach {
     astray: bool,
 }
 
-fn reach_of(s: u32, middle: u32) -> Reach {
+fn reach_of(s: u32, midpoint: u32) -> Reach {
     var share = FULL_SHARE;
     if (CAPPED) {
         share = share_at(s);
     }
-    let at = vec3<i32>(vec3<u32>(middle, middle >> 10u, middle >> 20u) & vec3<u32>(127u));
+    let at = vec3<i32>(vec3<u32>(midpoint, midpoint >> 10u, midpoint >> 20u) & vec3<u32>(127u));
     let low = vec3<i32>(gap(at.x, -1), gap(at.y, -1), gap(at.z, -1));
     let high = vec3<i32>(gap(at.x, 1), gap(at.y, 1), gap(at.z, 1));
-    return Reach(near2(share), low * low, high * high, (middle & ASTRAY) != 0u);
+    return Reach(near2(share), low * low, high * high, (midpoint & ASTRAY) != 0u);
 }
 
 // A row of three cells, neighbours in memory, without those that are too far away: where it begins, and how many it has.
@@ -70,17 +70,17 @@ fn row_at(first: u32, left: i32, reach: Reach) -> vec2<u32> {
 }
 
 // Whether a particle may meet particle j at `other`, by the smaller of the two diameters, so that either is in the other's list.
-fn may_meet(middle: u32, other: u32, j: u32, own_near2: i32) -> bool {
-    let away = packed_between(middle, other);
+fn may_meet(midpoint: u32, other: u32, j: u32, own_near2: i32) -> bool {
+    let away = packed_between(midpoint, other);
     let distance2 = dot(away, away);
     return distance2 < own_near2 && (!CAPPED || distance2 < near2(share_at(j)));
 }
 
 // Looks all around. Writes what it finds: the first `direct` in the record, the others, where there is a tail, there.
 fn search(s: u32, direct: u32, tail: u32) -> Found {
-    let middle = middles[s];
+    let midpoint = midpoints[s];
     let list = direct_entry(s, 0u);
-    let reach = reach_of(s, middle);
+    let reach = reach_of(s, midpoint);
     let low2 = reach.low2;
     let high2 = reach.high2;
     // The nine rows around. The border layer makes every index valid.
@@ -108,7 +108,7 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
     let e7 = e6 + r7.y;
     let e8 = e7 + r8.y;
     var found = 0u;
-    var flags = middle;
+    var flags = midpoint;
     // One loop over all of them: threads that run together wait for the one with the most candidates, not for the fullest row of each.
     var k = 0u;
     for (; k < e8; k++) {
@@ -122,8 +122,8 @@ fn search(s: u32, direct: u32, tail: u32) -> Found {
         base = select(base, r7.x - e6, k >= e6);
         base = select(base, r8.x - e7, k >= e7);
         let j = base + k;
-        let other = middles[j];
-        if (j != s && may_meet(middle, other, j, n)) {
+        let other = midpoints[j];
+        if (j != s && may_meet(midpoint, other, j, n)) {
             flags |= other;
             if (found < direct || tail != NOBODY) {
                 put_word(select(tail, list, found < direct) + found, j);

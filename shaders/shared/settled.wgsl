@@ -5,7 +5,7 @@
 // cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
 // back along the line of their centres.
 //
-// Reads `choices`, the lists of neighbours behind the flights; reads and writes `sorted`, `flights` and `layers`,
+// Reads `choices`, the lists of neighbours behind the flights; reads and writes `sorted`, `flights` and `marks`,
 // and appends the particles that this may make choose otherwise to `rechoose`, and those that other
 // devices must be told of to `changed`.
 
@@ -58,15 +58,15 @@ fn turned(sigma2: f32, miss: vec3<f32>, g: vec3<f32>, speed: f32, side: u32) -> 
 
 // Notes a particle that other devices have as a ghost.
 fn tell(s: u32) {
-    if ((atomicLoad(&layers[s]) & (SHARED | LISTED)) == SHARED) {
+    if ((atomicLoad(&marks[s]) & (SHARED | LISTED)) == SHARED) {
         // (Others may let it choose meanwhile.)
-        atomicOr(&layers[s], LISTED);
+        atomicOr(&marks[s], LISTED);
         changed[append(LIST_CHANGED)] = s;
     }
 }
 
 fn is_own(s: u32) -> bool {
-    return (atomicLoad(&layers[s]) & LAYER) == 0u;
+    return (atomicLoad(&marks[s]) & LAYER) == 0u;
 }
 
 // By thread k.
@@ -141,10 +141,10 @@ fn settle_pair(pair: vec2<u32>, k: u32) {
     flights[2u * pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
     flights[2u * pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
     if (wall_i < step.dt) {
-        atomicOr(&layers[pair.x], TURNED_TO_WALL);
+        atomicOr(&marks[pair.x], TURNED_TO_WALL);
     }
     if (wall_j < step.dt) {
-        atomicOr(&layers[pair.y], TURNED_TO_WALL);
+        atomicOr(&marks[pair.y], TURNED_TO_WALL);
     }
     tell_cut_short();
 }

@@ -37,7 +37,7 @@ struct Step {
     // The first slot to bin.
     first: u32,
     inner_high: vec3<u32>,
-    // Which ghosts choose partners, and in which pass: see asked.wgsl.
+    // Which ghosts choose partners, and in which pass: see on_demand.wgsl.
     ghosts: u32,
     // Entries of `peers`, and how many of them, the first, have ghosts of particles of this device.
     peers: u32,
@@ -61,4 +61,4 @@ struct Step {
 // `ghosts`: all of them choose; the outermost wait; the pass over those that were asked.
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
-const GHOSTS_ASKED: u32 = 2;
+const GHOSTS_ON_DEMAND: u32 = 2;

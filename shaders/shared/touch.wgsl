@@ -1,14 +1,14 @@
-//! uses: parted_lists.wgsl merged.wgsl
+//! uses: sharded_lists.wgsl merged.wgsl
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
 var<storage, read_write> rechoose: array<u32>;
-var<storage, read_write> layers: array<atomic<u32>>;
+var<storage, read_write> marks: array<atomic<u32>>;
 
 // Marks a particle as one that chooses in a round; 1 if it is to be entered in the list.
 fn marked(s: u32, round: u32) -> u32 {
     let chooses = CHOOSES << round;
-    let mark = atomicOr(&layers[s], chooses);
+    let mark = atomicOr(&marks[s], chooses);
     return select(0u, 1u, (mark & chooses) == 0u && (mark & LAYER) < max(step.depth, 1u));
 }
 

@@ -22,8 +22,8 @@ struct Triangle {
     // Surface tally of this triangle, or NOBODY.
     surface: u32,
     c: vec3<u32>,
-    // What it does to a particle that hits it (`coats`), or NOBODY: a mirror.
-    coat: u32,
+    // What it does to a particle that hits it (`surface_models`), or NOBODY: a mirror.
+    surface_model: u32,
     // Unit normal into the gas.
     normal: vec3<f32>,
     // The motion of its wall, or NOBODY: it is at rest.

@@ -110,7 +110,7 @@ impl From<BalanceBy> for By {
 impl From<&TuningArguments> for HaloOptions {
     fn from(raw: &TuningArguments) -> HaloOptions {
         let ghosts = raw.ghosts.map(|ghosts| match ghosts {
-            GhostsThatChoose::Asked => Ghosts::Asked,
+            GhostsThatChoose::Asked => Ghosts::OnDemand,
             GhostsThatChoose::All => Ghosts::All,
         });
         HaloOptions { rounds: raw.halo_rounds, ghosts }

@@ -202,7 +202,7 @@ impl SweepPlan {
         words.extend(halo.rounds.map(|rounds| ("--halo-rounds", rounds.to_string())));
         words.extend(halo.ghosts.map(|ghosts| {
             let word = match ghosts {
-                Ghosts::Asked => "asked",
+                Ghosts::OnDemand => "asked",
                 Ghosts::All => "all",
             };
             ("--ghosts", word.to_owned())

@@ -164,7 +164,7 @@ fn crosses(p: DVec3, q: DVec3, triangle: &FixedTriangle) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::tests::tank;
-    use crate::scene::{GasSide, Shape, Wall};
+    use crate::scene::{GasSide, Shape, SurfaceModel, Wall};
 
     /// A tank of 4 x 3 x 3 dm with a plate across it at x = 0.152, of this thickness and half-height (0.15: to the walls).
     fn plated(thickness: f64, half_height: f64) -> (Vessel, Grid, CellGas) {
@@ -176,7 +176,8 @@ mod tests {
             thickness,
             holes: vec![],
         };
-        let plate = Wall { name: "plate".into(), shape, gas: GasSide::Both, heat: None, friction: 0.0 };
+        let (surface, parts) = (SurfaceModel::default(), Vec::new());
+        let plate = Wall { name: "plate".into(), shape, gas: GasSide::Both, surface, parts };
         let vessel = Vessel::build(&[tank([0.4, 0.3, 0.3]), plate]).unwrap();
         let grid = Grid::around(vessel.bounds.0, vessel.bounds.1, 0.05).unwrap();
         let triangles = TriangleGrid::build(&vessel, &grid, 1e-6).unwrap();

@@ -21,7 +21,7 @@ pub enum GridError {
     #[error("the cell edge must be positive and finite, found {0} m")]
     CellSize(f64),
     #[error(
-        "the walls span {cells} cells of {cell} m along one axis; at most {limit} fit a 32-bit position with the required resolution"
+        "the walls span {cells} cells of {cell:.3e} m along one axis; at most {limit} fit a 32-bit position with the required resolution"
     )]
     TooManyCells { cells: f64, cell: f64, limit: u32 },
 }

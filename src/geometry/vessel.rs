@@ -29,6 +29,10 @@ pub(super) const VOLUME_LINES: u64 = 1 << 18;
 pub(super) const ROUNDING: f64 = 1e-12;
 /// Of the gas: where solids overlap by more, the gas is summed and not the overlap.
 const LITTLE: f64 = 0.01;
+/// Lines that measure how much of a solid lies outside of the cavity.
+const SHARE_LINES: u64 = 1 << 12;
+/// Corners of a solid that are looked at first.
+const MOST_CORNERS: usize = 256;
 /// And where the box that solids reach, around that of the gas, is larger than it by more than this.
 const FAR: f64 = 8.0;
 
@@ -265,6 +269,41 @@ impl Vessel {
             [length(line)]
         });
         size.y * size.z * sum / lines as f64
+    }
+
+    /// Of a solid, the share of its volume that lies outside of a cavity (of several: of any); 0 of a cavity. By lines: to about .01.
+    pub fn outside_share(&self, wall: usize) -> f64 {
+        let info = &self.walls[wall];
+        if info.cavity || info.volume <= 0.0 {
+            return 0.0;
+        }
+        // One whose corners are all within is taken for within.
+        let own = self.triangles.iter().filter(|triangle| triangle.wall as usize == wall).flat_map(|t| t.vertices);
+        if own.take(MOST_CORNERS).all(|corner| self.is_enclosed(self.vertices[corner as usize])) {
+            return 0.0;
+        }
+        let outside = self.along_lines(&self.extent_of(wall), SHARE_LINES, |line| {
+            let (mut own, mut around, mut length) = (0, self.cavities, 0.0);
+            for pair in line.crossings.windows(2) {
+                let crossed = pair[0].wall as usize;
+                own -= if crossed == wall { pair[0].sign } else { 0 };
+                around -= if self.walls[crossed].cavity { pair[0].sign } else { 0 };
+                length += if own > 0 && around > 0 { pair[1].x - pair[0].x } else { 0.0 };
+            }
+            length
+        });
+        outside / info.volume
+    }
+
+    /// Whether all cavities hold the point, m.
+    fn is_enclosed(&self, p: [f64; 3]) -> bool {
+        let mut outside = self.cavities;
+        self.lines.cross(p[1], p[2], |c| {
+            if c.x > p[0] && self.walls[c.wall as usize].cavity {
+                outside += c.sign;
+            }
+        });
+        outside == 0
     }
 
     fn extent_of(&self, wall: usize) -> Extent {

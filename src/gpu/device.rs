@@ -4,15 +4,16 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::kernel::Kept;
-use super::{Form, GpuError};
+use super::GpuError;
+use super::pipeline_cache::PipelineCache;
+use super::source::KernelVariant;
 
 /// How long a submission may take before a GPU counts as hung, and before a CPU adapter does, which is slow
 /// but does not hang.
 const PATIENCE: Duration = Duration::from_secs(120);
 const PATIENCE_WITH_CPU: Duration = Duration::from_secs(3600);
 
-/// A divisor of the threads of any workgroup of kernels with a form for software devices.
+/// A divisor of the threads of any workgroup of kernels with a variant for software devices.
 pub const WORKGROUP_DIVISOR: u32 = 64;
 
 /// What `corpuscle adapters` lists, and what a run records.
@@ -34,23 +35,25 @@ impl AdapterDescription {
         is_old_mesa(&self.info.driver_info)
     }
 
-    /// The forms of kernels that it can run, that which it takes first.
-    pub fn forms(&self) -> Vec<Form> {
+    /// The variants of kernels that it can run, that which it takes first.
+    pub fn variants(&self) -> Vec<KernelVariant> {
         let subgroups = self.features.contains(wgpu::Features::SUBGROUP);
         // All of one size, of which each workgroup has a whole number.
         let size = self.info.subgroup_max_size;
         let full = size > 0 && WORKGROUP_DIVISOR.is_multiple_of(size) && self.info.subgroup_min_size == size;
         match (subgroups, self.is_cpu(), full) {
-            (false, ..) => vec![Form::Plain],
-            (true, false, _) => vec![Form::Gpu, Form::Plain],
-            (true, true, false) => vec![Form::Plain, Form::Gpu],
-            (true, true, true) if self.has_old_mesa() => vec![Form::Plain, Form::Software, Form::Gpu],
-            (true, true, true) => vec![Form::Software, Form::Plain, Form::Gpu],
+            (false, ..) => vec![KernelVariant::Plain],
+            (true, false, _) => vec![KernelVariant::Gpu, KernelVariant::Plain],
+            (true, true, false) => vec![KernelVariant::Plain, KernelVariant::Gpu],
+            (true, true, true) if self.has_old_mesa() => {
+                vec![KernelVariant::Plain, KernelVariant::Software, KernelVariant::Gpu]
+            }
+            (true, true, true) => vec![KernelVariant::Software, KernelVariant::Plain, KernelVariant::Gpu],
         }
     }
 }
 
-/// Mesa's of before 23, by what it says of its version: 22.3 has nothing of what the form for software devices goes around, 25.0 has. Those between
+/// Mesa's of before 23, by what it says of its version: 22.3 has nothing of what the variant for software devices goes around, 25.0 has. Those between
 /// are not measured.
 fn is_old_mesa(driver_info: &str) -> bool {
     let version = driver_info.strip_prefix("Mesa ").and_then(|text| text.split('.').next());
@@ -95,9 +98,9 @@ pub struct Device {
     queue: wgpu::Queue,
     adapter: AdapterDescription,
     timestamps: bool,
-    form: Form,
+    variant: KernelVariant,
     trouble: Arc<Mutex<Option<String>>>,
-    kept: Kept,
+    pipeline_cache: PipelineCache,
 }
 
 impl Device {
@@ -109,15 +112,15 @@ impl Device {
         Device::opened(selector, None)
     }
 
-    /// The same with another of the forms of kernels that it can run ([`Form`]).
+    /// The same with another of the variants of kernels that it can run ([`KernelVariant`]).
     ///
     /// # Errors
-    /// As [`Device::open`], and if it cannot run that form.
-    pub fn open_in(selector: Option<&str>, form: Form) -> Result<Device, GpuError> {
-        Device::opened(selector, Some(form))
+    /// As [`Device::open`], and if it cannot run that variant.
+    pub fn open_in(selector: Option<&str>, variant: KernelVariant) -> Result<Device, GpuError> {
+        Device::opened(selector, Some(variant))
     }
 
-    fn opened(selector: Option<&str>, form: Option<Form>) -> Result<Device, GpuError> {
+    fn opened(selector: Option<&str>, variant: Option<KernelVariant>) -> Result<Device, GpuError> {
         let adapters = sorted_adapters();
         let known: Vec<String> =
             adapters.iter().map(|(_, adapter)| format!("{}: {}", adapter.index, adapter.info.name)).collect();
@@ -133,10 +136,10 @@ impl Device {
                 None => GpuError::NoAdapter,
             });
         };
-        let forms = adapter.forms();
-        let form = form.unwrap_or(forms[0]);
-        if !forms.contains(&form) {
-            let reason = format!("it cannot run kernels in the form {}", form.name());
+        let variants = adapter.variants();
+        let variant = variant.unwrap_or(variants[0]);
+        if !variants.contains(&variant) {
+            let reason = format!("it cannot run kernels in the variant {}", variant.name());
             return Err(GpuError::Open { adapter: adapter.info.name, reason });
         }
         let features = adapter.features & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
@@ -158,7 +161,7 @@ impl Device {
         let on_error = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&on_error, error.to_string())));
         let timestamps = features.contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Device { device, queue, adapter, timestamps, form, trouble, kept: Kept::default() })
+        Ok(Device { device, queue, adapter, timestamps, variant, trouble, pipeline_cache: PipelineCache::default() })
     }
 
     pub fn adapter(&self) -> &AdapterDescription {
@@ -174,9 +177,9 @@ impl Device {
         self.timestamps
     }
 
-    /// The form of its kernels.
-    pub fn form(&self) -> Form {
-        self.form
+    /// The variant of its kernels.
+    pub fn variant(&self) -> KernelVariant {
+        self.variant
     }
 
     /// Nanoseconds per timestamp unit.
@@ -188,8 +191,8 @@ impl Device {
         &self.device
     }
 
-    pub(super) fn kept(&self) -> &Kept {
-        &self.kept
+    pub(super) fn pipeline_cache(&self) -> &PipelineCache {
+        &self.pipeline_cache
     }
 
     pub fn queue(&self) -> &wgpu::Queue {

@@ -1,16 +1,20 @@
-//! wgpu and nothing else: adapters, devices, buffers, kernels, timers, readback. Knows no particles.
+//! wgpu and nothing else: adapters, devices, buffers, kernels, timers, readback. Knows no particles, and no shader by name.
 
 mod buffer;
 mod device;
 mod kernel;
-mod numbers;
 mod operations;
+mod pipeline_cache;
+mod runtime_constants;
+mod source;
 mod timer;
 
 pub use buffer::Readback;
 pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
-pub use kernel::{Access, Binding, BoundKernel, Constants, Form, KERNELS, Kernel, KernelSource, Pass, fold};
+pub use kernel::{BoundKernel, Kernel, Pass, fold};
 pub use operations::{Operations, Stretch};
+pub use runtime_constants::RuntimeConstants;
+pub use source::{Access, Binding, Constants, KernelSource, KernelVariant};
 pub use timer::{PhaseTimer, Recording};
 
 /// Trouble with the device: exit code 3.

@@ -12,6 +12,7 @@ mod lock;
 #[cfg(test)]
 mod tests;
 
+use super::marker::check_marker;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,22 +23,6 @@ use contents::{Contents, entries};
 use lock::FolderLock;
 
 pub use claim::{Claim, Content};
-
-/// Whether the run in a folder has reached its end.
-pub fn has_ended(path: &Path) -> bool {
-    path.join(AUDIT_FILE).exists()
-}
-
-/// Whether a run has written into a folder.
-///
-/// # Errors
-/// If none has.
-pub fn check_marker(path: &Path) -> Result<(), OutputError> {
-    if path.join(MARKER_FILE).is_file() {
-        return Ok(());
-    }
-    Err(OutputError::NotARun { path: path.to_path_buf(), marker: MARKER_FILE })
-}
 
 /// A folder that this process alone writes into.
 #[derive(Debug)]

@@ -16,6 +16,7 @@ mod error;
 mod folder;
 mod history;
 mod map;
+mod marker;
 mod meshes;
 mod names;
 mod phases;
@@ -39,9 +40,10 @@ pub use checkpoint::{
 };
 pub use environment::{AdapterRecord, Environment, host_name};
 pub use error::OutputError;
-pub use folder::{Claim, Content, OutputFolder, check_marker, has_ended};
+pub use folder::{Claim, Content, OutputFolder};
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use map::{MapCell, MapRow, map_chart};
+pub use marker::{check_marker, has_ended};
 pub use meshes::{MeshRecord, mesh_paths, meshes_of};
 pub use names::{
     AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, LOG_FILE,

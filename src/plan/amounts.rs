@@ -181,10 +181,8 @@ pub fn highest_temperature(scene: &Scene, measured: &Measured) -> (f64, String) 
         let why = format!("gamma T0 of orifice `{}` (filling reaches gamma T0)", orifice.name);
         candidates.push((gamma(&orifice.mixture, hottest) * hottest, why));
     }
-    for wall in &scene.walls {
-        if let Some(heat) = &wall.heat {
-            candidates.push((heat.temperature, format!("wall `{}`", wall.name)));
-        }
+    for (id, heat) in scene.heated_surfaces() {
+        candidates.push((heat.temperature, format!("wall `{}`", scene.surface_name(id))));
     }
     let (hottest, why) =
         candidates.into_iter().fold((0.0, String::new()), |best, next| if next.0 > best.0 { next } else { best });

@@ -1,5 +1,6 @@
 //! What holds the collision diameter down where gas is denser than in the mean (specification, section 2).
 
+use super::limits::{Quantity, limit};
 use super::text::significant;
 use super::{PlanError, Reason};
 use crate::gas::kinetics;
@@ -8,7 +9,7 @@ use crate::scene::{DiameterCap, Method, Scene};
 /// sigma = .7 n^(-1/3), f = .18: what is larger buys almost no resolution (specification, sections 2 and 6).
 const SPACINGS: f64 = 0.7;
 /// A diameter larger than the plan's own is kept up to 1.5 times the mean density, where the cap of the plan's own begins:
-/// the noise of a block is no dense gas.
+/// the noise of a block is no dense gas. (Not beyond the occupancy from which on a plan warns.)
 const ROOM: f64 = 1.14;
 
 /// The cap in mean spacings of the local gas, if there is one.
@@ -36,7 +37,10 @@ pub fn diameter_cap(
         Some(DiameterCap::Spacings(asked)) => (asked, "asked for".to_string()),
         None if stays_uniform(scene) => return Ok(None),
         None => {
-            (SPACINGS.max(ROOM * in_spacings), "more costs steps and searches, and buys almost no resolution".into())
+            let most = limit(Quantity::Occupancy, method)
+                .map_or(f64::INFINITY, |limit| kinetics::diameter(1.0, limit.bound.value()));
+            let cap = SPACINGS.max(ROOM * in_spacings).min(most).max(in_spacings);
+            (cap, "more costs steps and searches, and buys almost no resolution".into())
         }
     };
     let from = (cap / in_spacings).powi(3);
@@ -51,5 +55,5 @@ pub fn diameter_cap(
 fn stays_uniform(scene: &Scene) -> bool {
     let one = scene.chambers.len() == 1 && scene.chambers[0].region.is_none();
     let still = scene.orifices.is_empty() && scene.motions.is_empty();
-    one && still && scene.walls.iter().all(|wall| wall.heat.is_none())
+    one && still && !scene.has_heat()
 }

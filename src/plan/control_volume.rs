@@ -116,10 +116,10 @@ fn warnings(scene: &Scene, measured: &Measured, species: &[Species], openings: &
             chamber.name
         )
     });
-    let rough = scene.walls.iter().filter(|wall| wall.friction > 0.0).map(|wall| {
+    let rough = scene.surface_ids().filter(|&id| scene.surface_model(id).friction > 0.0).map(|id| {
         format!(
             "wall `{}` has a friction, which a control volume does not know: holes flow as if walls were smooth",
-            wall.name
+            scene.surface_name(id)
         )
     });
     let heat = super::vents::heat(scene, species, Method::ControlVolume, measured);

@@ -88,7 +88,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: &chambers,
         openings: &openings,
     };
-    let mut warnings = warnings(scene, measured, &decided);
+    let mut warnings: Vec<String> =
+        warnings(scene, measured, &decided).into_iter().map(|warning| warning.text).collect();
     warnings.extend(shortened);
     warnings.extend(silent_orifices(scene));
     warnings.extend(facets::warnings(scene, method));
@@ -98,6 +99,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     warnings.extend(motion::warnings(scene, &species, method, measured));
     let mut inventory = Inventory::of(scene, measured, &amounts);
     inventory.doubts.extend(plausible::many_steps(scene, resolution.steps as f64));
+    inventory.doubts.extend(plausible::long_run(scene, measured, method));
     Ok(Plan {
         inventory,
         method,
@@ -189,7 +191,7 @@ fn jets(scene: &Scene, species: &[Species]) -> Result<(), PlanError> {
 /// the number).
 fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
-    let coated = !scene.vents.is_empty() || scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
+    let coated = !scene.vents.is_empty() || !scene.has_mirrors_only();
     let has = [
         ("collisions", method != Method::None),
         ("a diameter that follows the local density", capped || method != Method::ClosestApproach),

@@ -20,7 +20,9 @@ pub enum PlanError {
     #[diagnostic(help("{}", for_a_particle(*needed)))]
     EmptyChamber { chamber: String, moles: f64, moles_per_particle: f64, needed: u64 },
     #[error("chamber `{chamber}` has a volume of {volume} m3")]
-    #[diagnostic(help("its region must overlap the gas space enclosed by the walls"))]
+    #[diagnostic(help(
+        "its region must overlap the gas space enclosed by the walls; where regions overlap the earlier chamber has the gas, so a larger one comes later"
+    ))]
     NoVolume { chamber: String, volume: f64 },
     #[error(
         "orifice `{orifice}`: a jet of {} m/s at a stagnation temperature of {} K would have Mach number {}; {} is the largest",

@@ -19,7 +19,7 @@ const HOTTER: f64 = 1.1;
 fn range(scene: &Scene, measured: &Measured) -> [f64; 2] {
     let chambers = scene.chambers.iter().map(|chamber| chamber.temperature);
     let orifices = scene.orifices.iter().flat_map(|orifice| orifice.temperature.points.iter().map(|point| point[1]));
-    let walls = scene.walls.iter().filter_map(|wall| wall.heat.as_ref()).map(|heat| heat.temperature);
+    let walls = scene.heated_surfaces().map(|(_, heat)| heat.temperature);
     let coldest = chambers.chain(orifices).chain(walls).fold(f64::INFINITY, f64::min);
     // What is left behind a vent, behind a wall that recedes, or in a chamber that empties into another, expands as no other gas does.
     let pressures = || scene.chambers.iter().map(|chamber| chamber.pressure);

@@ -5,10 +5,14 @@
 //! shut, no work of walls that move.
 
 use super::amounts::{Amounts, Contents};
+use super::measured::IN_HOLES;
 use super::text::{significant, table};
 use super::{Measured, MeasuredVent, MeasuredWall, plausible};
 use crate::gas::moles_at;
 use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
+
+/// Of a solid's volume, from which on it is told how much lies outside of the vessel.
+const SHOWN: f64 = 0.01;
 
 /// SI, but for what is shown.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,6 +26,8 @@ pub struct Inventory {
     /// Values that no vessel has, each with its range and the unit that is likely meant.
     pub doubts: Vec<String>,
     inflow: bool,
+    /// m3 of gas space in no chamber; 0 where it is no more than holes have.
+    empty: f64,
 }
 
 /// When a vent opens.
@@ -63,6 +69,7 @@ impl Inventory {
             end,
             vents: scene.vents.iter().zip(&measured.vents).map(opens).collect(),
             doubts: plausible::doubts(scene, measured, &end),
+            empty: Some(measured.empty_space()).filter(|empty| *empty > IN_HOLES * measured.gas_volume).unwrap_or(0.0),
             inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
         }
     }
@@ -80,11 +87,23 @@ impl Inventory {
             let [sides, low] = [sides, of(wall.min).join(", ")];
             let place = format!("{sides} {} from ({low})", self.units.symbol(Dimension::Length));
             let volume = self.shown(wall.volume, Dimension::Volume);
-            let volume = if wall.cavity { volume } else { format!("{volume}, solid") };
+            let outside = match wall.outside {
+                share if share > SHOWN => {
+                    format!(", {:.0} % of it outside of the vessel", 100.0 * share.min(1.0))
+                }
+                _ => String::new(),
+            };
+            let volume = if wall.cavity { volume } else { format!("{volume}, solid{outside}") };
             vec![name.clone(), place, self.shown(wall.area, Dimension::Area), volume]
         }));
         let mut chambers = vec![heads(["chamber", "volume", "mass", "pressure, temperature"])];
         chambers.extend(self.chambers.iter().map(|(name, gas)| self.contents(name.clone(), gas)));
+        if self.empty > 0.0 {
+            let [volume, litres] = [self.shown(self.empty, Dimension::Volume), significant(1e3 * self.empty)];
+            let row =
+                ["in no chamber".into(), format!("{volume} ({litres} L)"), String::new(), "empty at the start".into()];
+            chambers.push(row.to_vec());
+        }
         if self.inflow || self.chambers.len() > 1 {
             let inflow = if self.inflow { " with all inflow" } else { "" };
             chambers.push(self.contents(format!("all gas{inflow}"), &self.end));

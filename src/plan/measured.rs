@@ -1,7 +1,7 @@
 //! What the plan needs to know of the geometry.
 
 use super::error::PlanError;
-use crate::scene::Opening;
+use crate::scene::{Opening, SurfaceId};
 
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,22 +25,29 @@ pub struct Measured {
     pub probe_volumes: Vec<f64>,
     /// Of each vent of the scene.
     pub vents: Vec<MeasuredVent>,
-    /// Indices of a wall that exchanges heat and of a chamber that it borders on.
-    pub heated: Vec<(usize, usize)>,
+    /// Each surface that is no mirror or has vents, with the index of a chamber that it borders on.
+    pub coated: Vec<(SurfaceId, usize)>,
     /// Where walls move.
     pub motion: Option<MeasuredMotion>,
     /// Box, area and volume of each wall of the scene.
     pub walls: Vec<MeasuredWall>,
+    /// Whether gas space that is in no chamber lies beside a chamber without a wall between.
+    pub open_to_empty: bool,
 }
 
 impl Measured {
+    /// m3 of gas space in no chamber.
+    pub(super) fn empty_space(&self) -> f64 {
+        self.gas_volume - self.chamber_volumes.iter().sum::<f64>()
+    }
+
     /// That all gas space has gas at the start: what flows into empty space no control volume knows, and no forecast.
     ///
     /// # Errors
     /// If chambers leave more of it out than holes have.
     pub(super) fn no_empty_space(&self, asked: &'static str) -> Result<(), PlanError> {
         let (chambers, gas) = (self.chamber_volumes.iter().sum::<f64>(), self.gas_volume);
-        if chambers < (1.0 - IN_HOLES) * gas {
+        if self.empty_space() > IN_HOLES * gas {
             return Err(PlanError::EmptySpace { asked, chambers, gas });
         }
         Ok(())
@@ -48,7 +55,7 @@ impl Measured {
 }
 
 /// The part of the gas space that may be in no chamber, as the inside of holes is.
-const IN_HOLES: f64 = 0.01;
+pub(super) const IN_HOLES: f64 = 0.01;
 
 /// What moving walls do to the gas.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,6 +79,8 @@ pub struct MeasuredWall {
     /// m3, what it encloses: gas in a cavity, else solid.
     pub volume: f64,
     pub cavity: bool,
+    /// Of a solid: the share of its volume that lies outside of what encloses the gas.
+    pub outside: f64,
 }
 
 /// Where a vent is.

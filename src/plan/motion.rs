@@ -42,7 +42,7 @@ pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
 
 /// Heat through walls beside moving ones, by all methods.
 pub fn covered(scene: &Scene, measured: &Measured) -> Option<String> {
-    let heated = measured.motion.is_some() && scene.walls.iter().any(|wall| wall.heat.is_some());
+    let heated = measured.motion.is_some() && scene.has_heat();
     heated.then(|| {
         "walls that exchange heat count with their areas as drawn, in the control volume and in heat fluxes, whatever \
          part of them a moving wall covers"

@@ -6,7 +6,7 @@ use super::{Measured, MeasuredVent, VentPlan};
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::gas::{Species, moles_at};
-use crate::scene::{Method, Scene, VentFlow};
+use crate::scene::{Method, Scene, SurfaceId, VentFlow};
 
 /// Concentrations of the gas of a chamber at the start, mol/m3.
 fn concentrations(scene: &Scene, chamber: usize) -> Vec<f64> {
@@ -74,15 +74,15 @@ pub fn warnings(
 
 /// Walls whose coefficient is cut: by all methods alike.
 pub fn heat(scene: &Scene, species: &[Species], method: Method, measured: &Measured) -> Vec<String> {
-    let of_wall = |&(wall, chamber): &(usize, usize)| {
-        let (wall, chamber) = (&scene.walls[wall], chamber);
-        let temperature = scene.chambers[chamber].temperature;
-        let share = accommodation(wall.heat.as_ref()?, species, &concentrations(scene, chamber), temperature);
-        let subject = format!("wall `{}` at the start in chamber `{}`", wall.name, scene.chambers[chamber].name);
+    let of_wall = |&(id, chamber): &(SurfaceId, usize)| {
+        let heat = scene.surface_model(id).heat.as_ref()?;
+        let share = accommodation(heat, species, &concentrations(scene, chamber), scene.chambers[chamber].temperature);
+        let (wall, chamber) = (scene.surface_name(id), &scene.chambers[chamber].name);
+        let subject = format!("wall `{wall}` at the start in chamber `{chamber}`");
         Warning::by_table(Quantity::Heat, method, &subject, share, "a smaller `heat_transfer`, or `accommodation`")
     };
     // A place on a wall can stand there beside its rest.
-    let mut found: Vec<String> = measured.heated.iter().filter_map(of_wall).map(|warning| warning.text).collect();
+    let mut found: Vec<String> = measured.coated.iter().filter_map(of_wall).map(|warning| warning.text).collect();
     let mut told = std::collections::HashSet::new();
     found.retain(|text| told.insert(text.clone()));
     found

@@ -1,6 +1,6 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
-use super::limits::{Bound, Quantity, Warning, step_limit};
+use super::limits::{Bound, Limit, Quantity, Warning, limit, step_limit};
 use super::population::more_particles;
 use super::resolution::Resolution;
 use super::text::significant;
@@ -50,7 +50,7 @@ pub struct Decided<'a> {
     pub openings: &'a [OpeningPlan],
 }
 
-pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Vec<String> {
+pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Vec<Warning> {
     let Decided { method, particles, number_density, resolution, openings, .. } = *decided;
     let table =
         |quantity, subject: &str, value, remedy: &str| Warning::by_table(quantity, method, subject, value, remedy);
@@ -60,7 +60,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         found.extend(free_molecules(scene, measured, openings));
     } else {
         found.extend(openings.iter().map(|opening| {
-            let wanted = super::limits::limit(Quantity::Knudsen, method).map_or(f64::NAN, |l| l.bound.value());
+            let wanted = limit(Quantity::Knudsen, method).map_or(f64::NAN, |l| l.bound.value());
             // lambda ~ d at fixed occupancy, d ~ N^(-1/3).
             let times = (opening.knudsen / wanted).powi(3);
             let more = more_particles(times, particles as f64);
@@ -88,7 +88,7 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         let remedy = "a smaller `time_step`";
         found.push(table(Quantity::Flight, "the time step", resolution.flight_over_cell, remedy));
     }
-    found.into_iter().flatten().map(|warning| warning.text).collect()
+    found.into_iter().flatten().collect()
 }
 
 /// The densest state that is known: the mean at the end, or a chamber at the start.
@@ -112,6 +112,11 @@ fn dense(decided: &Decided<'_>) -> Option<Warning> {
         Method::ClosestApproach => "a smaller `occupancy`, `diameter` or `diameter_cap`".to_string(),
         _ => "a smaller `occupancy` or `diameter`".to_string(),
     };
+    // A cap that is the limit may be rounded beyond it.
+    let rounded = |limit: &Limit| occupancy <= limit.bound.value() * (1.0 + 1e-9);
+    if limit(Quantity::Occupancy, method).is_some_and(rounded) {
+        return None;
+    }
     Warning::by_table(Quantity::Occupancy, method, &subject, occupancy, &remedy)
 }
 
@@ -127,7 +132,7 @@ fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
     let (path, name) = scene.chambers.iter().zip(chambers).filter_map(of_chamber).max_by(|a, b| a.0.total_cmp(&b.0))?;
     let subject = format!("chamber `{name}` at the start");
     // As lambda ~ N^(-1/3) at fixed occupancy.
-    let bound = super::limits::limit(Quantity::ThinGas, method).map_or(f64::NAN, |limit| limit.bound.value());
+    let bound = limit(Quantity::ThinGas, method).map_or(f64::NAN, |l| l.bound.value());
     let more = more_particles((path / bound).powi(3), particles as f64);
     let remedy = more.unwrap_or_else(|| "more gas there: no run has particles enough".to_string());
     Some(Warning::by_table(Quantity::ThinGas, method, &subject, path, &remedy))

@@ -2,7 +2,7 @@
 //! field), what was found, what is allowed, and what was probably meant.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use toml::Spanned;
@@ -10,6 +10,9 @@ use toml::de::{DeTable, DeValue};
 
 /// Problems reported from one file; more would bury the first.
 const MOST_REPORTED: usize = 20;
+
+/// Files of a folder among which one that was meant is looked for.
+const MOST_FILES: usize = 4096;
 
 /// Longest text quoted from a file in a message, in characters.
 const LONGEST_QUOTE: usize = 60;
@@ -255,14 +258,40 @@ fn nearest<'a>(found: &str, candidates: impl IntoIterator<Item = &'a str>) -> Op
         return None;
     }
     let fold = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
-    let (found, tolerance) = (fold(found), (found.chars().count() / 3).max(1));
+    let (folded, tolerance) = (fold(found), (found.chars().count() / 3).max(1));
+    // Of those that are as near the one that is nearer letter by letter: `+z` for `z+`.
     candidates
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST_QUOTE)
-        .map(|candidate| (strsim::damerau_levenshtein(&found, &fold(candidate)), candidate))
+        .map(|candidate| (strsim::damerau_levenshtein(&folded, &fold(candidate)), candidate))
         .filter(|(distance, _)| *distance <= tolerance)
-        .min_by_key(|(distance, _)| *distance)
+        .min_by_key(|(distance, candidate)| (*distance, strsim::damerau_levenshtein(found, candidate)))
         .map(|(_, candidate)| candidate)
+}
+
+/// The mesh file in the folder of `path` whose name is most like that of `path`. A name of two letters is like none but itself.
+pub(super) fn near_mesh(path: &Path) -> Option<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
+    let wanted = stem(path.file_name()?.to_str()?);
+    let entries = std::fs::read_dir(folder).ok()?.take(MOST_FILES).flatten();
+    let is_mesh = |name: &String| {
+        let name = name.to_lowercase();
+        name.ends_with(".stl") || name.ends_with(".obj")
+    };
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.retain(is_mesh);
+    // Folders list in any order.
+    names.sort();
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let known: Vec<&str> = stems.iter().map(String::as_str).collect();
+    let near = match known.iter().find(|known| **known == wanted) {
+        Some(same) => same,
+        None if wanted.chars().count() > 2 => nearest(&wanted, known.iter().copied())?,
+        None => return None,
+    };
+    let place = stems.iter().position(|stem| stem == near)?;
+    Some(names[place].clone())
 }
 
 /// In quotes, control characters escaped, shortened.
@@ -292,6 +321,7 @@ mod tests {
         assert_eq!(nearest("molarmass", keys), Some("molar_mass"));
         assert_eq!(nearest("massflow", keys), Some("mass_flow"));
         assert_eq!(nearest("pc", keys), Some("cp"));
+        assert_eq!(nearest("z+", ["-x", "+x", "-z", "+z"]), Some("+z"));
         assert_eq!(nearest("viscosity", keys), None);
         assert_eq!(nearest(&"x".repeat(10_000), keys), None);
     }

@@ -88,9 +88,12 @@ fn jet(raw: &At<RawJet>, units: UnitSystem) -> Result<Jet, Problem> {
     let (raw, span) = (&raw.value, &raw.span);
     let speed = match (&raw.mach, &raw.velocity) {
         (Some(mach), None) => {
-            JetSpeed::Mach(bounded(mach, Quantity::Pure, UnitSystem::Si, "a number above 0 and at most 20", |mach| {
-                mach > 0.0 && mach <= FASTEST_JET
-            })?)
+            let within = |mach: f64| mach > 0.0 && mach <= FASTEST_JET;
+            let refused = |problem: Problem| {
+                if mach.value > FASTEST_JET { problem.hint("a speed is a `velocity`") } else { problem }
+            };
+            let read = bounded(mach, Quantity::Pure, UnitSystem::Si, "a number above 0 and at most 20", within);
+            JetSpeed::Mach(read.map_err(refused)?)
         }
         (None, Some(velocity)) => JetSpeed::Velocity(positive(velocity, Quantity::Velocity, units)?),
         (Some(_), Some(velocity)) => {

@@ -81,8 +81,12 @@ fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
             _ => least_heat_capacity("5/2 R", MONATOMIC + GAS_CONSTANT, units),
         };
         let problem = Problem::value(span, show(found), allowed);
-        let hinted =
-            raw.value.gamma.is_none().then(|| another_unit(found, raw.value.molar_mass.value, units)).flatten();
+        let hinted = raw.value.gamma.is_none().then(|| {
+            let molar_mass = raw.value.molar_mass.value;
+            other_system(cv + GAS_CONSTANT, molar_mass * units.factor(Quantity::MolarMass), units)
+                .or_else(|| another_unit(found, molar_mass, units))
+        });
+        let hinted = hinted.flatten();
         return Err(if let Some(hint) = hinted { problem.hint(&hint) } else { problem });
     }
     // A ratio next to 1 asks for more internal energy than numbers can hold.
@@ -116,6 +120,27 @@ fn another_unit(found: f64, molar_mass: f64, units: UnitSystem) -> Option<String
         |si: f64| (0.99 * MONATOMIC..=MOST_MOLAR_HEAT).contains(&si) && (si / (found * own) - 1.0).abs() > 1e-9;
     let (unit, si) = meant.into_iter().find(|(_, si)| possible(*si))?;
     Some(format!("is it in {unit}? Then it is {:.4} {}", si / own, units.symbol(Quantity::MolarHeat)))
+}
+
+/// A hint, if heat capacity and molar mass (SI, as read) are those of a gas once the numbers are taken in another unit system, and
+/// neither is one now.
+pub(super) fn other_system(cp: f64, molar_mass: f64, units: UnitSystem) -> Option<String> {
+    let is_gas = |system: UnitSystem| {
+        let si = |read: f64, quantity: Quantity| read / units.factor(quantity) * system.factor(quantity);
+        [
+            (0.99 * (MONATOMIC + GAS_CONSTANT)..=MOST_MOLAR_HEAT).contains(&si(cp, Quantity::MolarHeat)),
+            (1e-3..=0.5).contains(&si(molar_mass, Quantity::MolarMass)),
+        ]
+    };
+    let systems = [(UnitSystem::Si, "SI"), (UnitSystem::KgMmMs, "kg-mm-ms"), (UnitSystem::TMmS, "t-mm-s")];
+    let fitting: Vec<String> = systems
+        .into_iter()
+        .filter(|(system, _)| is_gas(units) == [false; 2] && is_gas(*system) == [true; 2])
+        .map(|(_, name)| format!("`units = \"{name}\"`"))
+        .collect();
+    (!fitting.is_empty()).then(|| {
+        format!("neither its molar mass nor its heat capacity is a gas's, but both are with {}: are the numbers in that system?", fitting.join(" or "))
+    })
 }
 
 /// The number, or the first coefficient: those of higher powers are zero here.

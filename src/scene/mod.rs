@@ -17,13 +17,16 @@ mod raw;
 mod raw_values;
 mod settings;
 mod structure;
+mod surface_model;
 #[cfg(test)]
 mod tests;
 mod types;
 mod units;
 mod validate;
 mod vents;
+mod wall_surface;
 mod walls;
+mod words;
 mod write;
 
 use std::io::Read;
@@ -34,6 +37,7 @@ pub use flows::FASTEST_JET;
 pub use gases::shown_collision_number;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
+pub use surface_model::*;
 pub use types::*;
 pub use units::Quantity as Dimension;
 pub use write::to_toml;

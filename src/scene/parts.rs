@@ -20,13 +20,19 @@ impl<'a> Parts<'a> {
         let mut used: Vec<Vec<String>> = vec![Vec::new(); raw.wall.len()];
         let of_surfaces = raw.surface.iter().map(|at| (&at.value.wall, &at.value.face));
         let of_vents = raw.vent.iter().map(|at| (&at.value.wall, &at.value.face));
-        for (wall, face) in of_surfaces.chain(of_vents) {
-            // Walls that are not there are reported where they are looked up.
-            if let (Ok(wall), Some(face)) = (walls.find(wall), face)
-                && !used[wall].contains(&face.value)
-            {
+        let mut add = |wall: usize, face: &At<String>| {
+            if !used[wall].contains(&face.value) {
                 used[wall].push(face.value.clone());
             }
+        };
+        for (wall, face) in of_surfaces.chain(of_vents) {
+            // Walls that are not there are reported where they are looked up.
+            if let (Ok(wall), Some(face)) = (walls.find(wall), face) {
+                add(wall, face);
+            }
+        }
+        for (wall, raw) in raw.wall.iter().enumerate() {
+            raw.value.part.iter().for_each(|part| add(wall, &part.value.face));
         }
         Parts { walls: &raw.wall, used }
     }
@@ -38,6 +44,11 @@ impl<'a> Parts<'a> {
 
     /// The part of a wall that is called so.
     pub fn find(&self, given: &At<String>, wall: usize) -> Result<Face, Problem> {
+        self.find_or(given, wall, "leave `face` out to take all of the wall")
+    }
+
+    /// The same with another hint where there is none.
+    pub fn find_or(&self, given: &At<String>, wall: usize, hint: &str) -> Result<Face, Problem> {
         let raw = &self.walls[wall].value;
         let (name, wall_name) = (given.value.as_str(), &raw.name.value);
         let (known, shape) = names_of(raw);
@@ -55,7 +66,7 @@ impl<'a> Parts<'a> {
             _ if known.is_empty() => Problem::value(&given.span, found, format!("no `face` of a {shape}")),
             _ => Problem::value(&given.span, found, format!("a face of a {shape}: {}", list(names()))),
         };
-        Err(problem.hint("leave `face` out to take all of the wall").meant(name, names()))
+        Err(problem.hint(hint).meant(name, names()))
     }
 }
 

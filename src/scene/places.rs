@@ -39,7 +39,10 @@ pub(super) fn chamber(raw: &At<RawChamber>, last: bool, gases: &Names, units: Un
     Ok(Chamber {
         name: chamber.name.value.clone(),
         region: chamber.region.as_ref().map(|r| region(&r.value, units)).transpose()?,
-        pressure: positive(&chamber.pressure, Quantity::Pressure, units)?,
+        pressure: positive(&chamber.pressure, Quantity::Pressure, units).map_err(|problem| {
+            let hint = "pressures of chambers are absolute; space in no chamber is empty at the start";
+            if chamber.pressure.value <= 0.0 { problem.hint(hint) } else { problem }
+        })?,
         temperature: positive(&chamber.temperature, Quantity::Temperature, units)?,
         mixture: mixture(&chamber.gas, gases)?,
     })
@@ -51,7 +54,15 @@ pub(super) fn opening(raw: &At<RawOpening>, chambers: &Names, units: UnitSystem)
         let found = format!("{} names", opening.between.value.len());
         return Err(Problem::value(&opening.between.span, found, "the names of two chambers"));
     };
-    let between = [chambers.find(first)?, chambers.find(second)?];
+    let find = |name: &At<String>| {
+        chambers.find(name).map_err(|problem| match name.value.to_lowercase().as_str() {
+            "outside" | "ambient" | "atmosphere" | "environment" | "air" => {
+                problem.hint("what leads out of the scene is a [[vent]]")
+            }
+            _ => problem,
+        })
+    };
+    let between = [find(first)?, find(second)?];
     if between[0] == between[1] {
         return Err(Problem::value(&opening.between.span, "the same chamber twice", "the names of two chambers"));
     }

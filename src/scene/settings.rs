@@ -1,7 +1,7 @@
 //! What the scene asks of the plan and of the output.
 
 use super::errors::Problem;
-use super::gases::{MOST_MOLAR_HEAT, least_collision_number, shown_collision_number};
+use super::gases::{MOST_MOLAR_HEAT, least_collision_number, other_system, shown_collision_number};
 use super::numbers::{bounded, positive, show, small_count};
 use super::raw::{RawCap, RawGas, RawModel, RawOutput, RawSwitch, When};
 use super::raw_values::At;
@@ -150,7 +150,12 @@ fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
 }
 
 /// Z must be large enough for every gas that has internal energy (specification, section 3).
-pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<RawGas>]) -> Result<(), Problem> {
+pub(super) fn collision_number(
+    raw: &RawModel,
+    gases: &[Gas],
+    raw_gases: &[At<RawGas>],
+    units: UnitSystem,
+) -> Result<(), Problem> {
     for (gas, raw_gas) in gases.iter().zip(raw_gases) {
         // That of a curve follows from the temperatures of the scene: the plan sees to it.
         let HeatCapacity::Constant(cv) = gas.heat else { continue };
@@ -168,11 +173,13 @@ pub(super) fn collision_number(raw: &RawModel, gases: &[Gas], raw_gases: &[At<Ra
             None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
                 let hint = if cv + GAS_CONSTANT > MOST_MOLAR_HEAT && raw_gas.value.gamma.is_none() {
-                    "its heat capacity is more than 20 R: is it per kilogram? Multiply it by the molar mass"
+                    let per_kilogram =
+                        "its heat capacity is more than 20 R: is it per kilogram? Multiply it by the molar mass";
+                    other_system(cv + GAS_CONSTANT, gas.molar_mass, units).unwrap_or_else(|| per_kilogram.into())
                 } else {
-                    "give `collision_number` in `[model]`"
+                    "give `collision_number` in `[model]`".to_string()
                 };
-                return Err(Problem::value(&raw_gas.span, found, allowed).hint(hint));
+                return Err(Problem::value(&raw_gas.span, found, allowed).hint(&hint));
             }
             _ => {}
         }

@@ -6,6 +6,8 @@
 
 use std::path::PathBuf;
 
+use super::surface_model::{SurfaceModel, WallPart};
+
 /// The universal gas constant, J/(mol K) (CODATA 2018, exact).
 pub const GAS_CONSTANT: f64 = 8.314462618;
 
@@ -85,26 +87,10 @@ pub struct Wall {
     pub shape: Shape,
     /// On which side of the surface the gas is. A shape with a thickness is a solid with gas on both sides.
     pub gas: GasSide,
-    /// `None`: smooth and adiabatic, a mirror.
-    pub heat: Option<WallHeat>,
-    /// Share of the other hits that leave in a random direction with the speed they had: a rough wall, without heat.
-    pub friction: f64,
-}
-
-/// A wall that keeps its temperature and takes heat from the gas, or gives it (specification, section 4 "Rigid wall").
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WallHeat {
-    /// K.
-    pub temperature: f64,
-    pub transfer: HeatTransfer,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum HeatTransfer {
-    /// The share of the hits that leave with the temperature of the wall, 0 to 1.
-    Accommodation(f64),
-    /// W/(m2 K).
-    Coefficient(f64),
+    /// Of all that is in none of its `parts`.
+    pub surface: SurfaceModel,
+    /// Each face at most once.
+    pub parts: Vec<WallPart>,
 }
 
 impl Wall {

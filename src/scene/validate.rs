@@ -41,7 +41,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
     let gases = each(&raw.gas, &mut problems, |gas, _| gases::gas(gas, units));
     let parts = Parts::collect(raw, &wall_names);
-    let walls = each(&raw.wall, &mut problems, |wall, index| walls::wall(wall, parts.of_mesh(index), units, base_dir));
+    let walls = each(&raw.wall, &mut problems, |wall, index| walls::wall(wall, index, &parts, units, base_dir));
     let last = raw.chamber.len().saturating_sub(1);
     let chambers =
         each(&raw.chamber, &mut problems, |chamber, i| places::chamber(chamber, i == last, &gas_names, units));
@@ -56,7 +56,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
-        keep(settings::collision_number(&raw.model, &gases, &raw.gas), &mut problems);
+        keep(settings::collision_number(&raw.model, &gases, &raw.gas, units), &mut problems);
     }
 
     match (title, end_time, seed, model, output) {

@@ -3,13 +3,15 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::errors::{Problem, list, quote};
+use super::errors::{Problem, list, near_mesh, quote};
 use super::holes::holes;
-use super::numbers::{bounded, corners, direction, normalised, not_negative, point, positive, sides, small_count};
+use super::numbers::{corners, direction, normalised, point, positive, sides, small_count};
+use super::parts::Parts;
 use super::raw::{RawShape, RawSide, RawWall};
 use super::raw_values::{At, Numbers};
-use super::types::{GasSide, HeatTransfer, Shape, UnitSystem, Wall, WallHeat};
+use super::types::{GasSide, Shape, UnitSystem, Wall};
 use super::units::Quantity;
+use super::wall_surface;
 
 const CYLINDER_SEGMENTS: u32 = 48;
 const SPHERE_SUBDIVISIONS: u32 = 3;
@@ -17,8 +19,14 @@ const SPHERE_SUBDIVISIONS: u32 = 3;
 /// How far from a right angle to its normal a plate's side may be (the cosine of the angle between them).
 const SQUARE_TOLERANCE: f64 = 1e-6;
 
-/// `parts` are the names of the parts that the scene uses, of a mesh.
-pub(super) fn wall(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Path) -> Result<Wall, Problem> {
+/// The wall of this index in the scene.
+pub(super) fn wall(
+    raw: &At<RawWall>,
+    index: usize,
+    parts: &Parts,
+    units: UnitSystem,
+    base_dir: &Path,
+) -> Result<Wall, Problem> {
     refuse_foreign_keys(raw)?;
     let gas = gas_side(raw)?;
     let shape = match raw.value.shape.value {
@@ -26,52 +34,15 @@ pub(super) fn wall(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, bas
         RawShape::Cylinder => cylinder(raw, units)?,
         RawShape::Sphere => sphere(raw, units)?,
         RawShape::Plane => plane(raw, units)?,
-        RawShape::Mesh => mesh(raw, parts, units, base_dir)?,
+        RawShape::Mesh => mesh(raw, parts.of_mesh(index), units, base_dir)?,
     };
     Ok(Wall {
         name: raw.value.name.value.clone(),
         shape,
         gas,
-        heat: heat(raw, units)?,
-        friction: friction(raw, units)?,
+        surface: wall_surface::of_wall(&raw.value, units)?,
+        parts: wall_surface::of_parts(&raw.value, index, parts, units)?,
     })
-}
-
-fn friction(raw: &At<RawWall>, units: UnitSystem) -> Result<f64, Problem> {
-    let share = |at| bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
-    raw.value.friction.as_ref().map_or(Ok(0.0), share)
-}
-
-fn heat(raw: &At<RawWall>, units: UnitSystem) -> Result<Option<WallHeat>, Problem> {
-    let wall = &raw.value;
-    let Some(temperature) = &wall.temperature else {
-        let given = [("accommodation", &wall.accommodation), ("heat_transfer", &wall.heat_transfer)];
-        return match given.into_iter().find_map(|(key, at)| at.as_ref().map(|at| (key, at))) {
-            None => Ok(None),
-            Some((key, at)) => Err(Problem::value(
-                &at.span,
-                format!("`{key}` of a wall without `temperature`"),
-                format!("`{key}` together with `temperature`"),
-            )),
-        };
-    };
-    let transfer = match (&wall.accommodation, &wall.heat_transfer) {
-        (Some(_), Some(at)) => {
-            return Err(Problem::value(
-                &at.span,
-                "both `accommodation` and `heat_transfer`",
-                "at most one of them: each follows from the other and the state of the gas",
-            ));
-        }
-        (None, None) => HeatTransfer::Accommodation(1.0),
-        (Some(at), None) => {
-            let share =
-                bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
-            HeatTransfer::Accommodation(share?)
-        }
-        (None, Some(at)) => HeatTransfer::Coefficient(not_negative(at, Quantity::HeatTransfer, units)?),
-    };
-    Ok(Some(WallHeat { temperature: positive(temperature, Quantity::Temperature, units)?, transfer }))
 }
 
 fn keys_of(shape: RawShape) -> &'static [&'static str] {
@@ -127,7 +98,7 @@ fn refuse_foreign_keys(raw: &At<RawWall>) -> Result<(), Problem> {
                 "of a {}: {}",
                 name_of(shape),
                 list(
-                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer", "friction"]
+                    ["name", "shape", "gas", "temperature", "accommodation", "heat_transfer", "friction", "part"]
                         .iter()
                         .chain(keys_of(shape))
                         .copied()
@@ -256,7 +227,12 @@ fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Pat
             Err(_) if path.is_dir() => "which is a folder".to_string(),
             Err(_) => "which does not exist".to_string(),
         };
-        let hint = format!("the path is relative to the folder of the scene file: {} was meant", joined.display());
+        let hint = match near_mesh(&joined) {
+            Some(near) => {
+                format!("did you mean `{near}`? It lies in {}", joined.parent().unwrap_or(base_dir).display())
+            }
+            None => format!("the path is relative to the folder of the scene file: {} was meant", joined.display()),
+        };
         return Err(
             Problem::value(&file.span, format!("{}, {what}", quote(&file.value)), "an existing file").hint(&hint)
         );

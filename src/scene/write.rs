@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use super::surface_model::{HeatTransfer, SurfaceModel};
 use super::types::*;
 
 /// The scene as a TOML text.
@@ -131,15 +132,16 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
         GasSide::Outside => out.text("gas", "outside"),
         GasSide::Both => {}
     }
-    if let Some(heat) = &wall.heat {
-        out.number("temperature", heat.temperature);
-        match heat.transfer {
-            HeatTransfer::Accommodation(share) => out.number("accommodation", share),
-            HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
-        }
+    write_heat(out, &wall.surface);
+    if wall.surface.friction > 0.0 {
+        out.number("friction", wall.surface.friction);
     }
-    if wall.friction > 0.0 {
-        out.number("friction", wall.friction);
+    for part in &wall.parts {
+        out.header("[[wall.part]]");
+        out.face(Some(part.face), wall);
+        write_heat(out, &part.surface);
+        // What is not given is the wall's.
+        out.number("friction", part.surface.friction);
     }
     for hole in holes {
         out.header("[[wall.hole]]");
@@ -156,6 +158,15 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
         if hole.flow_only {
             out.flag("flow_only", true);
         }
+    }
+}
+
+fn write_heat(out: &mut Lines, surface: &SurfaceModel) {
+    let Some(heat) = &surface.heat else { return };
+    out.number("temperature", heat.temperature);
+    match heat.transfer {
+        HeatTransfer::Accommodation(share) => out.number("accommodation", share),
+        HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
     }
 }
 

@@ -80,7 +80,7 @@ mod tests {
     use crate::simulation::control::surface_states::VentTarget;
     use crate::simulation::model::build::Model;
     use crate::simulation::zero_d::switch::{Decided, Deviations};
-    use crate::subdomain::{CoatSum, SurfaceSum, Tallies, VentSum, ZoneSum};
+    use crate::subdomain::{SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 
     fn plan() -> Plan {
         let text = include_str!("../../scenes/tank.toml").replace("particles = 1000000", "particles = 2000");
@@ -123,9 +123,9 @@ mod tests {
             counters: crate::subdomain::Counters::default(),
             zones: zones.collect(),
             surfaces: surfaces.collect(),
-            coats: vec![CoatSum { energy: 1 << 50, tallied: -interval }; COATS],
+            surface_models: vec![SurfaceModelSum { energy: 1 << 50, tallied: -interval }; COATS],
             vents: vec![VentSum { energy: interval, left: [3; 16], ..VentSum::default() }; VENTS],
-            works: vec![CoatSum { energy: 3 - interval, tallied: 0 }; MOTIONS],
+            works: vec![SurfaceModelSum { energy: 3 - interval, tallied: 0 }; MOTIONS],
             blocks: Vec::new(),
             fast: Vec::new(),
         }

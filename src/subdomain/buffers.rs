@@ -1,40 +1,28 @@
 //! The buffers of a subdomain, named as the shaders name them.
 
-use crate::gpu::{Device, Form, GpuError};
+use crate::gpu::{Device, GpuError, KernelVariant};
 
 use super::cell_table::CellTable;
-use super::constants::{Features, WORKGROUP};
+use super::constants::Features;
 use super::counters;
 use super::layout::{
-    GpuCoat, GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuTriangle, GpuUpdate, GpuVent,
-    GpuWeights, GpuZone,
+    GpuGas, GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuSurfaceModel, GpuTriangle, GpuUpdate,
+    GpuVent, GpuWeights, GpuZone,
 };
 use super::registry;
+use super::sizes::{CHUNK, FEW_STRETCHES, MOTION_ENTRIES, STRETCH};
 use super::state::share_table;
 use super::walls::Walls;
 
-/// Cells per thread of the scan.
-pub const CHUNK: u64 = 64;
-/// Those of a workgroup, of a thread each.
-pub const STRETCH: u64 = CHUNK * WORKGROUP as u64;
-/// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
-pub const FEW_STRETCHES: u64 = 64;
 /// Whether so many bins are few stretches.
 pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
 }
 
 /// Whether on a device alone the first of `choose` empties the cells for the next step (`shaders/shared/emptying.wgsl`).
-pub fn choose_empties(form: Form, bins: u64) -> bool {
-    form == Form::Gpu || few_stretches(bins)
+pub fn choose_empties(variant: KernelVariant, bins: u64) -> bool {
+    variant == KernelVariant::Gpu || few_stretches(bins)
 }
-/// Cells that a thread empties, at most (`shaders/reset.wgsl`).
-pub const EMPTIED_CELLS: u64 = 16;
-/// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
-pub const SURFACE_COPIES: usize = 16;
-/// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
-pub const MOTION_ENTRIES: usize = 128;
-
 /// Words of a particle's record, its flight and the first entries of its neighbour list (`shaders/shared/neighbour_list.wgsl`): the room
 /// of a particle.
 pub const RECORD: u64 = 8;
@@ -116,12 +104,24 @@ pub struct TallyWords {
     pub blocks: usize,
 }
 
+/// Entries of the tables whose sizes go with the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TableRoom {
+    pub surface_models: u64,
+    pub vents: u64,
+    pub divided: u64,
+    pub moved: u64,
+    pub cross_section_shares: u64,
+}
+
 /// What grows neither with the number of particles nor with that of cells.
 pub struct FixedBuffers {
     pub step: wgpu::Buffer,
     pub counters: wgpu::Buffer,
-    /// The words `HELD` and so on of the registry.
-    pub held: wgpu::Buffer,
+    /// The words `STALLED` and so on of the registry.
+    pub stalled: wgpu::Buffer,
+    /// The words `PRESENT` and so on.
+    pub step_state: wgpu::Buffer,
     pub zone_sums: wgpu::Buffer,
     pub surface_sums: wgpu::Buffer,
     pub block_sums: wgpu::Buffer,
@@ -129,17 +129,17 @@ pub struct FixedBuffers {
     /// dispatch may not write the buffer that it takes its size from.
     pub dispatches: wgpu::Buffer,
     pub rechoose_dispatches: wgpu::Buffer,
-    pub asked_dispatches: wgpu::Buffer,
+    pub on_demand_dispatches: wgpu::Buffer,
     pub weights: wgpu::Buffer,
-    /// What coats and vents do in the interval at hand.
-    pub coats: wgpu::Buffer,
+    /// What surface models and vents do in the interval at hand.
+    pub surface_models: wgpu::Buffer,
     pub vents: wgpu::Buffer,
     /// Where the walls that move are in its steps.
     pub motions: wgpu::Buffer,
     /// What is left of the cross-section in each coarse block.
-    pub shares: wgpu::Buffer,
+    pub cross_section_shares: wgpu::Buffer,
     /// The cells whose gas walls part, of a step.
-    pub parted: wgpu::Buffer,
+    pub divided: wgpu::Buffer,
     /// And those that moving walls may touch.
     pub moved: wgpu::Buffer,
 }
@@ -149,25 +149,26 @@ impl FixedBuffers {
         device: &Device,
         words: TallyWords,
         step_slots: u64,
-        [coats, vents, parted, moved, shares]: [u64; 5],
+        tables: TableRoom,
     ) -> Result<FixedBuffers, GpuError> {
         Ok(FixedBuffers {
             step: device.uniform("step", step_slots * step_stride(device))?,
             counters: device.storage::<u32>("counters", counters::WORDS as u64)?,
-            held: device.storage::<u32>("held", registry::HELD_WORDS.into())?,
+            stalled: device.storage::<u32>("stalled", registry::STALLED_WORDS.into())?,
+            step_state: device.storage::<u32>("step_state", registry::STEP_STATE_WORDS.into())?,
             zone_sums: device.storage::<u32>("zone_sums", words.zones as u64)?,
             surface_sums: device.storage::<u32>("surface_sums", words.surfaces as u64)?,
             block_sums: device.storage::<u32>("block_sums", words.blocks as u64)?,
             dispatches: device.indirect("dispatches", registry::LISTS.into())?,
             rechoose_dispatches: device.indirect("rechoose_dispatches", registry::LISTS.into())?,
-            asked_dispatches: device.indirect("asked_dispatches", registry::LISTS.into())?,
+            on_demand_dispatches: device.indirect("on_demand_dispatches", registry::LISTS.into())?,
             weights: device.uniform("weights", size_of::<GpuWeights>() as u64)?,
-            coats: device.storage::<GpuCoat>("coats", coats.max(1))?,
-            vents: device.storage::<GpuVent>("vents", vents.max(1))?,
+            surface_models: device.storage::<GpuSurfaceModel>("surface_models", tables.surface_models.max(1))?,
+            vents: device.storage::<GpuVent>("vents", tables.vents.max(1))?,
             motions: device.uniform("motions", (MOTION_ENTRIES * size_of::<GpuMotion>()) as u64)?,
-            parted: device.storage::<u32>("parted", parted)?,
-            moved: device.storage::<u32>("moved", moved)?,
-            shares: device.storage::<u32>("shares", shares.max(1))?,
+            divided: device.storage::<u32>("divided", tables.divided)?,
+            moved: device.storage::<u32>("moved", tables.moved)?,
+            cross_section_shares: device.storage::<u32>("cross_section_shares", tables.cross_section_shares.max(1))?,
         })
     }
 }
@@ -280,7 +281,7 @@ impl ExchangeBuffers {
 /// occupancy of .12 and in steps of a tenth of the collision time wants no more. A run finds what its gas wants.
 pub fn bytes_per_particle(collisions: bool, rounds: bool) -> f64 {
     let particle = size_of::<GpuParticle>() as f64;
-    // `particles` and `rare`; `sorted`, `bins`, `slots` and `layers`; `cells`, `middles`, the lengths of
+    // `particles` and `scratch`; `sorted`, `bins`, `slots` and `marks`; `cells`, `midpoints`, the lengths of
     // the lists and their tails.
     let mut bytes = particle + 4.0;
     if collisions {
@@ -306,15 +307,15 @@ pub struct ParticleBuffers {
     /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
     /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. (Twice, where kernels are merged.)
-    pub rare: wgpu::Buffer,
+    pub scratch: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
-    pub middles: wgpu::Buffer,
+    pub midpoints: wgpu::Buffer,
     pub neighbour_count: wgpu::Buffer,
     pub cells: wgpu::Buffer,
-    pub layers: wgpu::Buffer,
+    pub marks: wgpu::Buffer,
     /// On a device among others.
     pub changed: wgpu::Buffer,
-    pub asked: wgpu::Buffer,
+    pub on_demand: wgpu::Buffer,
     /// There also, where ghosts are searched for late: what the particles were before the rounds.
     pub firsts: wgpu::Buffer,
 }
@@ -330,32 +331,32 @@ impl ParticleBuffers {
     ) -> Result<ParticleBuffers, GpuError> {
         let capacity = capacity.max(64).next_multiple_of(64);
         // Without collisions the particles are flown in place.
-        let scratch = if features.collisions { capacity } else { 4 };
+        let binned = if features.collisions { capacity } else { 4 };
         // Without rounds nobody chooses.
         let chosen = if features.rounds { capacity } else { 4 };
-        let weighed = if features.rounds || features.halo { scratch } else { 4 };
+        let weighed = if features.rounds || features.halo { binned } else { 4 };
         let exchange = if features.halo { capacity } else { 4 };
         let tails = if features.rounds { tails.next_multiple_of(8) } else { 0 };
         let late = if features.rounds { exchange } else { 4 };
-        let rare = (capacity + counters::FREE_ENTRIES) << u32::from(features.merged && features.rounds);
+        let scratch = (capacity + counters::FREE_ENTRIES) << u32::from(features.merged && features.rounds);
         Ok(ParticleBuffers {
             capacity,
             tails,
             particles: device.storage::<u32>("particles", RECORD * capacity + tails)?,
             newborns: device.storage::<GpuNewborn>("newborns", newborns)?,
-            bins: device.storage::<[u32; 2]>("bins", scratch)?,
+            bins: device.storage::<[u32; 2]>("bins", binned)?,
             slots: device.storage::<u32>(
                 "slots",
-                if features.halo { 2 * scratch } else { scratch } + 2 * counters::FREE_ENTRIES,
+                if features.halo { 2 * binned } else { binned } + 2 * counters::FREE_ENTRIES,
             )?,
-            rare: device.storage::<u32>("rare", rare)?,
-            sorted: device.storage::<GpuParticle>("sorted", scratch)?,
-            middles: device.storage::<u32>("middles", chosen)?,
+            scratch: device.storage::<u32>("scratch", scratch)?,
+            sorted: device.storage::<GpuParticle>("sorted", binned)?,
+            midpoints: device.storage::<u32>("midpoints", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,
             neighbour_count: device.storage::<u32>("neighbour_count", weighed)?,
-            layers: device.storage::<u32>("layers", scratch)?,
+            marks: device.storage::<u32>("marks", binned)?,
             changed: device.storage::<u32>("changed", exchange)?,
-            asked: device.storage::<u32>("asked", exchange)?,
+            on_demand: device.storage::<u32>("on_demand", exchange)?,
             firsts: device.storage::<GpuParticle>("firsts", late)?,
         })
     }
@@ -370,14 +371,14 @@ impl ParticleBuffers {
             &self.newborns,
             &self.bins,
             &self.slots,
-            &self.rare,
+            &self.scratch,
             &self.sorted,
-            &self.middles,
+            &self.midpoints,
             &self.neighbour_count,
             &self.cells,
-            &self.layers,
+            &self.marks,
             &self.changed,
-            &self.asked,
+            &self.on_demand,
             &self.firsts,
         ]
     }
@@ -413,15 +414,16 @@ impl<'a> Buffers<'a> {
             "counters" => &fixed.counters,
             "dispatches" => &fixed.dispatches,
             "rechoose_dispatches" => &fixed.rechoose_dispatches,
-            "asked_dispatches" => &fixed.asked_dispatches,
-            "held" => &fixed.held,
+            "on_demand_dispatches" => &fixed.on_demand_dispatches,
+            "stalled" => &fixed.stalled,
+            "step_state" => &fixed.step_state,
             "zone_sums" => &fixed.zone_sums,
             "surface_sums" => &fixed.surface_sums,
             "block_sums" => &fixed.block_sums,
             "histogram" => &exchange.histogram,
-            "coats" => &fixed.coats,
+            "surface_models" => &fixed.surface_models,
             "vents" => &fixed.vents,
-            "shares" => &fixed.shares,
+            "cross_section_shares" => &fixed.cross_section_shares,
             "zones" => &domain.zones,
             "wall_start" => &domain.wall_start,
             "wall_list" => &domain.wall_list,
@@ -440,16 +442,16 @@ impl<'a> Buffers<'a> {
             "newborns" => &particle.newborns,
             "bins" => &particle.bins,
             "slots" => &particle.slots,
-            "crowded" => &particle.rare,
+            "crowded" => &particle.scratch,
             "sorted" => &particle.sorted,
-            "middles" => &particle.middles,
+            "midpoints" => &particle.midpoints,
             "neighbour_count" => &particle.neighbour_count,
             "cells" => &particle.cells,
-            "layers" => &particle.layers,
+            "marks" => &particle.marks,
             "changed" => &particle.changed,
-            "asked" => &particle.asked,
+            "on_demand" => &particle.on_demand,
             "firsts" => &particle.firsts,
-            "parted" => &fixed.parted,
+            "divided" => &fixed.divided,
             "moved" => &fixed.moved,
             "peers" => &exchange.peers,
             "sendings" => &exchange.sendings,

@@ -5,7 +5,7 @@ use crate::geometry::{CellGas, Grid};
 use super::layout::{GpuPart, GpuStillGas};
 
 /// The mark of a cell that walls part; below it the number of its parts (7 bits) and the first of them (24).
-const PARTED: u32 = 1 << 31;
+const DIVIDED: u32 = 1 << 31;
 const MOST_PARTS: usize = 127;
 const MOST_ENTRIES: usize = 1 << 24;
 
@@ -14,7 +14,7 @@ pub struct CellTable {
     pub volume: Vec<u32>,
     pub parts: Vec<GpuPart>,
     /// Cells that walls part.
-    pub parted: u64,
+    pub divided: u64,
     /// Of each cell what walls at rest leave where moving walls may come; empty where none moves.
     pub still: Vec<GpuStillGas>,
 }
@@ -32,14 +32,14 @@ impl CellTable {
     /// # Errors
     /// If walls part more cells than can be named.
     pub fn new(gas: &CellGas, grid: &Grid) -> Result<CellTable, TooManyParts> {
-        let mut table = CellTable { parted: gas.parted.len() as u64, ..CellTable::default() };
+        let mut table = CellTable { divided: gas.parted.len() as u64, ..CellTable::default() };
         table.volume = gas.volume.iter().map(|&volume| (volume as f32).to_bits()).collect();
         for (cell, parts) in &gas.parted {
             let count = parts.len().min(MOST_PARTS);
             if table.parts.len() + count > MOST_ENTRIES {
                 return Err(TooManyParts { cells: gas.parted.len(), limit: MOST_ENTRIES });
             }
-            table.volume[*cell] = PARTED | (count as u32) << 24 | table.parts.len() as u32;
+            table.volume[*cell] = DIVIDED | (count as u32) << 24 | table.parts.len() as u32;
             // A point of a cell of the grid is on the grid.
             table.parts.extend(parts[..count].iter().map(|part| GpuPart {
                 place: grid.to_fixed(part.place).unwrap_or_default(),

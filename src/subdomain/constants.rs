@@ -2,27 +2,19 @@
 //! once, here, from the plan.
 
 use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
-use crate::gpu::{Device, Form};
+use crate::gpu::{Device, KernelVariant};
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
-use super::buffers::{CHUNK, FEW_STRETCHES, SURFACE_COPIES};
 use super::nearness;
-use super::registry::{COAT_WORDS, SURFACE_WORDS, VENT_WORDS};
+use super::registry::{SURFACE_MODEL_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
+use super::sizes::{CHUNK, FEW_STRETCHES, SURFACE_COPIES, WORKGROUP};
 use super::walls::Walls;
 
 const MOST_TALLY_LOOPS: u32 = 32;
 /// So many workgroups give a GPU enough to do.
 const FILLING_GROUPS: u64 = 1024;
-/// Threads of a workgroup. Part of the plan's bits: a driver may contract differently for another size.
-pub const WORKGROUP: u32 = 64;
-/// Particles of a cell of the method `cell` that a thread puts in order by itself, at most: as `shaders/shared/members.wgsl`
-/// has it, whose sorting network is made for so many (held against it in `tests/layouts.rs`).
-pub const MEMBERS: u32 = 12;
-/// And of more, slots that one thread puts in order.
-pub const CROWD: u32 = 64;
-
 /// Random numbers of collisions (the table of purposes is `gas::Purpose`).
 const PURPOSE_COLLISION: u64 = crate::gas::Purpose::Collision as u64;
 const PURPOSE_CELL: u64 = crate::gas::Purpose::CellCollision as u64;
@@ -42,14 +34,14 @@ pub struct Features {
     /// The collision diameter follows the local density where gas is dense.
     pub capped: bool,
     /// Walls part the gas of some cell.
-    pub parted: bool,
+    pub divided: bool,
     pub spin: bool,
     /// A heat capacity depends on the temperature.
     pub curves: bool,
     pub orifices: bool,
     pub surfaces: bool,
     /// Walls that exchange heat with the gas, or let it out.
-    pub coats: bool,
+    pub surface_models: bool,
     pub vents: bool,
     /// Walls that move.
     pub moving: bool,
@@ -64,16 +56,16 @@ pub const MOST_MERGED: u64 = 1 << 15;
 
 /// Whether kernels that could be one are (`shaders/shared/merged.wgsl`). A GPU takes some microseconds for any dispatch; a software device would have its
 /// threads wait for rare work.
-pub fn merges(plan: &Plan, form: Form) -> bool {
-    form == Form::Gpu && plan.particles <= MOST_MERGED
+pub fn merges(plan: &Plan, variant: KernelVariant) -> bool {
+    variant == KernelVariant::Gpu && plan.particles <= MOST_MERGED
 }
 
-/// The most particle-steps of a run on a software device whose kernels read [`NUMBERS`]: up to here they save more in compilation than they cost in steps
+/// The most particle-steps of a run on a software device with [`RUNTIME_CONSTANTS`]: up to here they save more in compilation than they cost in steps
 /// (`docs/performance.md`).
-pub const MOST_READ: f64 = 1e8;
+pub const MOST_WITH_RUNTIME_CONSTANTS: f64 = 1e8;
 
-/// Constants that are numbers of a scene, which kernels can read. (What branches ask of constants alone is compiled in.)
-const NUMBERS: [&str; 29] = [
+/// Constants that are numbers of a scene, which kernels can read from a uniform. (What branches ask of constants alone is compiled in.)
+const RUNTIME_CONSTANTS: [&str; 29] = [
     "BLOCKS",
     "BLOCKS_X",
     "BLOCKS_Y",
@@ -84,7 +76,7 @@ const NUMBERS: [&str; 29] = [
     "CELLS_Z",
     "CELL_BITS",
     "CELL_SEED_HIGH",
-    "COATS_AT",
+    "SURFACE_MODELS_AT",
     "COPY_WORDS",
     "CROSS_SECTION",
     "DIAMETER",
@@ -105,37 +97,37 @@ const NUMBERS: [&str; 29] = [
     "WORKS_AT",
 ];
 
-/// The constants that the kernels of a plan read.
-pub fn numbers_read(device: &Device, plan: &Plan) -> &'static [&'static str] {
-    let is_short = plan.particles as f64 * plan.estimated_steps <= MOST_READ;
-    if is_short { readable_numbers(device) } else { &[] }
+/// The runtime constants of the kernels of a plan.
+pub fn runtime_constants_of(device: &Device, plan: &Plan) -> &'static [&'static str] {
+    let is_short = plan.particles as f64 * plan.estimated_steps <= MOST_WITH_RUNTIME_CONSTANTS;
+    if is_short { runtime_constants(device) } else { &[] }
 }
 
-/// Those that the kernels of short runs read. A GPU's compile all: it may round otherwise where it knows a number.
-pub fn readable_numbers(device: &Device) -> &'static [&'static str] {
-    if device.adapter().is_cpu() { &NUMBERS } else { &[] }
+/// Those of the kernels of short runs. A GPU's have all compiled in: it may round otherwise where it knows a number.
+pub fn runtime_constants(device: &Device) -> &'static [&'static str] {
+    if device.adapter().is_cpu() { &RUNTIME_CONSTANTS } else { &[] }
 }
 
 /// What walls have tallies for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Patches {
     pub surfaces: usize,
-    pub coats: usize,
+    pub surface_models: usize,
     pub vents: usize,
     /// Walls that move.
     pub motions: usize,
 }
 
 impl Patches {
-    /// Words of the tallies of surfaces, of these and the coats, and of these and the vents.
+    /// Words of the tallies of surfaces, of these and the surface models, and of these and the vents.
     pub(super) fn ends(&self) -> [usize; 3] {
         let surfaces = self.surfaces.max(1) * SURFACE_WORDS as usize;
-        let coats = surfaces + self.coats * COAT_WORDS as usize;
-        [surfaces, coats, coats + self.vents * VENT_WORDS as usize]
+        let surface_models = surfaces + self.surface_models * SURFACE_MODEL_WORDS as usize;
+        [surfaces, surface_models, surface_models + self.vents * VENT_WORDS as usize]
     }
 
     pub(super) fn words(&self) -> usize {
-        self.ends()[2] + self.motions * COAT_WORDS as usize
+        self.ends()[2] + self.motions * SURFACE_MODEL_WORDS as usize
     }
 
     /// Words of a copy of these tallies: no two copies share a line of a cache.
@@ -151,17 +143,17 @@ impl Features {
     }
 
     /// On a device with many particles, or a software device.
-    pub fn of(plan: &Plan, patches: Patches, parted: bool, among_others: bool) -> Features {
+    pub fn of(plan: &Plan, patches: Patches, divided: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
             capped: plan.diameter_cap.is_some(),
-            parted,
+            divided,
             spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
             curves: plan.gases.iter().any(|gas| !gas.species.is_constant() && gas.particles > 0),
             orifices: plan.injected_particles > 0,
             surfaces: patches.surfaces > 0,
-            coats: patches.coats > 0,
+            surface_models: patches.surface_models > 0,
             vents: patches.vents > 0,
             moving: patches.motions > 0,
             halo: among_others && plan.method != Method::None,
@@ -171,8 +163,8 @@ impl Features {
 
     /// With what any scene of this method may have, as if nothing were left out.
     #[must_use]
-    pub fn whole(self) -> Features {
-        Features { spin: true, orifices: true, surfaces: true, coats: true, vents: true, moving: true, ..self }
+    pub fn with_all(self) -> Features {
+        Features { spin: true, orifices: true, surfaces: true, surface_models: true, vents: true, moving: true, ..self }
     }
 }
 
@@ -194,7 +186,7 @@ pub fn constants(
     tally_loops: u32,
 ) -> Vec<(&'static str, f64)> {
     let grid = &plan.grid;
-    let [coats_at, vents_at, works_at] = patches.ends();
+    let [surface_models_at, vents_at, works_at] = patches.ends();
     let flag = |on: bool| f64::from(u8::from(on));
     let blocks = block_counts(plan);
     let seed_high = |purpose: u64| ((((plan.seed >> 32) << 8) | purpose) & 0xffff_ffff) as f64;
@@ -236,11 +228,11 @@ pub fn constants(
         ),
         ("ORIFICES", flag(features.orifices)),
         ("SURFACES", flag(features.surfaces)),
-        ("COATS", flag(features.coats)),
+        ("SURFACE_MODELS", flag(features.surface_models)),
         ("VENTS", flag(features.vents)),
         ("HALO", flag(features.halo)),
         ("MERGED", flag(features.merged)),
-        ("COATS_AT", coats_at as f64),
+        ("SURFACE_MODELS_AT", surface_models_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),
         ("COPIES", SURFACE_COPIES as f64),
@@ -248,7 +240,7 @@ pub fn constants(
         ("CELL_POINTS", CELL_POINTS as f64),
         ("GENERATOR_Y", CELL_GENERATOR[1] as f64),
         ("GENERATOR_Z", CELL_GENERATOR[2] as f64),
-        ("PARTED_GAS", flag(features.parted)),
+        ("DIVIDED_GAS", flag(features.divided)),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
         ("MOST_BOUNCES", MOST_BOUNCES),

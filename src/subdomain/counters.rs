@@ -1,15 +1,15 @@
 //! The counters of the registry, read once per step interval.
 
-use super::constants::WORKGROUP;
 use super::registry::*;
+use super::sizes::WORKGROUP;
 
 /// Words that are read: all of them.
 pub const WORDS: usize = COUNTER_WORDS as usize;
-/// Entries for which a list in parts has room beyond the most that it may have: each part's is a whole number of workgroups.
-pub const FREE_ENTRIES: u64 = WORKGROUP as u64 * LIST_PARTS as u64;
+/// Entries for which a list in shards has room beyond the most that it may have: each shard's is a whole number of workgroups.
+pub const FREE_ENTRIES: u64 = WORKGROUP as u64 * LIST_SHARDS as u64;
 
-/// Places among which a list in parts has its entries, of which it has so many at most (`shaders/shared/parted_lists.gpu.wgsl`).
-pub const fn places_in_parts(most: u64) -> u64 {
+/// Places among which a list in shards has its entries, of which it has so many at most (`shaders/shared/sharded_lists.gpu.wgsl`).
+pub const fn places_in_shards(most: u64) -> u64 {
     (most / FREE_ENTRIES + 1) * FREE_ENTRIES
 }
 
@@ -58,7 +58,7 @@ impl Counters {
     pub fn from_words(words: &[u32; WORDS]) -> Counters {
         let word = |at: u32| words[at as usize];
         let two_words = |at: u32| u64::from(word(at)) | (u64::from(word(at + 1)) << 32);
-        let in_cells: u64 = (0..COLLISION_COUNTS).map(|part| two_words(CELL_COLLISIONS + 2 * part)).sum();
+        let in_cells: u64 = (0..COLLISION_COUNTS).map(|shard| two_words(CELL_COLLISIONS + 2 * shard)).sum();
         Counters {
             // Less those that another device counts.
             collisions: two_words(COLLISIONS_LOW) + in_cells - u64::from(word(FOREIGN)),
@@ -84,8 +84,8 @@ impl Counters {
             misplaced: word(MISPLACED),
             choosers: std::array::from_fn(|round| {
                 let list = LIST_RECHOOSE + round as u32;
-                let parts = (0..LIST_PARTS).map(|part| word(PARTS_OF_LISTS + part * PART_WORDS + list));
-                word(list) + parts.sum::<u32>()
+                let shards = (0..LIST_SHARDS).map(|shard| word(LENGTHS_OF_SHARDS + shard * SHARD_WORDS + list));
+                word(list) + shards.sum::<u32>()
             }),
         }
     }

@@ -1,15 +1,16 @@
 //! What all subdomains of one device share: the plan, the compiled kernels, the walls, the zones.
 
-use crate::gpu::{Device, Form, GpuError};
+use crate::gpu::{Device, GpuError, KernelVariant};
 use crate::plan::Plan;
 
-use super::buffers::{DomainBuffers, SURFACE_COPIES, TallyWords};
+use super::buffers::{DomainBuffers, TallyWords};
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, merges, numbers_read, tally_loops};
+use super::constants::{Features, Patches, block_counts, constants, merges, runtime_constants_of, tally_loops};
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};
 use super::scales::Scales;
+use super::sizes::SURFACE_COPIES;
 use super::state::{gas_table, mode_table};
 use super::walls::{Drawn, Walls};
 
@@ -39,17 +40,17 @@ pub enum KernelChoice {
     /// As of many particles, also where these are few.
     ForMany,
     /// Of many, and for what the scene lacks too.
-    Whole,
+    AllFeatures,
 }
 
 pub struct Domain {
     pub(super) plan: Plan,
     pub(super) features: Features,
     pub(super) constants: Vec<(&'static str, f64)>,
-    reads_numbers: bool,
+    has_runtime_constants: bool,
     pub(super) compiled: Compiled,
     /// Of the kernels.
-    pub(super) form: Form,
+    pub(super) variant: KernelVariant,
     /// Of a thread of the tally.
     pub(super) tally_loops: u32,
     pub(super) buffers: DomainBuffers,
@@ -59,7 +60,7 @@ pub struct Domain {
     pub(super) blocks: usize,
     pub(super) zones: usize,
     /// Cells whose gas walls part.
-    pub(super) parted_cells: u64,
+    pub(super) divided_cells: u64,
     /// Cells that moving walls may touch, at most.
     pub(super) moved_cells: u64,
     /// Where the walls that move are drawn.
@@ -71,11 +72,13 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let needed = Features::of(plan, input.patches, input.cells.parted > 0, input.among_others);
+        let needed = Features::of(plan, input.patches, input.cells.divided > 0, input.among_others);
         let features = match input.kernels {
-            KernelChoice::Fitting | KernelChoice::Fixed => Features { merged: merges(plan, device.form()), ..needed },
+            KernelChoice::Fitting | KernelChoice::Fixed => {
+                Features { merged: merges(plan, device.variant()), ..needed }
+            }
             KernelChoice::ForMany => needed,
-            KernelChoice::Whole => needed.whole(),
+            KernelChoice::AllFeatures => needed.with_all(),
         };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();
         let words = TallyWords {
@@ -85,13 +88,13 @@ impl Domain {
         };
         let tally_loops = tally_loops(device, plan);
         let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);
-        let numbers = if input.kernels == KernelChoice::Fixed { &[] } else { numbers_read(device, plan) };
+        let runtime = if input.kernels == KernelChoice::Fixed { &[] } else { runtime_constants_of(device, plan) };
         Ok(Domain {
             plan: plan.clone(),
             features,
-            reads_numbers: !numbers.is_empty(),
-            compiled: Compiled::new(device, features, &constants, numbers)?,
-            form: device.form(),
+            has_runtime_constants: !runtime.is_empty(),
+            compiled: Compiled::new(device, features, &constants, runtime)?,
+            variant: device.variant(),
             tally_loops,
             constants,
             buffers: DomainBuffers::new(
@@ -107,7 +110,7 @@ impl Domain {
             vent_entries: input.vent_entries,
             blocks,
             zones: input.zones.len(),
-            parted_cells: input.cells.parted,
+            divided_cells: input.cells.divided,
             moved_cells: input.cells.still.len() as u64,
             drawn: input.walls.drawn.clone(),
         })
@@ -117,8 +120,13 @@ impl Domain {
         self.features
     }
 
-    /// Whether its kernels read the numbers of the scene.
-    pub fn reads_numbers(&self) -> bool {
-        self.reads_numbers
+    /// Whether its kernels read numbers of the scene from a uniform.
+    pub fn has_runtime_constants(&self) -> bool {
+        self.has_runtime_constants
+    }
+
+    /// The most particles that room is made for ahead of need: a device alone has at most all that the plan has.
+    pub(super) fn most_particles(&self) -> u64 {
+        if self.features.halo { u64::MAX } else { self.plan.particles }
     }
 }

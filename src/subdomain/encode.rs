@@ -1,22 +1,17 @@
 //! The phases of a step, as dispatches in the order of `simulation::step`.
 
-use crate::gpu::{BoundKernel, Device, Form, Pass, Recording, fold};
-use crate::plan::Plan;
-use crate::scene::MOST_MOTIONS;
+use crate::gpu::{BoundKernel, Device, KernelVariant, Pass, Recording};
 
-use super::buffers::{CHUNK, CellBuffers, EMPTIED_CELLS, RECORD, STRETCH, choose_empties, few_stretches, step_stride};
-use super::constants::{Features, MEMBERS, WORKGROUP};
+use super::buffers::{CellBuffers, RECORD, choose_empties, few_stretches};
 use super::counters;
+use super::device_gas::Subdomain;
+use super::dispatch::{all, threads};
 use super::kernels::Flights;
-use super::layout::{GpuMotion, GpuStep};
-use super::nearness;
-use super::place::Cells;
 use super::registry::{
-    COUNT_DROPPED, INTERVAL, LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_INCOMPLETE, LIST_MOVED,
-    LIST_PARTED, LIST_TAILS,
+    LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED,
 };
-use super::step_slot::{Newborns, StepSlot, Steps, Tables};
-use super::{GpuError, Kept, Remembered, Subdomain};
+use super::sizes::{CHUNK, EMPTIED_CELLS, MEMBERS, STRETCH, WORKGROUP};
+use super::step_slot::StepSlot;
 
 /// Those that meet walls, of steps at even and at odd places in their interval.
 const BOUNCES: [u32; 2] = [LIST_BOUNCE, LIST_BOUNCE_ODD];
@@ -24,236 +19,7 @@ const BOUNCES: [u32; 2] = [LIST_BOUNCE, LIST_BOUNCE_ODD];
 /// The most cells that one workgroup scans, where kernels are merged.
 const FEW_CELLS: u64 = 1 << 16;
 
-/// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
-/// the ghosts that were asked.
-pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
-    (plan.rounds + 1) * if features.halo { 2 } else { 1 }
-}
-
-/// `GHOSTS_ALL` and so on of `shaders/shared/step.wgsl`.
-const GHOSTS_ALL: u32 = 0;
-const GHOSTS_WAIT: u32 = 1;
-const GHOSTS_ASKED: u32 = 2;
-
 impl Subdomain {
-    /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
-    /// the slots of those that are to be done.
-    ///
-    /// # Errors
-    /// If room must be made and the device has none.
-    pub fn begin_interval(
-        &mut self,
-        device: &Device,
-        steps: &Steps<'_>,
-        newborns: &Newborns<'_>,
-        tables: &Tables,
-    ) -> Result<Vec<StepSlot>, GpuError> {
-        let Steps { first, done, dt, tallied } = *steps;
-        self.emptied = false;
-        // Work that was submitted before has seen the tables of its own interval.
-        device.write(&self.fixed.coats, 0, &tables.coats);
-        device.write(&self.fixed.vents, 0, &tables.vents);
-        self.place_walls(device, &tables.motions);
-        device.write(&self.fixed.shares, 0, &tables.shares);
-        let near2 = nearness::near2(&self.domain.plan, tables.halvings);
-        let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
-        let Newborns { of_step, list, .. } = *newborns;
-        let entering = of_step[done as usize..].iter().map(|&born| u64::from(born)).sum();
-        self.make_room(&mut Recording::new(device), entering, list.len() as u64, 0)?;
-        device.write(&self.particle.newborns, 0, list);
-        let mut slots = Vec::with_capacity(of_step.len());
-        let mut bytes = Vec::new();
-        let flies_to_bins = self.place.is_alone() && self.kernels.sort.is_some();
-        for (k, (&born, &tallied)) in (0u32..).zip(of_step.iter().zip(tallied)) {
-            let slot = StepSlot {
-                slot: k,
-                index: (first + u64::from(k)) as u32,
-                dt: dt as f32,
-                count: self.count,
-                newborns: born,
-                newborn_offset: 0,
-                first_id: 0,
-                stride: 1,
-                arrivals: 0,
-                total: self.count + born,
-                tallies_left,
-                near2,
-                next: if flies_to_bins { of_step.get(k as usize + 1).copied() } else { None },
-                binned: flies_to_bins && k > done,
-            };
-            let slot = newborns.entering(slot, k);
-            tallies_left -= u32::from(tallied);
-            if self.place.is_alone() {
-                bytes.extend(self.parameters(device, &slot));
-            }
-            if k < done {
-                continue;
-            }
-            if self.place.is_alone() {
-                self.count += born;
-            }
-            slots.push(slot);
-        }
-        device.write(&self.fixed.step, 0, &bytes);
-        let counted = if flies_to_bins { done + slots.len() as u32 } else { 0 };
-        device.write(&self.fixed.held, 4 * u64::from(INTERVAL), &[counted]);
-        Ok(slots)
-    }
-
-    /// Makes half as much room again as the first step of an interval wants for the tails of neighbour lists, by a search among
-    /// the particles that are here, which are remembered as `before`: a run begins with gas of any density, and room that is
-    /// found to be too small only afterwards costs the intervals under way. Changes nothing else but the order of the slots.
-    ///
-    /// # Errors
-    /// If the device fails, or has no room for such lists.
-    pub fn fit_lists(
-        &mut self,
-        device: &Device,
-        dt: f64,
-        tables: &Tables,
-        before: &Remembered,
-    ) -> Result<(), GpuError> {
-        if !self.domain.features.rounds || self.count == 0 || matches!(before.kept, Kept::Nothing) {
-            return Ok(());
-        }
-        device.write(&self.fixed.shares, 0, &tables.shares);
-        let near2 = nearness::near2(&self.domain.plan, tables.halvings);
-        let slot = StepSlot { dt: dt as f32, near2, ..self.at_rest(device) };
-        self.write_parameters(device, &slot);
-        let mut rec = Recording::new(device);
-        self.reset(&mut rec);
-        self.bin(&mut rec, &slot);
-        self.scan(&mut rec, &slot);
-        self.sort(&mut rec, &slot);
-        self.neighbours(&mut rec, &slot);
-        rec.submit();
-        self.emptied = false;
-        let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
-        let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
-        if let Kept::Held = before.kept {
-            self.recall(device, self.count - words[COUNT_DROPPED as usize], &nobody, 0);
-        } else {
-            self.restore(device, before, &nobody)?;
-        }
-        // Where particles lie outside of the own cells and the halo, `sorted` has gaps: then the intervals tell.
-        if words[COUNT_DROPPED as usize] > 0 {
-            return Ok(());
-        }
-        self.make_room_for_tails(device, words[LIST_TAILS as usize].into(), 0.5)
-    }
-
-    /// Starts a step of a device among others, whose number of particles is known only now.
-    ///
-    /// # Errors
-    /// If room must be made and the device has none.
-    pub fn begin_step(&mut self, rec: &mut Recording<'_>, slot: &mut StepSlot) -> Result<(), GpuError> {
-        if !self.place.is_alone() {
-            self.make_room(rec, slot.newborns.into(), 0, 0)?;
-            slot.count = self.count;
-            slot.total = self.count + slot.newborns;
-            self.write_parameters(rec.device(), slot);
-        }
-        Ok(())
-    }
-
-    pub(super) fn write_parameters(&self, device: &Device, slot: &StepSlot) {
-        let stride = step_stride(device) * u64::from(uniforms(&self.domain.plan, self.domain.features));
-        device.write(&self.fixed.step, stride * u64::from(slot.slot), &self.parameters(device, slot));
-    }
-
-    /// The uniforms of all rounds of a step.
-    fn parameters(&self, device: &Device, slot: &StepSlot) -> Vec<u8> {
-        let rounds = self.domain.plan.rounds + 1;
-        let uniforms = uniforms(&self.domain.plan, self.domain.features);
-        let stride = step_stride(device) as usize;
-        let mut bytes = vec![0u8; stride * uniforms as usize];
-        let (low, size) = self.place.bins(self.domain.plan.grid.cells);
-        let Cells { low: inner_low, high: inner_high } = self.place.inner(self.domain.plan.grid.cells);
-        for at in 0..uniforms {
-            let round = at % rounds;
-            let step = GpuStep {
-                count: slot.count,
-                newborns: slot.newborns,
-                newborn_offset: slot.newborn_offset,
-                newborn_first_id: slot.first_id,
-                index: slot.index,
-                dt: slot.dt,
-                round,
-                arrivals: slot.arrivals,
-                low,
-                total: slot.total,
-                size,
-                bins: size.iter().product(),
-                own_low: self.place.own.low,
-                depth: self.place.depth,
-                own_high: self.place.own.high,
-                reach: self.place.reach(round),
-                inner_low,
-                // The arrivals are binned after the others.
-                first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
-                inner_high,
-                ghosts: match (self.place.asks(), at < rounds) {
-                    (false, _) => GHOSTS_ALL,
-                    (true, true) => GHOSTS_WAIT,
-                    (true, false) => GHOSTS_ASKED,
-                },
-                peers: self.place.peers.len() as u32,
-                near_peers: self.place.near as u32,
-                capacity: self.particle.capacity as u32,
-                stride: slot.stride,
-                tallies_left: slot.tallies_left,
-                slot: slot.slot,
-                near2: slot.near2,
-                flight: self.place.flight,
-                next_newborns: slot.next.unwrap_or(0),
-                pad: [0; 3],
-            };
-            let at = stride * at as usize;
-            bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
-        }
-        bytes
-    }
-
-    /// Places the walls that move: in each step of an interval, or for tallies outside of one.
-    pub fn place_walls(&self, device: &Device, motions: &[GpuMotion]) {
-        let mut told = motions.to_vec();
-        for step in told.chunks_mut(MOST_MOTIONS) {
-            step.iter_mut().zip(&self.domain.drawn).for_each(|(motion, drawn)| *motion = drawn.complete(*motion));
-        }
-        device.write(&self.fixed.motions, 0, &told);
-    }
-
-    /// The particles as they are, for tallies outside a step.
-    pub fn at_rest(&self, device: &Device) -> StepSlot {
-        let slot = StepSlot {
-            slot: 0,
-            index: 0,
-            dt: 0.0,
-            count: self.count,
-            newborns: 0,
-            newborn_offset: 0,
-            first_id: 0,
-            stride: 1,
-            arrivals: 0,
-            total: self.count,
-            tallies_left: 0,
-            near2: 0,
-            next: None,
-            binned: false,
-        };
-        self.write_parameters(device, &slot);
-        slot
-    }
-
-    pub(super) fn offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
-        (step_stride(device) as u32) * (step.slot * uniforms(&self.domain.plan, self.domain.features) + round)
-    }
-
-    /// Of the pass over those that were asked.
-    pub(super) fn asked_offset(&self, device: &Device, step: &StepSlot, round: u32) -> u32 {
-        self.offset(device, step, self.domain.plan.rounds + 1 + round)
-    }
-
     /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/choose.wgsl`, `shaders/scan_cells.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
     /// which a small step would wait for.
     pub fn reset(&self, rec: &mut Recording<'_>) {
@@ -343,8 +109,8 @@ impl Subdomain {
             // (Each has several particles.)
             let arguments = (&self.fixed.dispatches, LIST_CROWDS);
             self.over_list(&kernels.collide_crowded, (device, pass), offset, arguments, (step.total / MEMBERS).into());
-            if let Some(parted) = &kernels.parted {
-                parted.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_PARTED);
+            if let Some(divided) = &kernels.divided {
+                divided.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_DIVIDED);
             }
             if let Some(moved) = &kernels.moved {
                 moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
@@ -381,7 +147,7 @@ impl Subdomain {
 
     /// Of a list that is in parts on a GPU.
     pub(super) fn places(&self, most: u64) -> u64 {
-        if self.domain.form == Form::Gpu { counters::places_in_parts(most) } else { most }
+        if self.domain.variant == KernelVariant::Gpu { counters::places_in_shards(most) } else { most }
     }
 
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
@@ -390,7 +156,7 @@ impl Subdomain {
             let bytes = 4 * RECORD * u64::from(step.total);
             rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
         }
-        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.form, self.bins());
+        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.variant, self.bins());
         if self.kernels.sort.is_some() && self.place.is_alone() && !empties {
             rec.encoder().clear_buffer(self.cell.counts(), 0, Some(CellBuffers::start_bytes(self.bins())));
         }
@@ -402,7 +168,7 @@ impl Subdomain {
         let pass = &mut rec.phase("advect");
         match &self.kernels.flights {
             Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
-            Flights::Parted { advect, bounce } => {
+            Flights::Split { advect, bounce } => {
                 advect.dispatch(pass, offset, groups);
                 let arguments = (&self.fixed.dispatches, BOUNCES[step.slot as usize % 2]);
                 self.over_list(bounce, (device, pass), offset, arguments, step.total.into());
@@ -429,12 +195,4 @@ impl Subdomain {
         let device = rec.device();
         self.kernels.blocks.dispatch(&mut rec.phase("blocks"), self.offset(device, step, 0), all(device, step));
     }
-}
-
-pub(super) fn threads(device: &Device, items: u64) -> [u32; 3] {
-    fold(items, WORKGROUP, device.limits().max_compute_workgroups_per_dimension)
-}
-
-pub(super) fn all(device: &Device, step: &StepSlot) -> [u32; 3] {
-    threads(device, u64::from(step.total))
 }

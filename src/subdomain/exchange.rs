@@ -5,33 +5,14 @@
 //! peer together (`shaders/shared/sendings.wgsl`), and the host looks at none of them. The receiver sorts the
 //! former by cell with its own particles, and finds the ghosts of the latter by cell and id.
 
-use crate::gpu::{Device, Readback, Recording};
+use crate::gpu::{Device, GpuError, Readback, Recording};
 
-use super::buffers::{ExchangeBuffers, ExchangeRoom};
-use super::encode::threads;
+use super::buffers::ExchangeBuffers;
+use super::device_gas::Subdomain;
+use super::dispatch::{all, threads};
 use super::layout::{GpuParticle, GpuUpdate, GpuWeights};
 use super::registry::{self, COUNT_DROPPED, LIST_BORDER, LIST_CHANGED, LIST_OUTBOX, LIST_UPDATES};
 use super::step_slot::StepSlot;
-use super::{GpuError, Subdomain};
-
-/// Least entries that are copied with the counts, before it is known how many there are.
-const LEAST_GUESS: u64 = 256;
-
-/// What of an outbox is copied at once: as much as was in it lately, and some more.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Guess(u64);
-
-impl Guess {
-    pub(super) fn new() -> Guess {
-        Guess(LEAST_GUESS)
-    }
-
-    fn follow(&mut self, count: u64) {
-        let wanted = (count + count / 4).max(LEAST_GUESS);
-        // Up at once, down slowly.
-        self.0 = wanted.max(self.0 - self.0 / 16);
-    }
-}
 
 /// A copy of an outbox on its way to the host: how many entries are in the copy, and peers in its header.
 pub struct Outgoing {
@@ -94,7 +75,7 @@ impl Subdomain {
             kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
             kernels.fill.dispatch_indirect(pass, offset, &self.fixed.rechoose_dispatches, LIST_OUTBOX);
         }
-        let entries = self.outbox_guess.0.min(self.exchange.room);
+        let entries = self.outbox_guess.entries().min(self.exchange.room);
         let staging = self.copy_outbox(rec, entries, PARTICLE, |exchange| &exchange.outbox)?;
         let readback = rec.device().read_later(staging, rec.submit());
         Ok(Outgoing { readback, entries, peers: self.place.peers.len() })
@@ -185,7 +166,7 @@ impl Subdomain {
             kernels.message_starts.dispatch(pass, offset, [1, 1, 1]);
             updates.fill.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_UPDATES);
         }
-        let entries = self.update_guess.0.min(self.exchange.update_room);
+        let entries = self.update_guess.entries().min(self.exchange.update_room);
         let staging = self.copy_outbox(rec, entries, UPDATE, |exchange| &exchange.updates_out)?;
         // The lists start anew after the exchange.
         let encoder = rec.encoder();
@@ -265,11 +246,7 @@ impl Subdomain {
         let device = rec.device();
         if let Some(kernels) = &self.kernels.exchange {
             device.write(&self.fixed.weights, 0, &[GpuWeights::default()]);
-            kernels.weigh.dispatch(
-                &mut rec.phase("blocks"),
-                self.offset(device, step, 0),
-                super::encode::all(device, step),
-            );
+            kernels.weigh.dispatch(&mut rec.phase("blocks"), self.offset(device, step, 0), all(device, step));
         }
     }
 
@@ -298,8 +275,7 @@ impl Subdomain {
         // Ghosts are among them, so it is as many as `sorted` had.
         let step = self.at_rest(device);
         if let Some(kernels) = &self.kernels.exchange {
-            let all = super::encode::all(device, &step);
-            kernels.weigh.dispatch(&mut rec.phase("weigh"), self.offset(device, &step, 0), all);
+            kernels.weigh.dispatch(&mut rec.phase("weigh"), self.offset(device, &step, 0), all(device, &step));
         }
         rec.submit();
         let words: Vec<[u32; 2]> = device.read(&self.exchange.histogram, planes)?;
@@ -322,18 +298,5 @@ impl Subdomain {
                 device.staging(bytes.next_power_of_two())
             }
         }
-    }
-
-    /// Makes the exchange buffers larger; what is in them is lost.
-    pub(super) fn make_exchange_room(
-        &mut self,
-        device: &Device,
-        larger: impl FnOnce(&mut ExchangeRoom),
-    ) -> Result<(), GpuError> {
-        larger(&mut self.exchange_room);
-        let peers = self.gpu_peers();
-        self.exchange = ExchangeBuffers::new(device, &self.exchange_room)?;
-        device.write(&self.exchange.peers, 0, &peers);
-        self.rebind(device)
     }
 }

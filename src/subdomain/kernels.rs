@@ -4,6 +4,7 @@ use crate::gpu::{BoundKernel, Constants, Device, GpuError, Kernel};
 
 use super::buffers::Buffers;
 use super::constants::Features;
+use super::shaders::shader;
 
 /// What a scene needs is there; what it lacks is not compiled.
 pub struct Kernels<K> {
@@ -34,11 +35,11 @@ pub struct CollisionKernels<K> {
     pub start_flights: Option<K>,
     pub neighbours: K,
     /// On a device among others.
-    pub neighbours_asked: Option<K>,
+    pub neighbours_on_demand: Option<K>,
     pub complete_lists: K,
     pub choose: K,
     /// The same kernel, for the pass over the ghosts that were asked.
-    pub choose_asked: K,
+    pub choose_on_demand: K,
     pub match_pairs: K,
     pub settle: Settle<K>,
     pub lost: K,
@@ -49,13 +50,13 @@ pub struct CollisionKernels<K> {
 /// To the end of the step.
 pub enum Flights<K> {
     Merged(K),
-    Parted { advect: K, bounce: K },
+    Split { advect: K, bounce: K },
 }
 
 /// The collisions of a round: with the match of those that have chosen, or of the list that this has made.
 pub enum Settle<K> {
     Merged(K),
-    Parted(K),
+    Split(K),
 }
 
 /// Collisions within cells.
@@ -65,7 +66,7 @@ pub struct CellKernels<K> {
     pub collide: K,
     pub collide_crowded: K,
     /// Of a scene whose walls part the gas of a cell.
-    pub parted: Option<K>,
+    pub divided: Option<K>,
     /// Of a scene whose walls move.
     pub moved: Option<K>,
 }
@@ -105,7 +106,7 @@ impl<K> Kernels<K> {
                 arrange_crowded: make("arrange_crowded")?,
                 collide: make("collide")?,
                 collide_crowded: make("collide_crowded")?,
-                parted: if features.parted { Some(make("collide_parted")?) } else { None },
+                divided: if features.divided { Some(make("collide_divided")?) } else { None },
                 moved: if features.moving { Some(make("collide_moved")?) } else { None },
             })
         } else {
@@ -116,15 +117,15 @@ impl<K> Kernels<K> {
                 order: make("order")?,
                 start_flights: if features.capped { Some(make("start_flights")?) } else { None },
                 neighbours: make("neighbours")?,
-                neighbours_asked: if features.halo { Some(make("neighbours_asked")?) } else { None },
+                neighbours_on_demand: if features.halo { Some(make("neighbours_on_demand")?) } else { None },
                 complete_lists: make("complete_lists")?,
                 choose: make("choose")?,
-                choose_asked: make("choose_asked")?,
+                choose_on_demand: make("choose_on_demand")?,
                 match_pairs: make("match_pairs")?,
                 settle: if features.merged {
                     Settle::Merged(make("settle_chosen")?)
                 } else {
-                    Settle::Parted(make("settle")?)
+                    Settle::Split(make("settle")?)
                 },
                 lost: make("lost")?,
                 recall: if features.halo { None } else { Some(make("recall")?) },
@@ -160,7 +161,7 @@ impl<K> Kernels<K> {
             flights: if features.merged {
                 Flights::Merged(make("fly")?)
             } else {
-                Flights::Parted { advect: make("advect")?, bounce: make("bounce")? }
+                Flights::Split { advect: make("advect")?, bounce: make("bounce")? }
             },
             tally: make("tally")?,
             blocks: make("blocks")?,
@@ -178,8 +179,12 @@ struct Second {
 }
 
 /// The pass over the ghosts that were asked asks nobody, and may not write what it takes its size from.
-const SECONDS: [Second; 1] =
-    [Second { name: "choose_asked", shader: "choose", instead_of: "asked_dispatches", buffer: "rechoose_dispatches" }];
+const SECONDS: [Second; 1] = [Second {
+    name: "choose_on_demand",
+    shader: "choose",
+    instead_of: "on_demand_dispatches",
+    buffer: "rechoose_dispatches",
+}];
 
 fn second(name: &str) -> Option<&'static Second> {
     SECONDS.iter().find(|second| second.name == name)
@@ -189,17 +194,17 @@ fn second(name: &str) -> Option<&'static Second> {
 pub struct Compiled(Vec<(&'static str, Kernel)>);
 
 impl Compiled {
-    /// `numbers` are the constants that are read.
+    /// `runtime` names the runtime constants.
     pub fn new(
         device: &Device,
         features: Features,
         constants: &Constants,
-        numbers: &[&str],
+        runtime: &[&str],
     ) -> Result<Compiled, GpuError> {
         let mut compiled = Vec::new();
         Kernels::build(features, |name| {
             if second(name).is_none() {
-                compiled.push((name, Kernel::reading(device, name, constants, numbers)?));
+                compiled.push((name, Kernel::with_runtime_constants(device, shader(name)?, constants, runtime)?));
             }
             Ok::<(), GpuError>(())
         })?;

@@ -128,7 +128,7 @@ pub struct GpuTriangle {
     pub b: [u32; 3],
     pub surface: u32,
     pub c: [u32; 3],
-    pub coat: u32,
+    pub surface_model: u32,
     pub normal: [f32; 3],
     pub motion: u32,
 }
@@ -152,10 +152,10 @@ pub struct GpuMotion {
     pub pad4: u32,
 }
 
-/// `Coat` of `shaders/shared/coats.wgsl`.
+/// `SurfaceModel` of `shaders/shared/surface_models.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
-pub struct GpuCoat {
+pub struct GpuSurfaceModel {
     pub thermal: f32,
     pub accommodation: f32,
     pub friction: f32,
@@ -163,7 +163,7 @@ pub struct GpuCoat {
     pub end_vent: u32,
 }
 
-/// `Vent` of `shaders/shared/coats.wgsl`.
+/// `Vent` of `shaders/shared/surface_models.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct GpuVent {

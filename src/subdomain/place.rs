@@ -29,7 +29,7 @@ pub struct GridCells {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Ghosts {
     /// Those that were chosen: little work, three dispatches more a round.
-    Asked,
+    OnDemand,
     /// All, with the own particles.
     All,
 }
@@ -113,8 +113,8 @@ impl Place {
     }
 
     /// Whether some ghosts choose only when asked.
-    pub fn asks(&self) -> bool {
-        self.depth > 0 && self.ghosts == Ghosts::Asked
+    pub fn has_on_demand_ghosts(&self) -> bool {
+        self.depth > 0 && self.ghosts == Ghosts::OnDemand
     }
 
     /// Whether the ghosts must be brought up to date before this round.
@@ -130,7 +130,7 @@ mod tests {
 
     fn place(depth: u32) -> Place {
         let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
-        Place { own, depth, ghosts: Ghosts::Asked, peers: Vec::new(), near: 0, flight: 0, scattered: false }
+        Place { own, depth, ghosts: Ghosts::OnDemand, peers: Vec::new(), near: 0, flight: 0, scattered: false }
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.

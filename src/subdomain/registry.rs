@@ -21,7 +21,7 @@ registry! {
         /// The pairs of round r are list r; the list behind the last round's counts the pairs that the rounds lost.
         LIST_PAIRS = 0,
         /// Cells that walls divide, and cells that moving walls may touch, with the method `cell`, which has no rounds.
-        LIST_PARTED = 0,
+        LIST_DIVIDED = 0,
         LIST_MOVED = 1,
         /// Particles of cells that are put in order one by one, and crowded cells, with the method `cell`.
         LIST_CROWDED = 2,
@@ -41,7 +41,7 @@ registry! {
         LIST_RECHOOSE = 16,
         RECHOOSE_LISTS = 10,
         /// The ghosts that were asked for their choice.
-        LIST_ASKED = 26,
+        LIST_ON_DEMAND = 26,
         /// Particles that meet a wall, of steps at odd places.
         LIST_BOUNCE_ODD = 27,
         /// The entries of the tails of neighbour lists.
@@ -100,31 +100,38 @@ registry! {
         COLLISION_COUNTS = 32,
         /// Entries of lists that found no place, and threads that were parted while they counted together.
         MISPLACED = 117,
-        /// The lengths of lists that are in parts (`shaders/shared/parted_lists.gpu.wgsl`), by part: each part's so far
+        /// The lengths of sharded lists (`shaders/shared/sharded_lists.gpu.wgsl`), by shard: each shard's so far
         /// behind the one before that another part of a GPU's cache has them.
-        PARTS_OF_LISTS = 128,
-        PART_WORDS = 64,
-        LIST_PARTS = 16,
-        COUNTER_WORDS = PARTS_OF_LISTS + PART_WORDS * LIST_PARTS,
+        LENGTHS_OF_SHARDS = 128,
+        SHARD_WORDS = 64,
+        LIST_SHARDS = 16,
+        COUNTER_WORDS = LENGTHS_OF_SHARDS + SHARD_WORDS * LIST_SHARDS,
     }
 }
 
 registry! {
-    /// Words of `held`: what a step leaves for the kernels behind it, each of whose threads reads it. They are no
-    /// counters, which are counted up meanwhile.
-    HELD_TABLE {
-        /// On a device alone, whose lists had too little room: one more than the place of the step in its interval,
-        /// after whose search nothing changes until the host has made room. The host alone clears it.
-        HELD = 0,
+    /// Words of `stalled`, which a device alone writes where its lists had too little room. They are no counters, which are
+    /// counted up meanwhile: each thread of the kernels behind reads them.
+    STALLED_TABLE {
+        /// One more than the place of the step in its interval, after whose search nothing changes until the host has made
+        /// room. The host alone clears it.
+        STALLED = 0,
         /// How many particles are in `sorted` then.
-        HELD_PARTICLES = 1,
+        STALLED_PARTICLES = 1,
+        STALLED_WORDS = 2,
+    }
+}
+
+registry! {
+    /// Words of `step_state`, which each thread of the kernels of a step may read.
+    STEP_STATE {
         /// The particles that are in cells.
-        PRESENT = 2,
+        PRESENT = 0,
         /// On a device alone that sorts its particles the number of steps of the interval, else 0; from the host. It is
         /// here and not in a uniform: where a branch asks uniforms alone, Mesa's lavapipe of 22.3 makes a kernel for
         /// their values, some kernels anew at each dispatch.
-        INTERVAL = 3,
-        HELD_WORDS = 4,
+        INTERVAL_STEPS = 1,
+        STEP_STATE_WORDS = 2,
     }
 }
 
@@ -142,10 +149,10 @@ registry! {
         SURFACE_NORMAL = 6,
         SURFACE_HITS = 8,
         SURFACE_WORDS = 10,
-        /// A coat, a vent or a moving wall: an energy, and that energy times the tallies of zones that followed.
+        /// A surface model, a vent or a moving wall: an energy, and that energy times the tallies of zones that followed.
         WALL_ENERGY = 0,
         WALL_TALLIED = 2,
-        COAT_WORDS = 4,
+        SURFACE_MODEL_WORDS = 4,
         /// A vent has behind these: hits, hits whose probability was clipped to one, and then, a word each, the
         /// particles of each gas that left.
         VENT_HITS = 4,
@@ -160,7 +167,7 @@ registry! {
 }
 
 /// All numbers that kernels see.
-pub const NUMBERS: [&[(&str, u32)]; 4] = [LISTS_AND_COUNTS, COUNTERS, HELD_TABLE, TALLIES];
+pub const NUMBERS: [&[(&str, u32)]; 5] = [LISTS_AND_COUNTS, COUNTERS, STALLED_TABLE, STEP_STATE, TALLIES];
 
 /// The uniform of which each dispatch sees the part of its step and round.
 pub const STEPPED: &str = "step";
@@ -176,15 +183,16 @@ pub const BUFFERS: &[&str] = &[
     "counters",
     "dispatches",
     "rechoose_dispatches",
-    "asked_dispatches",
-    "held",
+    "on_demand_dispatches",
+    "stalled",
+    "step_state",
     "zone_sums",
     "surface_sums",
     "block_sums",
     "histogram",
-    "coats",
+    "surface_models",
     "vents",
-    "shares",
+    "cross_section_shares",
     "zones",
     "wall_start",
     "wall_list",
@@ -215,14 +223,14 @@ pub const BUFFERS: &[&str] = &[
     "rechoose",
     "bouncing",
     "sorted",
-    "middles",
+    "midpoints",
     "neighbour_count",
     "cells",
-    "layers",
+    "marks",
     "changed",
-    "asked",
+    "on_demand",
     "firsts",
-    "parted",
+    "divided",
     "moved",
     "peers",
     "sendings",

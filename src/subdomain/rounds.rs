@@ -2,18 +2,17 @@
 
 use crate::gpu::{BoundKernel, Recording};
 
-use super::Subdomain;
-use super::buffers::STRETCH;
-use super::constants::WORKGROUP;
+use super::device_gas::Subdomain;
 use super::kernels::{CollisionKernels, Settle};
-use super::registry::{LIST_ASKED, LIST_PAIRS, LIST_RECHOOSE};
+use super::registry::{LIST_ON_DEMAND, LIST_PAIRS, LIST_RECHOOSE};
+use super::sizes::{STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
 
 impl Subdomain {
     pub fn choose(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
             self.choosing(&kernels.choose, rec, "choose", step, round);
-            self.choose_asked(kernels, rec, "choose", step, round);
+            self.choose_on_demand(kernels, rec, "choose", step, round);
         }
     }
 
@@ -21,7 +20,7 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             let settle = match &kernels.settle {
                 Settle::Merged(settle) => return self.choosing(settle, rec, "settle", step, round),
-                Settle::Parted(settle) => settle,
+                Settle::Split(settle) => settle,
             };
             self.choosing(&kernels.match_pairs, rec, "settle", step, round);
             let offset = self.offset(rec.device(), step, round);
@@ -36,14 +35,14 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.collisions {
             let rounds = self.domain.plan.rounds;
             self.choosing(&kernels.choose, rec, "lost", step, rounds);
-            self.choose_asked(kernels, rec, "lost", step, rounds);
+            self.choose_on_demand(kernels, rec, "lost", step, rounds);
             self.choosing(&kernels.match_pairs, rec, "lost", step, rounds);
             kernels.lost.dispatch(&mut rec.phase("lost"), 0, [1, 1, 1]);
         }
     }
 
     /// The ghosts that particles farther in have chosen choose.
-    fn choose_asked(
+    fn choose_on_demand(
         &self,
         kernels: &CollisionKernels<BoundKernel>,
         rec: &mut Recording<'_>,
@@ -51,11 +50,13 @@ impl Subdomain {
         step: &StepSlot,
         round: u32,
     ) {
-        if let Some(neighbours_asked) = kernels.neighbours_asked.as_ref().filter(|_| self.place.asks()) {
-            let offset = self.asked_offset(rec.device(), step, round);
+        if let Some(neighbours_on_demand) =
+            kernels.neighbours_on_demand.as_ref().filter(|_| self.place.has_on_demand_ghosts())
+        {
+            let offset = self.on_demand_offset(rec.device(), step, round);
             let pass = &mut rec.phase(phase);
-            for kernel in [neighbours_asked, &kernels.complete_lists, &kernels.choose_asked] {
-                kernel.dispatch_indirect(pass, offset, &self.fixed.asked_dispatches, LIST_ASKED);
+            for kernel in [neighbours_on_demand, &kernels.complete_lists, &kernels.choose_on_demand] {
+                kernel.dispatch_indirect(pass, offset, &self.fixed.on_demand_dispatches, LIST_ON_DEMAND);
             }
         }
     }

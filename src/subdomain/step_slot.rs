@@ -1,6 +1,9 @@
 //! An interval of steps as its dispatches see it: its steps, who enters in them, and what the host tells of walls and gas.
 
-use super::layout::{GpuCoat, GpuMotion, GpuNewborn, GpuVent};
+use crate::plan::Plan;
+
+use super::constants::Features;
+use super::layout::{GpuMotion, GpuNewborn, GpuSurfaceModel, GpuVent};
 
 /// One step of an interval, as its dispatches see it.
 #[derive(Debug, Clone, Copy)]
@@ -25,15 +28,15 @@ pub struct StepSlot {
     pub(super) binned: bool,
 }
 
-/// What coats and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
+/// What surface models and vents do in an interval, empty where all walls are mirrors; and where the walls that move are in each
 /// of its steps, `MOST_MOTIONS` entries for each, empty where none does.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tables {
-    pub coats: Vec<GpuCoat>,
+    pub surface_models: Vec<GpuSurfaceModel>,
     pub vents: Vec<GpuVent>,
     pub motions: Vec<GpuMotion>,
     /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
-    pub shares: Vec<u32>,
+    pub cross_section_shares: Vec<u32>,
     /// By how many halvings less the fastest pairs fly in these steps than in the longest.
     pub halvings: u32,
 }
@@ -95,4 +98,10 @@ impl StepSlot {
     pub fn arrived(&self) -> u32 {
         self.arrivals
     }
+}
+
+/// Uniforms of a step: of each round and of the count of lost collisions; among others, as many for the passes over
+/// the ghosts that were asked.
+pub(super) fn uniforms(plan: &Plan, features: Features) -> u32 {
+    (plan.rounds + 1) * if features.halo { 2 } else { 1 }
 }

@@ -36,15 +36,15 @@ pub struct SurfaceSum {
     pub hits: i64,
 }
 
-/// What a coat took in an interval, in tally units over the reference mass.
+/// What a surface model took in an interval, in tally units over the reference mass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct CoatSum {
+pub struct SurfaceModelSum {
     pub energy: i64,
     /// Each part of it times the tallies of the zones that followed in the interval.
     pub tallied: i64,
 }
 
-/// What left through a vent in an interval; energies as those of a coat.
+/// What left through a vent in an interval; energies as those of a surface_model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct VentSum {
     pub energy: i64,
@@ -69,10 +69,10 @@ pub struct Tallies {
     /// Zone-major, then gas.
     pub zones: Vec<ZoneSum>,
     pub surfaces: Vec<SurfaceSum>,
-    pub coats: Vec<CoatSum>,
+    pub surface_models: Vec<SurfaceModelSum>,
     pub vents: Vec<VentSum>,
     /// The work that the gas did on each wall that moves.
-    pub works: Vec<CoatSum>,
+    pub works: Vec<SurfaceModelSum>,
     pub blocks: Vec<BlockSum>,
     /// Particles that would cross more than a cell in a step of each level of the ladder.
     pub fast: Vec<u32>,
@@ -95,12 +95,12 @@ impl Tallies {
         let (zones, rest) = rest.split_at(sizes.zones);
         let (copies, rest) = rest.split_at(sizes.surfaces);
         let walls = sum_of_copies(copies, patches);
-        let [coats_at, vents_at, works_at] = patches.ends();
-        let (surfaces, coats) = (&walls[..coats_at], &walls[coats_at..vents_at]);
+        let [surface_models_at, vents_at, works_at] = patches.ends();
+        let (surfaces, surface_models) = (&walls[..surface_models_at], &walls[surface_models_at..vents_at]);
         let (vents, works) = (&walls[vents_at..works_at], &walls[works_at..]);
-        let taken = |words: &[u32]| -> Vec<CoatSum> {
-            let sum = |w: &[u32]| CoatSum { energy: signed(w, WALL_ENERGY), tallied: signed(w, WALL_TALLIED) };
-            words.chunks_exact(COAT_WORDS as usize).map(sum).collect()
+        let taken = |words: &[u32]| -> Vec<SurfaceModelSum> {
+            let sum = |w: &[u32]| SurfaceModelSum { energy: signed(w, WALL_ENERGY), tallied: signed(w, WALL_TALLIED) };
+            words.chunks_exact(SURFACE_MODEL_WORDS as usize).map(sum).collect()
         };
         let block_words = &rest[..sizes.blocks];
         Tallies {
@@ -122,7 +122,7 @@ impl Tallies {
                     hits: signed(w, SURFACE_HITS),
                 })
                 .collect(),
-            coats: taken(coats),
+            surface_models: taken(surface_models),
             works: taken(works),
             vents: vents
                 .chunks_exact(VENT_WORDS as usize)
@@ -196,7 +196,7 @@ impl Tallies {
         self.from_words(&sums, &maxima)
     }
 
-    /// The sums of zones, surfaces, coats, vents and moving walls.
+    /// The sums of zones, surfaces, surface models, vents and moving walls.
     fn signed(&mut self) -> impl Iterator<Item = &mut i64> {
         let zones = self.zones.iter_mut().flat_map(|zone| {
             let ZoneSum { number, velocity: [x, y, z], kinetic, spin } = zone;
@@ -206,13 +206,16 @@ impl Tallies {
             let SurfaceSum { impulse: [x, y, z], normal, hits } = surface;
             [x, y, z, normal, hits]
         });
-        let coats = self.coats.iter_mut().flat_map(|coat| [&mut coat.energy, &mut coat.tallied]);
+        let surface_models = self
+            .surface_models
+            .iter_mut()
+            .flat_map(|surface_model| [&mut surface_model.energy, &mut surface_model.tallied]);
         let vents = self.vents.iter_mut().flat_map(|vent| {
             let VentSum { energy, tallied, hits, clipped, left } = vent;
             [energy, tallied, hits, clipped].into_iter().chain(left)
         });
         let works = self.works.iter_mut().flat_map(|work| [&mut work.energy, &mut work.tallied]);
-        zones.chain(surfaces).chain(coats).chain(vents).chain(works)
+        zones.chain(surfaces).chain(surface_models).chain(vents).chain(works)
     }
 }
 

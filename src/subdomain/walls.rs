@@ -64,13 +64,13 @@ impl Walls {
     }
 
     /// `triangle_grid` was built with the margin [`Walls::tolerance`]. `patch` is the surface tally of each triangle of
-    /// the vessel; empty if nothing is tallied. `coat` is its coat; empty if all walls are mirrors. `parts` tells of a
+    /// the vessel; empty if nothing is tallied. `surface_model` is its surface model; empty if all walls are mirrors. `parts` tells of a
     /// triangle of the vessel whether it can part two points of the gas: those of the surface of a convex cavity cannot.
     pub fn new(
         triangle_grid: &TriangleGrid,
         grid: &Grid,
         patch: &[u32],
-        coat: &[u32],
+        surface_model: &[u32],
         parts: impl Fn(usize) -> bool,
     ) -> Walls {
         let triangles = triangle_grid
@@ -87,7 +87,7 @@ impl Walls {
                     b: corner(1),
                     surface: patch.get(triangle.source as usize).copied().unwrap_or(NOBODY),
                     c: corner(2),
-                    coat: coat.get(triangle.source as usize).copied().unwrap_or(NOBODY),
+                    surface_model: surface_model.get(triangle.source as usize).copied().unwrap_or(NOBODY),
                     normal: triangle.normal,
                     motion: NOBODY,
                 }

@@ -5,6 +5,7 @@
 mod folders;
 mod gas;
 mod meshes;
+mod mistakes;
 mod plan;
 mod plausible;
 

@@ -47,3 +47,32 @@ fn a_coarse_sphere_keeps_its_volume() {
     assert!(out.contains("80 facets") && out.contains("30 L"), "{out}");
     assert!(format!("{out}{err}").contains("wall `ball`: distance of facets"), "{out}{err}");
 }
+
+/// What the plan chooses by itself is not beyond the limits that it warns of: the cap of a large diameter, the cells of dense gas, the
+/// particles of a probe. Where a budget is too small for that, a reason says so, and the error decides.
+#[test]
+fn a_wish_keeps_the_limits_that_plans_warn_of() {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = tempfile::tempdir().unwrap();
+    let told = |name: &str, model: &str, wish: [&str; 2]| {
+        let text = std::fs::read_to_string(scenes.join(name)).unwrap().replace("[model]", &format!("[model]\n{model}"));
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let (code, out, err) = outcome(&[&["plan", path.to_str().unwrap()], &wish[..]].concat());
+        assert_eq!(code, 0, "{err}");
+        let warned: Vec<String> = out.lines().filter(|line| line.starts_with("warning: ")).map(String::from).collect();
+        (warned, out)
+    };
+    for model in ["", "method = \"cell\"\n"] {
+        let (warned, out) = told("corner.toml", model, ["--particle-budget", "20000"]);
+        // A thousandth of the pressure is the scene's own.
+        assert!(warned.len() == 1 && warned[0].contains("chamber `rest` at the start: mean free path"), "{warned:?}");
+        assert!(!out.contains("limits not kept"));
+    }
+    let (warned, out) = told("tank.toml", "", ["--accuracy", "0.2"]);
+    assert!(warned.is_empty() && out.contains("closest-approach"), "{warned:?}");
+    let (warned, out) = told("tank.toml", "", ["--particle-budget", "5000"]);
+    assert!(warned.iter().any(|text| text.contains("probe `vent jet`")), "{warned:?}");
+    let reason = out.lines().find(|line| line.starts_with("limits not kept")).unwrap_or_default();
+    assert!(reason.contains("particles in it") && out.contains("closest-approach"), "{out}");
+}

@@ -42,6 +42,7 @@ const fn slip(scene: &'static str, line: [&'static str; 2], words: &'static [&'s
 }
 
 const PRESSURE: &str = "pressure = 101325.0\n";
+const CHAMBER: &str = "[[chamber]]\nname";
 const AIR: &str = "molar_mass = 0.02897\ngamma = 1.4";
 const FLOW: &str = "[[0.0, 0.0], [0.002, 1.0], [0.004, 0.5]]";
 const CAN_FLOW: &str = "[[0, 0], [5, 3e-3], [20, 1.5e-3], [50, 0]]";
@@ -100,6 +101,64 @@ const SLIPS: &[Slip] = &[
         TANK,
         [AIR, "molar_mass = 0.02897\ncp = [26.9, 5.9, 0.0]"],
         &["gas `air`: molar cp 1796.9", "at 300 K (20 R)"],
+    ),
+    slip(TANK, [PRESSURE, "pressure = 250.0\n"], &["250 Pa", "in kPa or hPa (mbar)?"]),
+    slip(TANK, [PRESSURE, "pressure = 400.0\n"], &["400 Pa", "in hPa (mbar) or kPa?"]),
+    slip(
+        TANK,
+        ["end_time = 0.004", "end_time = 4.0"],
+        &["end_time 4 s is 4,469 times the 0.", "in another unit?", "`switch`"],
+    ),
+    slip(
+        TANK,
+        [FLOW, "[[0.0, 0.0], [2e-6, 1.0], [4e-6, 0.5]]"],
+        &["its mass flow is over at 4e-6 s", "1000 times that"],
+    ),
+    slip(
+        TANK,
+        ["temperature = 700.0", "temperature = [[0, 300], [2, 700], [4, 500]]"],
+        &["its temperature goes on until 4 s, 1000 times `end_time` 0.004 s", "in another unit?"],
+    ),
+    slip(
+        TANK,
+        ["discharge = 0.7", "discharge = [[0, 0.0], [2, 0.7]]"],
+        &["vent `vent`: its discharge goes on until 2 s, 500 times"],
+    ),
+    slip(
+        TANK,
+        [CHAMBER, "[[chamber]]\nregion = { box = { min = [0, 0, 0], max = [0.2, 0.3, 0.25] } }\nname"],
+        &["0.015 of its 0.03 m3 (50 %) are in no chamber", "leave out the `region`"],
+    ),
+    slip(
+        TANK,
+        [
+            "[[chamber]]",
+            "[[wall]]\nname = \"rod\"\nshape = \"box\"\nmin = [2, 1, 1]\nmax = [2.1, 1.1, 1.1]\ngas = \"outside\"\n[[chamber]]",
+        ],
+        &["wall `rod`: 100 % of its volume lies outside of what encloses the gas"],
+    ),
+    slip(
+        TANK,
+        [
+            "[[chamber]]",
+            "[[wall]]\nname = \"core\"\nshape = \"box\"\nmin = [0.02, 0.02, 0.1]\nmax = [0.05, 0.05, 0.2]\ngas = \"inside\"\n[[chamber]]",
+        ],
+        &["walls `tank`, `core`: all have the gas inside", "`gas = \"outside\"`"],
+    ),
+    slip(TANK, ["area = 1e-3", "area = 1000"], &["vent `vent`: area 1000 m2, usual is 1e-8 to 1 m2: is it in mm2?"]),
+    slip(TANK, ["area = 2e-4", "area = 200"], &["orifice `inflator`: area 200 m2", "in mm2?"]),
+    slip(CAN, ["area = 200", "area = 2e-4"], &["orifice `inflator`: area 0.0002 mm2", "in m2?"]),
+    slip(TANK, ["cone_angle = 10.0", "cone_angle = 0.17"], &["cone_angle 0.17 degrees", "in radians? 9.74 degrees"]),
+    slip(
+        TANK,
+        ["discharge = 0.7", "discharge_by_pressure = [[101325, 0.5], [2e5, 0.7]]"],
+        &["vent `vent`: its curve begins at about the external pressure", "absolute?"],
+    ),
+    slip(TANK, ["particles = 2000", "diameter = 3.7e-10"], &["the model: diameter 3.7e-10 m: is it of molecules?"]),
+    slip(
+        TANK,
+        ["temperature = 300.0\n[[ch", "temperature = 300.0\nheat_transfer = 5e-5\n[[ch"],
+        &["heat_transfer 5e-5 W/(m2 K)", "0.1 to 100000"],
     ),
     slip(TANK, ["max = [0.4, 0.3, 0.25]", "max = [400, 300, 250]"], &["longest side 400 m", "0.001 to 10 m", "in mm?"]),
     slip(TANK, ["discharge = 0.7", "discharge = 70"], &["vent `vent`: discharge 70", "at most 1", "per cent?"]),

@@ -120,7 +120,7 @@ fn dense_gas_and_a_rough_wall_have_the_same_bits_in_every_way() {
     };
     let uncapped = other(&|scene| scene.model.diameter_cap = Some(DiameterCap::Off));
     assert!(difference(&bits, &uncapped).is_some(), "no diameter was capped");
-    let smooth = other(&|scene| scene.walls[1].friction = 0.0);
+    let smooth = other(&|scene| scene.walls[1].surface.friction = 0.0);
     assert!(difference(&bits, &smooth).is_some(), "no wall was rough");
 }
 
@@ -199,7 +199,7 @@ fn numbers_read_and_compiled_in_give_the_same_bits() {
             let simulation = Simulation::among(&model, &device, &setup, &alone, Options::default());
             let outcome = simulation.and_then(|simulation| simulation.run(&mut witness)).expect("a run");
             let run = Run { rows: witness.rows, snapshots: witness.snapshots, outcome };
-            (setup.domain.reads_numbers(), Bits::of(&run))
+            (setup.domain.has_runtime_constants(), Bits::of(&run))
         });
         assert_eq!((read.0, fixed.0), (device.adapter().is_cpu(), false), "{} particles", model.plan.particles);
         assert_same("numbers compiled in", &read.1, &fixed.1);

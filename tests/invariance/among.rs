@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corpuscle::gpu::{AdapterDescription, Device, Form};
+use corpuscle::gpu::{AdapterDescription, Device, KernelVariant};
 use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
@@ -41,7 +41,7 @@ impl Way {
         } else {
             Pace::OneAtATime
         };
-        let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::Asked } else { Ghosts::All });
+        let ghosts = halo_rounds.map(|_| if ranks.is_multiple_of(2) { Ghosts::OnDemand } else { Ghosts::All });
         Way {
             ranks,
             mode,
@@ -104,14 +104,14 @@ pub struct World<'a> {
     many: Option<[(Setup, Device); 2]>,
 }
 
-/// The forms of kernels of one rank, in turn, and of several. What these are compared with has the form that the device takes first. A software device rounds alike in
+/// The variants of kernels of one rank, in turn, and of several. What these are compared with has the variant that the device takes first. A software device rounds alike in
 /// all, so these have the others; a GPU need not, and its ranks have its own.
-fn forms(adapter: &AdapterDescription) -> (Vec<Form>, Form) {
-    match adapter.forms()[..] {
+fn variants(adapter: &AdapterDescription) -> (Vec<KernelVariant>, KernelVariant) {
+    match adapter.variants()[..] {
         [first, .., last] if adapter.is_cpu() => {
-            (adapter.forms().into_iter().filter(|&form| form != first).collect(), last)
+            (adapter.variants().into_iter().filter(|&variant| variant != first).collect(), last)
         }
-        _ => (vec![adapter.forms()[0]], adapter.forms()[0]),
+        _ => (vec![adapter.variants()[0]], adapter.variants()[0]),
     }
 }
 
@@ -131,25 +131,29 @@ impl<'a> World<'a> {
         )
     }
 
-    /// With those that a GPU has for few particles, also on a software device, in the form for GPUs alone. (Mesa's lavapipe of 22.3 does with all particles what is
+    /// With those that a GPU has for few particles, also on a software device, in the variant for GPUs alone. (Mesa's lavapipe of 22.3 does with all particles what is
     /// for the few that meet walls there.)
     pub fn of_few(model: &'a Model) -> World<'a> {
-        let world = World::by(model, |form| form == Form::Gpu, |device, ranks| Setup::new(model, device, ranks, None));
+        let world = World::by(
+            model,
+            |variant| variant == KernelVariant::Gpu,
+            |device, ranks| Setup::new(model, device, ranks, None),
+        );
         let World { one, several, .. } = &world;
         assert!(!one.is_empty() && one.iter().chain([several]).all(|(setup, _)| setup.domain.features().merged));
         world
     }
 
-    /// One rank has those of its forms that are `wanted`.
+    /// One rank has those of its variants that are `wanted`.
     fn by(
         model: &'a Model,
-        wanted: impl Fn(Form) -> bool,
+        wanted: impl Fn(KernelVariant) -> bool,
         setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError>,
     ) -> World<'a> {
         let first = Device::open(None).expect("an adapter");
-        let (of_one, of_several) = forms(first.adapter());
-        let made = |ranks, form| {
-            let device = Device::open_in(None, form).expect("an adapter");
+        let (of_one, of_several) = variants(first.adapter());
+        let made = |ranks, variant| {
+            let device = Device::open_in(None, variant).expect("an adapter");
             (setup(&device, ranks).expect("a set-up"), device)
         };
         let for_many = |ranks| {
@@ -158,7 +162,7 @@ impl<'a> World<'a> {
         };
         World {
             model,
-            one: of_one.into_iter().filter(|&form| wanted(form)).map(|form| made(1, form)).collect(),
+            one: of_one.into_iter().filter(|&variant| wanted(variant)).map(|variant| made(1, variant)).collect(),
             several: made(2, of_several),
             many: (!first.adapter().is_cpu()).then(|| [for_many(1), for_many(2)]),
         }
@@ -184,7 +188,7 @@ impl<'a> World<'a> {
             runs.push(self.try_run_on(one, way, wrap)?);
         }
         for other in runs.iter().skip(1) {
-            assert_same("another form of the kernels", &Bits::of(&runs[0]), &Bits::of(other));
+            assert_same("another variant of the kernels", &Bits::of(&runs[0]), &Bits::of(other));
         }
         Ok(runs.swap_remove(0))
     }

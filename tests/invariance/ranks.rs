@@ -1,6 +1,6 @@
 //! Among ranks.
 
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 use corpuscle::partition::By;
 use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
@@ -39,7 +39,7 @@ fn some_ways() -> Vec<Way> {
     vec![
         Way::new(1, Dynamic, 2),
         Way::new(2, Dynamic, 1),
-        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { batch: Some(1), ghosts: Some(Ghosts::OnDemand), ..Way::new(3, Forced { seed: 1 }, 2) },
         Way { order: Some(&shuffled::<3>), ..Way::new(4, Initial, 4) },
         Way::new(7, Off, 8).over_places(),
         Way { batch: Some(3), ..Way::new(8, Forced { seed: 2 }, 2) },
@@ -58,7 +58,7 @@ fn all_ways() -> Vec<Way> {
                     pace: if turn.is_multiple_of(2) { Pace::Together } else { Pace::OneAtATime },
                     batch: [None, Some(1), Some(5)][turn % 3],
                     order: if turn % 5 < 2 { Some(&shuffled::<4>) } else { None },
-                    ghosts: [Some(Ghosts::Asked), Some(Ghosts::All), Some(Ghosts::Asked), None][turn % 4],
+                    ghosts: [Some(Ghosts::OnDemand), Some(Ghosts::All), Some(Ghosts::OnDemand), None][turn % 4],
                     over_places: turn % 7 == 3,
                     ..Way::new(ranks, mode, halo_rounds)
                 });
@@ -68,8 +68,8 @@ fn all_ways() -> Vec<Way> {
     ways
 }
 
-fn forms_of_the_device() -> Vec<Form> {
-    device().adapter().forms()
+fn variants_of_the_device() -> Vec<KernelVariant> {
+    device().adapter().variants()
 }
 
 fn rebalanced(run: &Run) -> usize {
@@ -93,7 +93,7 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
 
 /// By the kernels that a GPU has for few particles.
 fn same_by_merged_kernels(models: &[Model]) {
-    if !forms_of_the_device().contains(&Form::Gpu) {
+    if !variants_of_the_device().contains(&KernelVariant::Gpu) {
         return;
     }
     // Two intervals.
@@ -102,7 +102,7 @@ fn same_by_merged_kernels(models: &[Model]) {
         let alone = Bits::of(&run(model, Options { stop_after_steps: stop, ..Options::default() }));
         let world = World::of_few(model);
         let depth = if model.plan.method == Method::Cell { 1 } else { 2 };
-        let asked = Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, depth) };
+        let asked = Way { batch: Some(1), ghosts: Some(Ghosts::OnDemand), ..Way::new(3, Forced { seed: 1 }, depth) };
         for way in [Way::new(1, Dynamic, depth), asked] {
             assert_same(&way.name(), &alone, &Bits::of(&world.run(&Way { stop, ..way })));
         }
@@ -120,7 +120,7 @@ fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
 fn pistons_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
-        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { batch: Some(1), ghosts: Some(Ghosts::OnDemand), ..Way::new(3, Forced { seed: 1 }, 2) },
         Way { order: Some(&shuffled::<3>), ..Way::new(5, Forced { seed: 2 }, None) },
     ];
     let runs = same(&pistons(), &ways);
@@ -145,7 +145,7 @@ fn pistons_in_cells_have_the_same_bits_on_any_number_of_ranks() {
 fn a_run_that_switches_has_the_same_bits_on_any_number_of_ranks() {
     let ways = [
         Way::new(2, Dynamic, 1),
-        Way { batch: Some(1), ghosts: Some(Ghosts::Asked), ..Way::new(3, Forced { seed: 1 }, 2) },
+        Way { batch: Some(1), ghosts: Some(Ghosts::OnDemand), ..Way::new(3, Forced { seed: 1 }, 2) },
         Way::new(7, Off, None),
     ];
     let runs = same(&switching(), &ways);

@@ -1,6 +1,6 @@
 //! What a step leaves for the one that follows: particles counted in their cells where they fly, and cells emptied before.
 
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 use corpuscle::subdomain::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep};
 
 use crate::fly::DT;
@@ -15,7 +15,7 @@ const LATE: usize = 15;
 pub const SLOTS: usize = COUNT + BORN;
 
 /// A step of a device alone, before `advect`: some meet walls, the last slots are of nobody, and others enter in the step that follows.
-pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
+pub fn flying(world: &World, rounds: bool, variant: KernelVariant) -> (Rig, GpuStep) {
     let mut stream = Stream::new(61);
     let particles = world.particles(&mut stream, COUNT, 500.0);
     let born: Vec<GpuNewborn> = world
@@ -24,7 +24,7 @@ pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
         .map(|particle| GpuNewborn { particle, ..GpuNewborn::default() })
         .collect();
     let mut rig = Rig::new(world);
-    rig.form = form;
+    rig.variant = variant;
     rig.constant("COLLISIONS", 1.0);
     rig.constant("ROUNDS_OF_PAIRS", f64::from(u8::from(rounds)));
     rig.constant("FLOWN", if rounds { 0.5 } else { 0.0 });
@@ -40,13 +40,13 @@ pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
         .collect();
     put_flights(&mut rig, &flights);
     rig.put_records(|records, _| records.resize(SLOTS, [7; RECORD]));
-    rig.put("layers", &[NEAR; COUNT]);
+    rig.put("marks", &[NEAR; COUNT]);
     rig.put("newborns", &born);
     rig.put("bouncing", &[0u32; COUNT]);
     rig.put("surface_sums", &[0u32; 64]);
     rig.put("bins", &[[7u32; 2]; SLOTS]);
     rig.put("cell_counts", &vec![0u32; world.grid.cell_count()]);
-    rig.set_held(PRESENT, COUNT as u32 - 30);
+    rig.set_step_state(PRESENT, COUNT as u32 - 30);
     let step = GpuStep {
         count: COUNT as u32,
         dt: DT,
@@ -57,7 +57,7 @@ pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
         ..GpuStep::default()
     };
     rig.step(step);
-    rig.set_held(INTERVAL, 2);
+    rig.set_step_state(INTERVAL_STEPS, 2);
     (rig, step)
 }
 
@@ -66,8 +66,8 @@ pub fn flying(world: &World, rounds: bool, form: Form) -> (Rig, GpuStep) {
 fn particles_are_counted_where_they_fly_as_bin_counts_them() {
     let world = World::plain();
     let cells = world.grid.cell_count();
-    for (form, rounds) in forms().into_iter().flat_map(|form| [(form, true), (form, false)]) {
-        let (mut rig, step) = flying(&world, rounds, form);
+    for (variant, rounds) in variants().into_iter().flat_map(|variant| [(variant, true), (variant, false)]) {
+        let (mut rig, step) = flying(&world, rounds, variant);
         rig.run("advect", SLOTS);
         let hits = rig.counter(LIST_BOUNCE) as usize;
         rig.run("bounce", hits);
@@ -80,7 +80,7 @@ fn particles_are_counted_where_they_fly_as_bin_counts_them() {
         rig.step(GpuStep { newborns: BORN as u32, next_newborns: 0, slot: 1, ..step });
         rig.run("bin", SLOTS);
         let (counted, binned): (Vec<u32>, Vec<[u32; 2]>) = (rig.get("cell_counts", cells), rig.get("bins", SLOTS));
-        assert_eq!(counts, counted, "{form:?} {rounds}");
+        assert_eq!(counts, counted, "{variant:?} {rounds}");
         let cell_of = |bins: &[[u32; 2]]| bins.iter().map(|bin| bin[0]).collect::<Vec<_>>();
         assert_eq!(cell_of(&bins), cell_of(&binned));
         assert!(rig.get::<u32>("particles", 8 * SLOTS) == flown, "newborns are there already");
@@ -92,9 +92,9 @@ fn particles_are_counted_where_they_fly_as_bin_counts_them() {
         assert_eq!(places.len(), SLOTS - 30 - LATE);
         assert!(hits > 50 && hits < COUNT - 100, "{hits}");
         // In the last step of an interval nobody is.
-        let (mut rig, step) = flying(&world, rounds, form);
+        let (mut rig, step) = flying(&world, rounds, variant);
         rig.step(GpuStep { next_newborns: 0, ..step });
-        rig.set_held(INTERVAL, 1);
+        rig.set_step_state(INTERVAL_STEPS, 1);
         rig.run("advect", SLOTS);
         rig.run("bounce", hits);
         assert_eq!(rig.get::<[u32; 2]>("bins", SLOTS), [[7; 2]; SLOTS]);
@@ -102,12 +102,12 @@ fn particles_are_counted_where_they_fly_as_bin_counts_them() {
     }
 }
 
-/// On a device that is held nobody is counted, and nobody enters.
+/// On a device that is stalled nobody is counted, and nobody enters.
 #[test]
-fn nobody_is_counted_on_a_device_that_is_held() {
+fn nobody_is_counted_on_a_stalled_device() {
     let world = World::plain();
-    let (rig, _) = flying(&world, true, device().form());
-    rig.set_held(HELD, 1);
+    let (rig, _) = flying(&world, true, device().variant());
+    rig.set_stalled(STALLED, 1);
     let before: Vec<u32> = rig.get("particles", 8 * SLOTS);
     rig.run("advect", SLOTS);
     assert!(rig.get::<[u32; 2]>("bins", SLOTS).iter().all(|bin| bin[0] == NOBODY));
@@ -122,21 +122,23 @@ fn the_first_choices_empty_the_cells() {
     let bins = 5000u32;
     let all = bins as usize / 64 * 64 + 64;
     let cases = [(2, 0, 0, 0), (2, 0, 0, 50), (2, 1, 0, 50), (1, 0, 0, 50), (2, 0, 1, 50)];
-    for (form, (few, peers, round, choosers)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
+    for (variant, (few, peers, round, choosers)) in
+        variants().into_iter().flat_map(|variant| cases.map(|case| (variant, case)))
+    {
         let mut rig = Rig::new(&World::plain());
-        rig.form = form;
+        rig.variant = variant;
         rig.constant("FEW_STRETCHES", f64::from(few));
-        rig.put("rechoose", &[0u32; 100 + 64 * LIST_PARTS]);
+        rig.put("rechoose", &[0u32; 100 + 64 * LIST_SHARDS]);
         rig.put("choices", &[[0u32; 2]; 100]);
         rig.put("sorted", &[GpuParticle::default(); 100]);
         rig.put("cell_start", &vec![9u32; all + 8]);
         rig.step(GpuStep { count: 100, dt: DT, bins, size: [10, 10, 50], peers, round, ..GpuStep::default() });
         rig.set_choosers(round as usize, choosers);
         rig.run("choose", 100);
-        let emptied = (few == 2 || form == Form::Gpu) && peers == 0 && round == 0;
+        let emptied = (few == 2 || variant == KernelVariant::Gpu) && peers == 0 && round == 0;
         let cells: Vec<u32> = rig.get("cell_start", all + 8);
         let expected = if emptied { 0 } else { 9 };
-        assert!(cells[..all].iter().all(|&cell| cell == expected), "{form:?} {few} {peers} {round} {choosers}");
+        assert!(cells[..all].iter().all(|&cell| cell == expected), "{variant:?} {few} {peers} {round} {choosers}");
         assert_eq!(cells[all..], [9; 8]);
     }
 }

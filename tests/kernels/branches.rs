@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use corpuscle::gpu::KERNELS;
+use corpuscle::subdomain::KERNELS;
 use naga::{AddressSpace, Block, Expression, Function, Handle, Module, Statement, TypeInner};
 
 /// Members of the uniform `step` that differ from step to step of an interval. (`round` and what goes with it take as many values as a plan has rounds.)
@@ -118,7 +118,7 @@ fn asked_of_uniforms(source: &str) -> BTreeSet<(String, String)> {
 fn no_branch_asks_uniforms_alone_for_what_changes_from_step_to_step() {
     let mut found = BTreeSet::new();
     for kernel in KERNELS {
-        for source in kernel.forms.iter().flatten().chain([&kernel.source]) {
+        for source in kernel.variants.iter().flatten().chain([&kernel.source]) {
             let asked = asked_of_uniforms(source).into_iter();
             found.extend(
                 asked.filter(|(member, _)| CHANGING.contains(&member.as_str())).map(|asked| (asked, kernel.name)),

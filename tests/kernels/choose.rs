@@ -32,8 +32,8 @@ impl Cloud {
             particle.position = world.fixed(std::array::from_fn(|k| middle(k) + edge * (at[k] - middle(k))));
         }
         let cells = world.cells();
-        let middles: Vec<[u32; 3]> = particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
-        let near = |i: usize, j: usize| i != j && cells.nearer_than_a_cell(middles[i], middles[j]);
+        let midpoints: Vec<[u32; 3]> = particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
+        let near = |i: usize, j: usize| i != j && cells.nearer_than_a_cell(midpoints[i], midpoints[j]);
         let lists: Vec<Vec<u32>> =
             (0..count).map(|i| (0..count).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect();
         assert!(lists.iter().all(|list| list.len() <= LIST), "room for all neighbours");
@@ -49,7 +49,7 @@ impl Cloud {
         put_flights(&mut rig, &self.flights);
         put_lists(&mut rig, &self.lists);
         // All of them choose in the first round.
-        rig.put("rechoose", &(0..(count + 64 * LIST_PARTS) as u32).collect::<Vec<_>>());
+        rig.put("rechoose", &(0..(count + 64 * LIST_SHARDS) as u32).collect::<Vec<_>>());
         rig.set_choosers(0, count);
         rig
     }

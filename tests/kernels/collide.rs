@@ -1,9 +1,9 @@
-//! `collide`, `collide_crowded` and `collide_parted`: who collides, how often, and what is conserved (specification, section 2).
+//! `collide`, `collide_crowded` and `collide_divided`: who collides, how often, and what is conserved (specification, section 2).
 
 use std::f64::consts::PI;
 
 use corpuscle::geometry::{CELL_GENERATOR, CELL_POINTS, TriangleGrid, Vessel, cell_gas};
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{CROWD, CellTable, GpuGas, GpuMotion, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES, Walls};
 
@@ -29,7 +29,7 @@ pub struct Cloud {
     /// Where walls move.
     pub motion: Option<GpuMotion>,
     /// Of the kernels.
-    pub form: Form,
+    pub variant: KernelVariant,
 }
 
 impl Cloud {
@@ -53,7 +53,7 @@ impl Cloud {
         for p in &particles {
             start[cell(p) as usize + 1..].iter_mut().for_each(|later| *later += 1);
         }
-        Cloud { world, table, particles, start, motion: None, form: device().form() }
+        Cloud { world, table, particles, start, motion: None, variant: device().variant() }
     }
 
     pub fn run(&self, step: GpuStep, seed: u32) -> Rig {
@@ -67,7 +67,7 @@ impl Cloud {
         collide(&rig, self.start.len() - 1);
         let parted = rig.counter(0);
         if parted > 0 {
-            rig.run("collide_parted", parted as usize);
+            rig.run("collide_divided", parted as usize);
         }
         let moved = rig.counter(1);
         if moved > 0 {
@@ -93,7 +93,7 @@ impl Cloud {
     /// Before any collision.
     fn rig(&self, step: GpuStep, seed: u32) -> Rig {
         let mut rig = Rig::new(&self.world);
-        rig.form = self.form;
+        rig.variant = self.variant;
         rig.constant("CROSS_SECTION", PI * DIAMETER * DIAMETER);
         rig.constant("SEED_LOW", f64::from(seed));
         rig.constant("SEED_HIGH", 4.0);
@@ -109,7 +109,7 @@ impl Cloud {
         rig.put("slots", &slots);
         rig.put("order_by_id", &slots);
         rig.put("crowds", &vec![0u32; self.start.len()]);
-        rig.put("parted", &vec![0u32; self.table.parted as usize + 1]);
+        rig.put("divided", &vec![0u32; self.table.divided as usize + 1]);
         rig.put("neighbour_count", &vec![UNTOLD; self.particles.len()]);
         rig.put("moved", &vec![0u32; self.start.len()]);
         rig.put("still_gas", &self.table.still);
@@ -243,8 +243,8 @@ fn the_order_in_which_particles_lie_changes_no_bit() {
     const FULL: usize = CROWD as usize;
     let walls = [tank([0.06, 0.07, 0.08])];
     // On a GPU those of more than MEMBERS lie by id before they collide.
-    let free = |cell: &std::ops::Range<usize>, form| match form {
-        Form::Gpu => cell.len() <= MEMBERS as usize,
+    let free = |cell: &std::ops::Range<usize>, variant| match variant {
+        KernelVariant::Gpu => cell.len() <= MEMBERS as usize,
         _ => slots_of(cell) <= FULL,
     };
     let by_id = |cloud: &Cloud| {
@@ -259,11 +259,11 @@ fn the_order_in_which_particles_lie_changes_no_bit() {
     {
         let cloud = Cloud::of(65, &walls, count);
         let cells = || (0..cloud.start.len() - 1).map(|cell| cloud.cell(cell));
-        let shuffled = |all: bool, form| {
+        let shuffled = |all: bool, variant| {
             let mut stream = Stream::new(66);
             let mut other = Cloud::of(65, &walls, count);
-            other.form = form;
-            for cell in cells().filter(|cell| all || free(cell, form)) {
+            other.variant = variant;
+            for cell in cells().filter(|cell| all || free(cell, variant)) {
                 stream.shuffle(&mut other.particles[cell]);
             }
             other
@@ -273,16 +273,16 @@ fn the_order_in_which_particles_lie_changes_no_bit() {
         }
         let found = by_id(&cloud);
         assert!(found.1 > 100);
-        for form in forms() {
-            let other = shuffled(false, form);
-            let moved = cells().any(|cell| cell.len() > 1 && free(&cell, form));
-            assert_eq!(other.particles != cloud.particles, moved, "{form:?} {count}");
-            if device().adapter().is_cpu() || form == device().form() {
-                assert!(by_id(&other) == found, "{form:?} {count}");
+        for variant in variants() {
+            let other = shuffled(false, variant);
+            let moved = cells().any(|cell| cell.len() > 1 && free(&cell, variant));
+            assert_eq!(other.particles != cloud.particles, moved, "{variant:?} {count}");
+            if device().adapter().is_cpu() || variant == device().variant() {
+                assert!(by_id(&other) == found, "{variant:?} {count}");
             }
             // The check can fail: those of more are taken as they lie.
-            let full = cells().any(|cell| !free(&cell, form));
-            assert_eq!(by_id(&shuffled(true, form)) != by_id(&other), full, "{form:?} {count}");
+            let full = cells().any(|cell| !free(&cell, variant));
+            assert_eq!(by_id(&shuffled(true, variant)) != by_id(&other), full, "{variant:?} {count}");
         }
     }
 }
@@ -316,7 +316,7 @@ fn no_pair_collides_through_a_plate() {
         holes: vec![],
     };
     let cloud = Cloud::new(63, &[tank([0.06, 0.07, 0.08]), wall(plate, GasSide::Both)]);
-    assert!(cloud.table.parted > 40);
+    assert!(cloud.table.divided > 40);
     let rig = cloud.run(GpuStep { peers: 1, ..first_step() }, 5);
     assert!(rig.counter(0) > 30, "cells that walls part");
     let after: Vec<GpuParticle> = rig.get("sorted", cloud.particles.len());

@@ -224,8 +224,8 @@ fn updates_go_to_those_who_have_the_ghost() {
         rig.put("sorted", &particles);
         put_flights(&mut rig, &flights);
         rig.put("cells", &bins);
-        rig.put("middles", &vec![0u32; COUNT]);
-        rig.put("layers", &vec![marks; COUNT]);
+        rig.put("midpoints", &vec![0u32; COUNT]);
+        rig.put("marks", &vec![marks; COUNT]);
         rig.put("changed", &changed);
         rig.put("peers", &local.peers());
         rig.put("updates_out", &vec![GpuUpdate::default(); room]);
@@ -246,7 +246,7 @@ fn updates_go_to_those_who_have_the_ghost() {
         } else {
             assert!(found.iter().all(|entry| expected.contains(entry)));
         }
-        let layers: Vec<u32> = rig.get("layers", COUNT);
+        let layers: Vec<u32> = rig.get("marks", COUNT);
         let listed = |s: usize| changed.binary_search(&(s as u32)).is_ok();
         assert!((0..COUNT).all(|s| layers[s] == if listed(s) { marks & !LISTED } else { marks }));
     }
@@ -269,7 +269,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     let (particles, flights_now) = (world.particles(&mut stream, COUNT, 400.0), flights(&mut stream));
     let (cells, starts) = crowd(&local, &mut stream);
     let mut anywhere = |cell: [u32; 3]| cell.map(|c| (c << grid.bits) + (stream.word() >> (32 - grid.bits)));
-    let middles: Vec<[u32; 3]> = cells.iter().map(|&cell| anywhere(cell)).collect();
+    let midpoints: Vec<[u32; 3]> = cells.iter().map(|&cell| anywhere(cell)).collect();
     let layers: Vec<u32> = cells
         .iter()
         .map(|&cell| if local.own.holds(cell) { SHARED } else { SHARED | NEAR | (1 + stream.below(2)) })
@@ -301,17 +301,17 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
     let marks: Vec<u32> = (0..COUNT).map(|s| layers[s] | chooses(s)).collect();
     // Where the outermost ghosts that choose wait until they are asked, none has a list. Else those farther out, who do not choose, list who
     // has them in theirs, as far as that is short.
-    for (form, ghosts) in forms().into_iter().flat_map(|form| [(form, 0), (form, 1)]) {
+    for (variant, ghosts) in variants().into_iter().flat_map(|variant| [(variant, 0), (variant, 1)]) {
         let mut rig = Rig::new(&world);
-        rig.form = form;
+        rig.variant = variant;
         rig.put("sorted", &particles);
         put_flights(&mut rig, &flights_now);
-        rig.put("middles", &middles.iter().map(|&p| grid.packed(p)).collect::<Vec<_>>());
-        rig.put("layers", &marks);
+        rig.put("midpoints", &midpoints.iter().map(|&p| grid.packed(p)).collect::<Vec<_>>());
+        rig.put("marks", &marks);
         put_lists(&mut rig, &lists);
         rig.put("cell_start", &starts);
         rig.put("updates_in", &updates);
-        rig.put("rechoose", &vec![0u32; COUNT + 64 * LIST_PARTS]);
+        rig.put("rechoose", &vec![0u32; COUNT + 64 * LIST_SHARDS]);
         rig.put("peers", &local.peers());
         rig.step(GpuStep { count: COUNT as u32, round: ROUND, ghosts, near2: NEAR2, ..local.step() });
         rig.run("receive", updates.len());
@@ -330,7 +330,7 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
             } else if ghosts == 0 && (layer(ghost) == 1 || lists[ghost].len() <= DIRECT) {
                 lists[ghost].contains(&(s as u32))
             } else {
-                let near = grid.packed_near(middles[s], middles[ghost], NEAR2);
+                let near = grid.packed_near(midpoints[s], midpoints[ghost], NEAR2);
                 beside(cells[s], cells[ghost]) && near
             }
         };
@@ -339,7 +339,11 @@ fn ghosts_take_their_updates_and_those_around_choose_again() {
             .filter(|&s| told.iter().any(|&ghost| has_it(s, ghost)))
             .map(|s| s as u32)
             .collect();
-        assert_eq!((rig.choosers(ROUND as usize + 1, COUNT), rig.counter(MISPLACED)), (again.clone(), 0), "{form:?}");
+        assert_eq!(
+            (rig.choosers(ROUND as usize + 1, COUNT), rig.counter(MISPLACED)),
+            (again.clone(), 0),
+            "{variant:?}"
+        );
         // The check can fail: there are updates of both kinds, and particles that nothing near concerns.
         let open = listed_already.iter().filter(|&&listed| !listed).count();
         assert!(told.len() > 5 && again.len() > told.len() && again.len() < open - 50, "{} of {open}", again.len());

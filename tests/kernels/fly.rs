@@ -79,7 +79,7 @@ fn wall_times_are_those_of_a_swept_test_in_f64() {
     let mut marks = vec![NEAR; COUNT];
     marks[COUNT - 2] = UNSCREENED;
     put_to_complete(&mut rig, COUNT, &entries);
-    rig.put("layers", &marks);
+    rig.put("marks", &marks);
     rig.put("neighbour_count", &vec![0u32; COUNT]);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("complete_lists", entries.len());
@@ -99,7 +99,7 @@ fn wall_times_are_those_of_a_swept_test_in_f64() {
 }
 
 /// `advect` flies those that meet no wall to x0 + v dt (exactly, but for the order of the factors of v dt) and
-/// lists exactly the others, in all three forms of the kernel: with rounds of pairs, with collisions within cells, without.
+/// lists exactly the others, in all three variants of the kernel: with rounds of pairs, with collisions within cells, without.
 #[test]
 fn advect_flies_the_free_and_lists_the_others() {
     let world = World::plain();
@@ -151,7 +151,7 @@ fn advect_flies_the_free_and_lists_the_others() {
             let marks = [NEAR, TURNED_TO_WALL];
             if rounds && (meets_wall(k) || k.is_multiple_of(5)) { marks[k % 2] } else { 0 }
         };
-        rig.put("layers", &(0..COUNT).map(mark).collect::<Vec<_>>());
+        rig.put("marks", &(0..COUNT).map(mark).collect::<Vec<_>>());
         rig.put("cell_start", &[0u32]);
         rig.step(GpuStep {
             peers: 1,
@@ -190,7 +190,7 @@ fn advect_flies_the_free_and_lists_the_others() {
         assert!(!rounds || outside > lost.len() as u32, "{outside}");
         assert!(rounds || lost.clone().all(|k| bouncing.contains(&(k as u32))));
         if collisions && !rounds {
-            let layers: Vec<u32> = rig.get("layers", COUNT);
+            let layers: Vec<u32> = rig.get("marks", COUNT);
             let marked: Vec<u32> = (0..COUNT as u32).filter(|&k| layers[k as usize] & NEAR != 0).collect();
             assert_eq!((marked.len() as u32, marked), (rig.counter(LIST_NEAR_WALLS), bouncing));
         }
@@ -259,7 +259,7 @@ fn ghosts_leave_dead_slots() {
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
     put_flights(&mut rig, &flights);
-    rig.put("layers", &layers);
+    rig.put("marks", &layers);
     rig.put("bouncing", &vec![0u32; COUNT]);
     rig.put("cell_start", &[0u32]);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, depth: 2, peers: 1, ..GpuStep::default() });
@@ -288,9 +288,9 @@ fn places_behind_the_last_particle_are_dead() {
     let mut rig = Rig::new(&world);
     rig.put("sorted", &particles);
     put_flights(&mut rig, &free_flights(COUNT));
-    rig.put("layers", &vec![1u32; COUNT]);
+    rig.put("marks", &vec![1u32; COUNT]);
     rig.put("bouncing", &vec![0u32; COUNT]);
-    rig.set_held(PRESENT, last as u32);
+    rig.set_step_state(PRESENT, last as u32);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("advect", COUNT);
     let found: Vec<GpuParticle> = rig.get("particles", COUNT);
@@ -300,30 +300,30 @@ fn places_behind_the_last_particle_are_dead() {
 }
 
 /// On a device alone the sums of stretches, and the list of those that the step before has left to `bounce`, are empty afterwards; among
-/// others the sums are left. So it is on a device that is held, whose particles do not fly.
+/// others the sums are left. So it is on a device that is stalled, whose particles do not fly.
 #[test]
 fn sums_and_bounces_are_emptied_for_the_next_step() {
     let world = World::plain();
     let mut particles = world.particles(&mut Stream::new(59), 100, 0.0);
     particles.iter_mut().for_each(|particle| particle.velocity = [9e9; 3]);
     let cases = [(0, 6, 0), (0, 7, 0), (1, 6, 0), (0, 6, 1)];
-    for (peers, slot, held) in cases {
+    for (peers, slot, stalled) in cases {
         let mut rig = Rig::new(&world);
-        rig.constant("ROUNDS_OF_PAIRS", f64::from(held));
-        rig.set_held(HELD, held);
+        rig.constant("ROUNDS_OF_PAIRS", f64::from(stalled));
+        rig.set_stalled(STALLED, stalled);
         rig.put("sorted", &particles);
         rig.put("particles", &particles);
         rig.put("bouncing", &vec![0u32; 100]);
         rig.put("stretch_sums", &[9u32; 4]);
         let (own, other) = if slot % 2 == 0 { (LIST_BOUNCE, LIST_BOUNCE_ODD) } else { (LIST_BOUNCE_ODD, LIST_BOUNCE) };
-        rig.set_held(PRESENT, 100);
+        rig.set_step_state(PRESENT, 100);
         rig.set_counter(COUNT_DROPPED, 3);
         rig.set_counter(other, 77);
         rig.put("dispatches", &[[0u32, 9, 5]; LISTS]);
         rig.step(GpuStep { count: 100, dt: DT, peers, slot, ..GpuStep::default() });
         rig.run("advect", 100);
         assert_eq!(rig.get::<u32>("stretch_sums", 4), [if peers == 0 { 0 } else { 9 }; 4]);
-        let flown = if held == 1 { 0 } else { 100 };
+        let flown = if stalled == 1 { 0 } else { 100 };
         assert_eq!([rig.counter(own), rig.counter(other), rig.counter(COUNT_DROPPED)], [flown, 0, 0]);
         let sizes: Vec<[u32; 3]> = rig.get("dispatches", LISTS);
         assert_eq!([sizes[own], sizes[other]], [[flown.div_ceil(64), 9, 5], [0, 1, 5]]);

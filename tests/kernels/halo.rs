@@ -57,11 +57,12 @@ impl Crowd {
     /// By the rule of the lists: nearer than either of the two reaches.
     fn neighbours(&self) -> Vec<Vec<usize>> {
         let cells = self.world.cells();
-        let middles: Vec<[u32; 3]> = self.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
+        let midpoints: Vec<[u32; 3]> =
+            self.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
         let near = |a: usize, b: usize| {
             let share = self.share[a].min(self.share[b]);
             let near2 = NEAR2 - DIAMETER2 * (FULL_SHARE - share) / FULL_SHARE;
-            a != b && cells.touching(middles[a], middles[b]) && cells.packed_near(middles[a], middles[b], near2)
+            a != b && cells.touching(midpoints[a], midpoints[b]) && cells.packed_near(midpoints[a], midpoints[b], near2)
         };
         (0..COUNT).map(|a| (0..COUNT).filter(|&b| near(a, b)).collect()).collect()
     }
@@ -92,7 +93,7 @@ impl Crowd {
         rig.constant("BLOCK_BITS", f64::from(BLOCK_BITS));
         rig.constant("BLOCKS_X", f64::from(blocks[0]));
         rig.constant("BLOCKS_Y", f64::from(blocks[1]));
-        rig.put("shares", &self.shares);
+        rig.put("cross_section_shares", &self.shares);
         rig.put("particles", &self.particles);
         rig
     }
@@ -155,14 +156,14 @@ fn all_that_a_chain_of_neighbours_joins_are_sent() {
         let sent: BTreeSet<u32> = sent.iter().map(|particle| particle.tag).collect();
 
         let cells = crowd.world.cells();
-        let middles: Vec<u32> =
+        let midpoints: Vec<u32> =
             crowd.particles.iter().map(|p| cells.packed(cells.middle(p.position, p.velocity, DT))).collect();
         let mut rig = crowd.rig();
         rig.put("sorted", &crowd.particles);
         put_flights(&mut rig, &vec![GpuFlight::default(); COUNT]);
         rig.put("cells", &crowd.bins());
-        rig.put("middles", &middles);
-        rig.put("layers", &vec![SHARED | LISTED; COUNT]);
+        rig.put("midpoints", &midpoints);
+        rig.put("marks", &vec![SHARED | LISTED; COUNT]);
         rig.put("changed", &(0..COUNT as u32).collect::<Vec<_>>());
         rig.put("peers", &crowd.peers());
         rig.put("updates_out", &vec![GpuUpdate::default(); COUNT]);
@@ -208,7 +209,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("bins", &(0..COUNT).map(|s| [bins[s], slot(s)]).collect::<Vec<_>>());
     rig.put("cell_start", &start);
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-    for buffer in ["middles", "cells", "neighbour_count", "incomplete"] {
+    for buffer in ["midpoints", "cells", "neighbour_count", "incomplete"] {
         rig.put(buffer, &vec![9u32; COUNT]);
     }
     let (low, high) = (crowd.near.low, crowd.near.high);
@@ -226,7 +227,7 @@ fn layers_count_no_more_than_the_links_of_a_chain() {
     rig.put("firsts", &vec![GpuParticle::default(); COUNT]);
     rig.run("order", COUNT);
     assert!(rig.get::<GpuParticle>("firsts", COUNT) == rig.get::<GpuParticle>("sorted", COUNT));
-    let layers: Vec<u32> = rig.get::<u32>("layers", COUNT).iter().map(|mark| mark & 0xff).collect();
+    let layers: Vec<u32> = rig.get::<u32>("marks", COUNT).iter().map(|mark| mark & 0xff).collect();
     let mut farther = 0;
     for s in 0..COUNT {
         let cells_away = crowd.near.away(crowd.cell[s]);

@@ -1,6 +1,6 @@
 //! `reset`, newborns and `lost`: exactly.
 
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 use corpuscle::subdomain::{GpuNewborn, GpuParticle, GpuStep};
 
 use crate::oracle::random::Stream;
@@ -9,20 +9,20 @@ use crate::rig::*;
 /// `reset` empties the lists and their dispatches, and cells and their sums as far as it has threads for, and touches no other counter.
 #[test]
 fn reset_empties_every_list_and_nothing_else() {
-    for form in forms() {
-        reset_empties_every_list_in(form);
+    for variant in variants() {
+        reset_empties_every_list_in(variant);
     }
 }
 
-fn reset_empties_every_list_in(form: Form) {
+fn reset_empties_every_list_in(variant: KernelVariant) {
     let mut rig = Rig::new(&World::plain());
-    rig.form = form;
+    rig.variant = variant;
     let mut stream = Stream::new(1);
     let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
     rig.put("counters", &noise);
     rig.put("dispatches", &noise);
     rig.put("rechoose_dispatches", &noise);
-    rig.put("asked_dispatches", &noise);
+    rig.put("on_demand_dispatches", &noise);
     let cells: Vec<u32> = (0..5 * 1024).map(|_| stream.word() | 1).collect();
     let sums = &cells[..200];
     rig.put("cell_counts", &cells);
@@ -40,12 +40,12 @@ fn reset_empties_every_list_in(form: Form) {
     let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
     // The check can fail: what is not the length of a list keeps its noise.
     for (word, (&found, &noise)) in counters.iter().zip(&noise).enumerate() {
-        assert_eq!(found, if word < LISTS || is_of_part(form, word) { 0 } else { noise }, "{form:?} {word}");
+        assert_eq!(found, if word < LISTS || is_of_shard(variant, word) { 0 } else { noise }, "{variant:?} {word}");
     }
     let empty = [[0u32, 1, 1]; LISTS];
     assert_eq!(rig.get::<[u32; 3]>("dispatches", LISTS), empty);
     assert_eq!(rig.get::<[u32; 3]>("rechoose_dispatches", LISTS), empty);
-    assert_eq!(rig.get::<[u32; 3]>("asked_dispatches", LISTS), empty);
+    assert_eq!(rig.get::<[u32; 3]>("on_demand_dispatches", LISTS), empty);
 }
 
 /// `bin`, and without collisions `advect`, puts the newborns of this step behind the particles; those without room are counted.

@@ -5,7 +5,6 @@
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
-mod asked;
 mod binned;
 mod blocks;
 mod bounce;
@@ -13,14 +12,11 @@ mod branches;
 mod ceilings;
 mod choose;
 mod closed;
-mod coats;
 mod collide;
 mod devices;
 mod exchange;
 mod fly;
-mod forms;
 mod halo;
-mod held;
 mod lists;
 mod local;
 mod match_pairs;
@@ -28,6 +24,7 @@ mod merged;
 mod moved;
 mod neighbour_lists;
 mod neighbours;
+mod on_demand;
 mod philox;
 mod probe;
 mod rig;
@@ -35,7 +32,10 @@ mod scan;
 mod screen;
 mod settle;
 mod sort;
+mod stalled;
+mod surface_models;
 mod tally;
+mod variants;
 mod weigh;
 
 /// No kernel goes untested: the table of kernels is the list of those the files here run.
@@ -55,8 +55,8 @@ fn every_kernel_has_its_test() {
         "choose",
         "collide",
         "collide_crowded",
+        "collide_divided",
         "collide_moved",
-        "collide_parted",
         "complete_lists",
         "fill_outbox",
         "fill_updates",
@@ -65,7 +65,7 @@ fn every_kernel_has_its_test() {
         "match_pairs",
         "message_starts",
         "neighbours",
-        "neighbours_asked",
+        "neighbours_on_demand",
         "order",
         "pack",
         "pack_updates",
@@ -82,7 +82,7 @@ fn every_kernel_has_its_test() {
         "tally",
         "weigh",
     ];
-    let known: Vec<&str> = corpuscle::gpu::KERNELS.iter().map(|kernel| kernel.name).collect();
+    let known: Vec<&str> = corpuscle::subdomain::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);
 }
 
@@ -94,6 +94,6 @@ fn only_kernels_that_no_rounding_matters_to_know_whether_a_device_is_alone() {
     // Beside the declaration.
     let asks = |source: &str| source.matches("HALO").count() > 1;
     let found: Vec<&str> =
-        corpuscle::gpu::KERNELS.iter().filter(|kernel| asks(kernel.source)).map(|kernel| kernel.name).collect();
+        corpuscle::subdomain::KERNELS.iter().filter(|kernel| asks(kernel.source)).map(|kernel| kernel.name).collect();
     assert_eq!(found, ["match_pairs", "neighbours"]);
 }

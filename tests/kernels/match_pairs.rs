@@ -66,14 +66,15 @@ fn mutual_choices(among_others: bool) {
         rig.constant("ROUNDS", f64::from(ROUNDS));
         rig.put("sorted", &particles);
         rig.put("choices", &choices);
-        rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2 + 64 * LIST_PARTS]);
-        rig.put("layers", &layers);
+        rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2 + 64 * LIST_SHARDS]);
+        rig.put("marks", &layers);
         rig.put("rechoose", &entries);
         rig.set_choosers(round as usize, entries.len());
         rig.step(GpuStep { count: COUNT as u32, round, ..GpuStep::default() });
         rig.run("match_pairs", entries.len());
-        let places = if round < ROUNDS { rig.parted(round as usize, COUNT / 2) } else { (0..expected.len()).collect() };
-        let entries: Vec<[u32; 2]> = rig.get("pairs", COUNT / 2 + 64 * LIST_PARTS);
+        let places =
+            if round < ROUNDS { rig.sharded(round as usize, COUNT / 2) } else { (0..expected.len()).collect() };
+        let entries: Vec<[u32; 2]> = rig.get("pairs", COUNT / 2 + 64 * LIST_SHARDS);
         let mut found: Vec<[u32; 2]> = places.iter().map(|&place| entries[place]).collect();
         found.sort_unstable();
         let dispatch: Vec<u32> = rig.get::<u32>("dispatches", 3 * (round as usize + 1)).split_off(3 * round as usize);
@@ -120,15 +121,15 @@ fn pairs_beyond_reach_are_left_to_others_and_each_is_counted_by_one() {
         rig.constant("ROUNDS", f64::from(ROUNDS));
         rig.put("sorted", &particles);
         rig.put("choices", &choices);
-        rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2 + 64 * LIST_PARTS]);
+        rig.put("pairs", &vec![[NOBODY; 2]; COUNT / 2 + 64 * LIST_SHARDS]);
         rig.put("rechoose", &(0..COUNT as u32).collect::<Vec<_>>());
-        rig.put("layers", &layers.iter().map(|mark| mark | CHOOSES << round).collect::<Vec<_>>());
+        rig.put("marks", &layers.iter().map(|mark| mark | CHOOSES << round).collect::<Vec<_>>());
         rig.set_choosers(round as usize, COUNT);
         rig.step(GpuStep { count: COUNT as u32, round, reach, ..GpuStep::default() });
         rig.run("match_pairs", COUNT);
         if round < ROUNDS {
-            let entries: Vec<[u32; 2]> = rig.get("pairs", COUNT / 2 + 64 * LIST_PARTS);
-            let places = rig.parted(round as usize, COUNT / 2);
+            let entries: Vec<[u32; 2]> = rig.get("pairs", COUNT / 2 + 64 * LIST_SHARDS);
+            let places = rig.sharded(round as usize, COUNT / 2);
             let mut found: Vec<[u32; 2]> = places.into_iter().map(|place| entries[place]).collect();
             found.sort_unstable();
             assert_eq!(found, settled);

@@ -30,7 +30,7 @@ fn assert_alike(name: &str, found: &[GpuParticle], expected: &[GpuParticle]) {
 /// `settle_chosen` collides those pairs that `match_pairs` would list, and does with them what `settle` does: also where a wall parts them, and among others.
 #[test]
 fn settling_those_that_chose_is_matching_and_settling() {
-    for (form, reach) in forms().into_iter().flat_map(|form| [(form, 0), (form, 1)]) {
+    for (variant, reach) in variants().into_iter().flat_map(|variant| [(variant, 0), (variant, 1)]) {
         let mut stream = Stream::new(71);
         let cloud = Cloud::new(&mut stream, parted_tank(), 1600, 0.9);
         let count = cloud.particles.len();
@@ -50,15 +50,15 @@ fn settling_those_that_chose_is_matching_and_settling() {
         let layers: Vec<u32> = (0..count).map(marks).collect();
         let run = |merged: bool| {
             let mut rig = prepared(&cloud, &mutual, true, false);
-            rig.form = form;
+            rig.variant = variant;
             rig.constant("ROUNDS", 3.0);
             rig.constant("MERGED", f64::from(u8::from(merged)));
-            rig.put("layers", &layers);
-            rig.put("pairs", &vec![[0u32; 2]; count / 2 + 64 * LIST_PARTS]);
+            rig.put("marks", &layers);
+            rig.put("pairs", &vec![[0u32; 2]; count / 2 + 64 * LIST_SHARDS]);
             rig.step(GpuStep { reach, depth: 4, ..cloud.step(ROUND) });
-            rig.set_parted(ROUND as usize, 0);
+            rig.set_sharded(ROUND as usize, 0);
             // That of an odd round is in the second half where kernels are merged.
-            let half = count + 64 * LIST_PARTS;
+            let half = count + 64 * LIST_SHARDS;
             let mut list = vec![0u32; 2 * half];
             let at = if merged { half } else { 0 };
             list[at..at + entries.len()].copy_from_slice(&entries);
@@ -69,22 +69,22 @@ fn settling_those_that_chose_is_matching_and_settling() {
                 rig.run("settle_chosen", entries.len());
             } else {
                 rig.run("match_pairs", entries.len());
-                rig.run("settle", count / 2 + 64 * LIST_PARTS);
+                rig.run("settle", count / 2 + 64 * LIST_SHARDS);
             }
             rig
         };
-        let [parted, merged] = [false, true].map(run);
-        let name = format!("{form:?}, reach {reach}");
+        let [split, merged] = [false, true].map(run);
+        let name = format!("{variant:?}, reach {reach}");
         let state = |rig: &Rig| rig.get::<GpuParticle>("sorted", count);
-        assert_alike(&name, &state(&merged), &state(&parted));
+        assert_alike(&name, &state(&merged), &state(&split));
         // (Whether a wall is met by the end of the step goes with the last digit.)
         let marks =
-            |rig: &Rig| rig.get::<u32>("layers", count).iter().map(|mark| mark & !TURNED_TO_WALL).collect::<Vec<_>>();
-        assert_eq!(marks(&merged), marks(&parted), "{name}");
+            |rig: &Rig| rig.get::<u32>("marks", count).iter().map(|mark| mark & !TURNED_TO_WALL).collect::<Vec<_>>();
+        assert_eq!(marks(&merged), marks(&split), "{name}");
         let again = ROUND as usize + 1;
-        assert_eq!(merged.choosers(again, count), parted.choosers(again, count), "{name}");
+        assert_eq!(merged.choosers(again, count), split.choosers(again, count), "{name}");
         for counter in [ROUND as usize, COLLISIONS_LOW, BLOCKED, FOREIGN, FAST_PAIRS, MISPLACED, CUT_SHORT] {
-            assert_eq!(merged.counter(counter), parted.counter(counter), "{name}: {counter}");
+            assert_eq!(merged.counter(counter), split.counter(counter), "{name}: {counter}");
         }
         // The check can fail: pairs collide, some are parted by the plate, and among others some are left, and some are counted, by them.
         let settled = merged.counter(COLLISIONS_LOW) as usize;
@@ -94,20 +94,20 @@ fn settling_those_that_chose_is_matching_and_settling() {
     }
 }
 
-/// On a device that is held nobody collides.
+/// On a device that is stalled nobody collides.
 #[test]
-fn nobody_settles_on_a_device_that_is_held() {
+fn nobody_settles_on_a_stalled_device() {
     let cloud = Cloud::new(&mut Stream::new(72), World::plain(), 1600, 0.9);
     let mut rig = prepared(&cloud, &meetings(&cloud), false, false);
     let count = cloud.particles.len();
     rig.constant("MERGED", 1.0);
-    rig.put("layers", &vec![CHOOSES << ROUND; count]);
-    rig.put("rechoose", &[(0..count as u32).collect(), vec![0; 64 * LIST_PARTS]].concat().repeat(2));
+    rig.put("marks", &vec![CHOOSES << ROUND; count]);
+    rig.put("rechoose", &[(0..count as u32).collect(), vec![0; 64 * LIST_SHARDS]].concat().repeat(2));
     rig.set_choosers(ROUND as usize, count);
-    rig.set_held(HELD, 1);
+    rig.set_stalled(STALLED, 1);
     rig.run("settle_chosen", count);
     assert_eq!(rig.get::<GpuParticle>("sorted", count), cloud.particles);
-    rig.set_held(HELD, 0);
+    rig.set_stalled(STALLED, 0);
     rig.run("settle_chosen", count);
     assert_ne!(rig.get::<GpuParticle>("sorted", count), cloud.particles);
 }
@@ -116,9 +116,9 @@ fn nobody_settles_on_a_device_that_is_held() {
 #[test]
 fn flying_is_advecting_and_bouncing() {
     let world = World::plain();
-    for (form, rounds) in forms().into_iter().flat_map(|form| [(form, true), (form, false)]) {
+    for (variant, rounds) in variants().into_iter().flat_map(|variant| [(variant, true), (variant, false)]) {
         let run = |merged: bool| {
-            let (rig, _) = flying(&world, rounds, form);
+            let (rig, _) = flying(&world, rounds, variant);
             if merged {
                 rig.run("fly", SLOTS);
             } else {
@@ -127,21 +127,21 @@ fn flying_is_advecting_and_bouncing() {
             }
             rig
         };
-        let [parted, merged] = [false, true].map(run);
-        let name = format!("{form:?}, rounds {rounds}");
+        let [split, merged] = [false, true].map(run);
+        let name = format!("{variant:?}, rounds {rounds}");
         let state = |rig: &Rig| rig.get::<GpuParticle>("particles", SLOTS);
-        assert_alike(&name, &state(&merged), &state(&parted));
+        assert_alike(&name, &state(&merged), &state(&split));
         if device().adapter().is_cpu() {
             let cells =
                 |rig: &Rig| rig.get::<[u32; 2]>("bins", SLOTS).into_iter().map(|bin| bin[0]).collect::<Vec<_>>();
-            assert_eq!(cells(&merged), cells(&parted), "{name}");
-            assert_eq!(merged.get::<u32>("surface_sums", 64), parted.get::<u32>("surface_sums", 64), "{name}");
+            assert_eq!(cells(&merged), cells(&split), "{name}");
+            assert_eq!(merged.get::<u32>("surface_sums", 64), split.get::<u32>("surface_sums", 64), "{name}");
         }
         for counter in [BOUNCES, OUTSIDE, TRUNCATED, LIST_NEAR_WALLS, CAPACITY_FAILED, CUT_SHORT] {
-            assert_eq!(merged.counter(counter), parted.counter(counter), "{name}: {counter}");
+            assert_eq!(merged.counter(counter), split.counter(counter), "{name}: {counter}");
         }
         // Who bounces is in no list.
         assert_eq!(merged.counter(LIST_BOUNCE), 0);
-        assert!(merged.counter(BOUNCES) > 50 && parted.counter(LIST_BOUNCE) > 50, "{name}");
+        assert!(merged.counter(BOUNCES) > 50 && split.counter(LIST_BOUNCE) > 50, "{name}");
     }
 }

@@ -110,7 +110,7 @@ fn at_rest_and_moved(seed: u32, shape: &dyn Fn(Vector) -> Shape, gas: GasSide, m
     }
     still.start = start;
     let (particles, start) = (still.particles.clone(), still.start.clone());
-    [still, Cloud { world, table, particles, start, motion: Some(motion), form: device().form() }]
+    [still, Cloud { world, table, particles, start, motion: Some(motion), variant: device().variant() }]
 }
 
 /// Collisions of some runs, those through walls left out.
@@ -259,7 +259,7 @@ fn without_room_for_the_triangles_of_a_cell_the_results_are_the_same() {
         let count = cloud.particles.len();
         let [listed, gone_through] = [512.0, 0.0].map(|most| {
             let rig = cloud.run_with(&[("MOST_LISTED", most)], GpuStep { peers: 1, ..first_step() }, 3);
-            let words = ["layers", "neighbour_count"].map(|name| rig.get::<u32>(name, count));
+            let words = ["marks", "neighbour_count"].map(|name| rig.get::<u32>(name, count));
             (rig.get::<GpuParticle>("sorted", count), words, rig.cell_collisions(), rig.counter(BLOCKED))
         });
         assert!(listed.2 > 50 && listed.0 != cloud.particles, "{} collisions", listed.2);
@@ -307,7 +307,7 @@ fn flights_meet_a_moving_wall_where_it_is() {
     timed.put("sorted", &particles);
     put_flights(&mut timed, &flights);
     put_to_complete(&mut timed, COUNT, &(0..COUNT as u32).collect::<Vec<_>>());
-    timed.put("layers", &vec![NEAR; COUNT]);
+    timed.put("marks", &vec![NEAR; COUNT]);
     timed.run("complete_lists", COUNT);
     let found: Vec<GpuFlight> = neighbour_lists::flights(&timed, COUNT);
     let both = |ball: &[Triangle], velocity: Vector| [(resting.clone(), [0.0; 3]), (ball.to_vec(), velocity)];

@@ -17,7 +17,7 @@ const COUNT: usize = 1500;
 struct Crowd {
     world: World,
     /// Mid-step points by (cell, order), some beyond the grid.
-    middles: Vec<[u32; 3]>,
+    midpoints: Vec<[u32; 3]>,
     rig: Rig,
     /// Of the step, s.
     dt: f32,
@@ -30,7 +30,7 @@ fn crowd(seed: u32) -> Crowd {
     let cells = world.cells();
     let mut stream = Stream::new(seed);
     let cell = world.grid.cell;
-    let mut middles: Vec<[u32; 3]> = (0..COUNT)
+    let mut midpoints: Vec<[u32; 3]> = (0..COUNT)
         .map(|k| {
             let beyond = if k % 50 == 0 { 4.0 * cell } else { 0.0 };
             world.fixed(std::array::from_fn(|a| stream.between(world.low[a] - beyond, world.high[a] + beyond)))
@@ -38,11 +38,11 @@ fn crowd(seed: u32) -> Crowd {
         .collect();
     // Some in one place.
     for k in (7..COUNT).step_by(60) {
-        middles[k] = middles[k - 1];
+        midpoints[k] = midpoints[k - 1];
     }
-    middles.sort_by_key(|&p| cells.index(cells.cell(p)));
-    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
-    crowd_at(World::plain(), middles, of)
+    midpoints.sort_by_key(|&p| cells.index(cells.cell(p)));
+    let of: Vec<u32> = midpoints.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    crowd_at(World::plain(), midpoints, of)
 }
 
 /// Some of a crowd are marked so.
@@ -51,20 +51,20 @@ fn may_meet_a_wall(s: usize) -> bool {
 }
 
 /// Mid-step points in the order of their cells.
-fn crowd_at(world: World, middles: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
+fn crowd_at(world: World, midpoints: Vec<[u32; 3]>, of: Vec<u32>) -> Crowd {
     let cells = world.cells();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
     let packed: Vec<u32> =
-        middles.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | u32::from(world.class(c) != CLEAR) << 31).collect();
+        midpoints.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | u32::from(world.class(c) != CLEAR) << 31).collect();
     let mut rig = Rig::new(&world);
     rig.put("cell_start", &start);
-    rig.put("middles", &packed);
+    rig.put("midpoints", &packed);
     rig.put("cells", &of);
     rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
     rig.put("choices", &vec![[7u32; 2]; COUNT]);
     rig.put("incomplete", &vec![NOBODY; COUNT]);
     put_flights(&mut rig, &free_flights(COUNT));
-    Crowd { world, middles, rig, dt: 0.0, depth: 0 }
+    Crowd { world, midpoints, rig, dt: 0.0, depth: 0 }
 }
 
 impl Crowd {
@@ -79,10 +79,10 @@ impl Crowd {
         put_room(&mut self.rig, COUNT, tails);
         self.rig.put("neighbour_count", &vec![0u32; COUNT]);
         // As `order` leaves it.
-        self.rig.put("layers", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
+        self.rig.put("marks", &(0..COUNT).map(|s| if may_meet_a_wall(s) { NEAR } else { 0 }).collect::<Vec<_>>());
         let near: Vec<u32> = (0..COUNT as u32).filter(|&s| may_meet_a_wall(s as usize)).collect();
         put_to_complete(&mut self.rig, COUNT, &near);
-        self.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
+        self.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_SHARDS]);
         self.rig.run("neighbours", COUNT);
         complete_lists(&self.rig, LIST_INCOMPLETE);
         lists(&self.rig, COUNT, tails)
@@ -95,7 +95,7 @@ impl Crowd {
     fn pairs_near(&self, near2: u32) -> Vec<BTreeSet<u32>> {
         let cells = self.world.cells();
         let near = |i: usize, j: usize| {
-            let (p, q) = (self.middles[i], self.middles[j]);
+            let (p, q) = (self.midpoints[i], self.midpoints[j]);
             i != j && cells.touching(p, q) && cells.packed_near(p, q, near2)
         };
         (0..COUNT).map(|i| (0..COUNT).filter(|&j| near(i, j)).map(|j| j as u32).collect()).collect()
@@ -118,11 +118,11 @@ fn flights_begin_with_the_search() {
     for capped in [false, true] {
         put_flights(&mut crowd.rig, &[before; COUNT]);
         crowd.rig.constant("CAPPED", f64::from(u8::from(capped)));
-        for name in ["neighbour_count", "layers"] {
+        for name in ["neighbour_count", "marks"] {
             crowd.rig.put(name, &vec![0u32; COUNT]);
         }
         put_room(&mut crowd.rig, COUNT, TAILS);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_SHARDS]);
         let count = COUNT as u32;
         let (newborn_offset, newborn_first_id) = (7, 5000);
         crowd.rig.step(GpuStep {
@@ -170,7 +170,7 @@ fn all_are_found(among_others: bool) {
         assert_eq!(set.len(), list.len(), "each once");
         assert_eq!(set, expected[s], "particle {s}");
         for j in (0..COUNT).filter(|&j| j != s) {
-            let near = cells.nearer_than_a_cell(crowd.middles[s], crowd.middles[j]);
+            let near = cells.nearer_than_a_cell(crowd.midpoints[s], crowd.midpoints[j]);
             assert!(!near || set.contains(&(j as u32)), "{s} misses {j}");
             beyond += usize::from(!near && set.contains(&(j as u32)));
         }
@@ -181,7 +181,7 @@ fn all_are_found(among_others: bool) {
     assert!(lengths().any(|length| length > DIRECT) && lengths().any(|length| length <= DIRECT));
     assert_eq!(crowd.rig.counter(LIST_TAILS) as usize, tails_of(lengths()));
     // Those that may meet a wall, whose lists are long, or with a neighbour, of which one or they themselves are near a wall: each once.
-    let near_wall = |s: u32| crowd.world.class(cells.index(cells.cell(crowd.middles[s as usize]))) != CLEAR;
+    let near_wall = |s: u32| crowd.world.class(cells.index(cells.cell(crowd.midpoints[s as usize]))) != CLEAR;
     let to_screen = |s: &u32| {
         let list = &expected[*s as usize];
         !list.is_empty() && (near_wall(*s) || list.iter().any(|&j| near_wall(j)))
@@ -192,7 +192,7 @@ fn all_are_found(among_others: bool) {
     assert_eq!(to_complete_of(&crowd.rig), incomplete);
     assert!(incomplete.len() < COUNT, "some are short and clear of walls");
     assert!(incomplete.iter().any(|s| !long(s)) && incomplete.iter().any(|s| !to_screen(s)));
-    assert!(crowd.rig.get::<u32>("layers", COUNT).iter().all(|mark| mark & (UNSCREENED | LONG) == 0));
+    assert!(crowd.rig.get::<u32>("marks", COUNT).iter().all(|mark| mark & (UNSCREENED | LONG) == 0));
     // The check can fail: the packed rule is wider than the edge of a cell, but by few pairs.
     let total: usize = lists.iter().map(Vec::len).sum();
     assert!(beyond > 0 && beyond < total / 10, "{beyond} of {total}");
@@ -224,13 +224,13 @@ fn tails_lose_exactly_those_behind_a_wall() {
     // At rest, so that flights start where the search looks.
     let mut particles = world.particles(&mut stream, COUNT, 0.0);
     particles.sort_by_key(|p| cells.index(cells.cell(p.position)));
-    let middles: Vec<[u32; 3]> = particles.iter().map(|p| p.position).collect();
-    let of = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
-    let mut crowd = crowd_at(world, middles, of);
+    let midpoints: Vec<[u32; 3]> = particles.iter().map(|p| p.position).collect();
+    let of = midpoints.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let mut crowd = crowd_at(world, midpoints, of);
     crowd.rig.put("sorted", &particles);
     let found = crowd.run();
-    let near_wall = |s: usize| crowd.world.class(cells.index(cells.cell(crowd.middles[s]))) != CLEAR;
-    let place = |s: usize| crowd.world.metres(crowd.middles[s]);
+    let near_wall = |s: usize| crowd.world.class(cells.index(cells.cell(crowd.midpoints[s]))) != CLEAR;
+    let place = |s: usize| crowd.world.metres(crowd.midpoints[s]);
     let slack = 4.0 * crowd.world.walls.tolerance;
     let (mut lost, mut shortened, mut long) = (0, 0, 0);
     for (s, (list, pairs)) in found.iter().zip(crowd.all_pairs()).enumerate() {
@@ -270,14 +270,14 @@ fn tails_without_room_are_reported_with_the_room_they_need() {
     }
     let long = expected.iter().filter(|list| list.len() > DIRECT).count();
     assert!(cut > 0 && cut < long, "{cut} of {long}");
-    // A device alone is held there, with all its particles; one among others is not.
-    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.held(word) as usize), [1, COUNT]);
-    for word in [HELD, HELD_PARTICLES] {
-        crowd.rig.set_held(word, 0);
+    // A device alone stalls there, with all its particles; one among others is not.
+    assert_eq!([STALLED, STALLED_PARTICLES].map(|word| crowd.rig.stalled(word) as usize), [1, COUNT]);
+    for word in [STALLED, STALLED_PARTICLES] {
+        crowd.rig.set_stalled(word, 0);
     }
     crowd.depth = 2;
     crowd.run_near(room, CELL_NEAR2);
-    assert_eq!([HELD, HELD_PARTICLES].map(|word| crowd.rig.held(word)), [0, 0]);
+    assert_eq!([STALLED, STALLED_PARTICLES].map(|word| crowd.rig.stalled(word)), [0, 0]);
     // With that room all have it.
     let found = crowd.run_near(wanted.next_multiple_of(4), CELL_NEAR2);
     assert!(found.iter().zip(&expected).all(|(list, expected)| list.len() == expected.len()));
@@ -289,7 +289,7 @@ fn slots_behind_the_last_cell_hold_nobody() {
     let mut crowd = crowd(18);
     let held = COUNT - 70;
     let cells = crowd.world.cells();
-    let mut of: Vec<u32> = crowd.middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let mut of: Vec<u32> = crowd.midpoints.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> =
         (0..=cells.count() as u32).map(|c| of[..held].partition_point(|&own| own < c) as u32).collect();
     crowd.rig.put("cell_start", &start);
@@ -315,8 +315,8 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
     for (depth, ghosts) in [(2, 0), (3, 0), (2, 1), (0, 0)] {
         put_room(&mut crowd.rig, COUNT, TAILS);
         crowd.rig.put("neighbour_count", &vec![0u32; COUNT]);
-        crowd.rig.put("layers", &layers);
-        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_PARTS]);
+        crowd.rig.put("marks", &layers);
+        crowd.rig.put("rechoose", &vec![NOBODY; COUNT + 64 * LIST_SHARDS]);
         let grid = crowd.world.grid.cells;
         crowd.rig.step(GpuStep {
             count: COUNT as u32,
@@ -327,7 +327,7 @@ fn the_outermost_ghosts_list_those_alone_who_choose() {
             ..GpuStep::default()
         });
         crowd.rig.run("neighbours", COUNT);
-        let marks: Vec<u32> = crowd.rig.get("layers", COUNT);
+        let marks: Vec<u32> = crowd.rig.get("marks", COUNT);
         let long = marks.iter().filter(|&mark| mark & LONG != 0).count();
         complete_lists(&crowd.rig, LIST_INCOMPLETE);
         let counts: Vec<u32> = crowd.rig.get("neighbour_count", COUNT);
@@ -387,7 +387,7 @@ fn lists_of_capped_particles_are_shorter_and_miss_nobody_near() {
             // sigma^2 + (g dt/2)^2, of which the second is what the edge leaves to the largest diameter.
             let share = f64::from(shares[s].min(shares[other])) / f64::from(FULL_SHARE);
             let reach2 = edge * edge * (1.0 - whole / 16384.0 * (1.0 - share));
-            let place = |k: usize| crowd.world.metres(crowd.middles[k]);
+            let place = |k: usize| crowd.world.metres(crowd.midpoints[k]);
             let (p, q) = (place(s), place(other));
             let distance2: f64 = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum();
             assert!(distance2 >= reach2 || list.contains(&j), "{s} misses {j}");
@@ -404,10 +404,10 @@ fn flying(mut particles: Vec<GpuParticle>, dt: f32) -> Crowd {
     let cells = world.cells();
     let middle = |p: &GpuParticle| cells.middle(p.position, p.velocity, dt);
     particles.sort_by_key(|p| cells.index(cells.cell(middle(p))));
-    let middles: Vec<[u32; 3]> = particles.iter().map(middle).collect();
-    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let midpoints: Vec<[u32; 3]> = particles.iter().map(middle).collect();
+    let of: Vec<u32> = midpoints.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let packed = (128.0 * DIAMETER / world.grid.cell).powi(2).floor();
-    let mut crowd = crowd_at(world, middles, of);
+    let mut crowd = crowd_at(world, midpoints, of);
     crowd.rig.constant("DIAMETER", DIAMETER);
     crowd.rig.constant("DIAMETER2_PACKED", packed);
     crowd.rig.put("sorted", &particles);
@@ -416,7 +416,7 @@ fn flying(mut particles: Vec<GpuParticle>, dt: f32) -> Crowd {
     crowd
 }
 
-/// Those that choose, and whom they choose, are the same in every form of the kernels, in gas where a thread finds few and where it finds
+/// Those that choose, and whom they choose, are the same in every variant of the kernels, in gas where a thread finds few and where it finds
 /// more than it keeps; the dispatch covers the list.
 #[test]
 fn those_that_choose_are_the_same_in_every_form() {
@@ -430,33 +430,33 @@ fn those_that_choose_are_the_same_in_every_form() {
         }
         let mut crowd = flying(particles, DT);
         let mut of_first = None;
-        for form in device().adapter().forms() {
-            crowd.rig.form = form;
+        for variant in device().adapter().variants() {
+            crowd.rig.variant = variant;
             crowd.rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
             crowd.run();
             // Else whom a list has is a matter of the order of the threads.
             assert_eq!(crowd.rig.counter(TAILS_WANTED), 0, "there is room for all lists");
             let [groups, y, _] = crowd.rig.get::<[u32; 3]>("rechoose_dispatches", LIST_RECHOOSE + 1)[LIST_RECHOOSE];
             let choosers = crowd.rig.choosers(0, COUNT);
-            let places = crowd.rig.parted(LIST_RECHOOSE, COUNT);
+            let places = crowd.rig.sharded(LIST_RECHOOSE, COUNT);
             assert!(places.iter().all(|place| place / 64 < groups as usize), "the dispatch covers the list");
             assert!(choosers.len() > COUNT / 10 && (near < 1.0 || choosers.len() < COUNT), "{}", choosers.len());
             // A thread keeps four of those it finds, which are half of its list, until it enters them.
             let longest = crowd.rig.get::<u32>("neighbour_count", COUNT).into_iter().max().unwrap_or(0);
             assert!(near > 0.9 || longest > 16, "{longest}");
-            assert!((groups as usize) < choosers.len() / 64 + 2 * LIST_PARTS && y == 1, "{groups} {y}");
+            assert!((groups as usize) < choosers.len() / 64 + 2 * LIST_SHARDS && y == 1, "{groups} {y}");
             crowd.rig.run_groups("choose", [groups, 1, 1]);
             let choices: Vec<[u32; 2]> = crowd.rig.get("choices", COUNT);
             let chosen: Vec<[u32; 2]> = choosers.iter().map(|&s| choices[s as usize]).collect();
             assert!(chosen.iter().filter(|choice| choice[0] != NOBODY).count() > 20);
-            // (A GPU may round otherwise in each form, and so let others pass who choose nobody.)
+            // (A GPU may round otherwise in each variant, and so let others pass who choose nobody.)
             let on_cpu = device().adapter().is_cpu();
             let partners = choosers
                 .into_iter()
                 .zip(chosen)
                 .map(|(s, [partner, time])| [s, partner, if on_cpu { time } else { 0 }]);
             let found: Vec<[u32; 3]> = partners.filter(|[_, partner, _]| on_cpu || *partner != NOBODY).collect();
-            assert!(of_first.get_or_insert_with(|| found.clone()) == &found, "{form:?}");
+            assert!(of_first.get_or_insert_with(|| found.clone()) == &found, "{variant:?}");
         }
     }
 }

@@ -6,7 +6,7 @@ use corpuscle::gpu::{Access, Binding, Constants, Device, Kernel, KernelSource, R
 /// A kernel `probe` that reads `inputs` and writes four words for each thread to `outputs`; `counters`, zero before, are there too.
 pub struct Probe {
     text: String,
-    forms: [Option<String>; 2],
+    variants: [Option<String>; 2],
     overrides: Vec<(&'static str, bool)>,
     constants: Vec<(&'static str, f64)>,
 }
@@ -14,12 +14,12 @@ pub struct Probe {
 impl Probe {
     pub fn new(text: String, constants: &Constants) -> Probe {
         let overrides = constants.iter().map(|&(name, _)| (name, true)).collect();
-        Probe { text, forms: [None, None], overrides, constants: constants.to_vec() }
+        Probe { text, variants: [None, None], overrides, constants: constants.to_vec() }
     }
 
-    /// With sources in the other forms.
-    pub fn or(self, forms: [String; 2]) -> Probe {
-        Probe { forms: forms.map(Some), ..self }
+    /// With sources in the other variants.
+    pub fn or(self, variants: [String; 2]) -> Probe {
+        Probe { variants: variants.map(Some), ..self }
     }
 
     /// What it writes for so many threads in these workgroups.
@@ -47,7 +47,7 @@ impl Probe {
             ],
             overrides: Vec::leak(self.overrides),
             source: String::leak(self.text),
-            forms: self.forms.map(|form| form.map(|text| &*String::leak(text))),
+            variants: self.variants.map(|variant| variant.map(|text| &*String::leak(text))),
         }));
         let inputs = device.storage_of("inputs", inputs).expect("memory");
         let outputs = device.storage::<[u32; 4]>("outputs", threads as u64).expect("memory");
@@ -57,7 +57,7 @@ impl Probe {
             "outputs" => Some(&outputs),
             _ => Some(&counters),
         };
-        let kernel = Kernel::of(device, source, &self.constants).expect("a kernel");
+        let kernel = Kernel::new(device, source, &self.constants).expect("a kernel");
         let bound = kernel.bind(device, buffers).expect("its buffers");
         let mut recording = Recording::new(device);
         bound.dispatch(&mut recording.phase("probe"), 0, groups);

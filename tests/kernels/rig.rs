@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use corpuscle::geometry::{Grid, TriangleGrid, Vessel};
-use corpuscle::gpu::{Form, KERNELS, Kernel, Recording};
-use corpuscle::scene::{GasSide, Shape, Wall};
+use corpuscle::gpu::{Kernel, KernelVariant, Recording};
+use corpuscle::scene::{GasSide, Shape, SurfaceModel, Wall};
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, readable_numbers, registry, share_table,
+    GpuFlight, GpuGas, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls, registry, runtime_constants, shader,
+    share_table,
 };
 
 pub use crate::devices::device;
@@ -22,23 +23,23 @@ macro_rules! places {
 
 places! {
     LISTS, LIST_CROWDED, LIST_CROWDS, LIST_NEAR_WALLS, LIST_INCOMPLETE, LIST_BOUNCE, LIST_BORDER, LIST_CHANGED,
-    LIST_OUTBOX, LIST_UPDATES, LIST_RECHOOSE, LIST_ASKED, LIST_BOUNCE_ODD, LIST_TAILS, COUNT_DROPPED,
+    LIST_OUTBOX, LIST_UPDATES, LIST_RECHOOSE, LIST_ON_DEMAND, LIST_BOUNCE_ODD, LIST_TAILS, COUNT_DROPPED,
     COUNTER_WORDS, COLLISIONS_LOW, LOST, SAMPLED, TAILS_WANTED, OUTSIDE, OVERSHOOT, TRUNCATED, TALLY_OVERFLOW,
     CAPACITY_FAILED, BOUNCES, BLOCKED, FOREIGN, STRAYS, MISSING, CANDIDATES, GHOST_CANDIDATES, GHOST_WALLS, MOVED,
-    FAST_PAIRS, CUT_SHORT, MISPLACED, CELL_COLLISIONS, LIST_PARTS, PART_WORDS, PARTS_OF_LISTS,
-    HELD, HELD_PARTICLES, INTERVAL, PRESENT,
-    ZONE_WORDS, SURFACE_WORDS, COAT_WORDS, VENT_WORDS, BLOCK_WORDS,
+    FAST_PAIRS, CUT_SHORT, MISPLACED, CELL_COLLISIONS, LIST_SHARDS, SHARD_WORDS, LENGTHS_OF_SHARDS,
+    STALLED, STALLED_PARTICLES, INTERVAL_STEPS, PRESENT,
+    ZONE_WORDS, SURFACE_WORDS, SURFACE_MODEL_WORDS, VENT_WORDS, BLOCK_WORDS,
 }
 
-/// The forms of kernels that the device can run.
-pub fn forms() -> Vec<Form> {
-    device().adapter().forms()
+/// The variants of kernels that the device can run.
+pub fn variants() -> Vec<KernelVariant> {
+    device().adapter().variants()
 }
 
-/// Whether a word of the counters is the length of a part of a list (`shaders/shared/list_parts.gpu.wgsl`).
-pub fn is_of_part(form: Form, word: usize) -> bool {
-    let of_parts = PARTS_OF_LISTS..PARTS_OF_LISTS + LIST_PARTS * PART_WORDS;
-    form == Form::Gpu && of_parts.contains(&word) && (word - PARTS_OF_LISTS) % PART_WORDS < LISTS
+/// Whether a word of the counters is the length of a part of a list (`shaders/shared/list_shards.gpu.wgsl`).
+pub fn is_of_shard(variant: KernelVariant, word: usize) -> bool {
+    let of_shards = LENGTHS_OF_SHARDS..LENGTHS_OF_SHARDS + LIST_SHARDS * SHARD_WORDS;
+    variant == KernelVariant::Gpu && of_shards.contains(&word) && (word - LENGTHS_OF_SHARDS) % SHARD_WORDS < LISTS
 }
 
 pub const NOBODY: u32 = u32::MAX;
@@ -83,7 +84,7 @@ pub struct World {
 }
 
 pub fn wall(shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: "wall".into(), shape, gas, heat: None, friction: 0.0 }
+    Wall { name: "wall".into(), shape, gas, surface: SurfaceModel::default(), parts: Vec::new() }
 }
 
 /// A box of gas from the origin.
@@ -229,7 +230,7 @@ pub struct Rig {
     tails: Vec<u32>,
     constants: Vec<(&'static str, f64)>,
     /// Of its kernels.
-    pub form: Form,
+    pub variant: KernelVariant,
 }
 
 impl Rig {
@@ -246,8 +247,8 @@ impl Rig {
             ("CLEARANCE_UNIT", corpuscle::geometry::CLEARANCE_UNIT),
             ("CHUNK", 64.0),
             ("FEW_STRETCHES", 0.0),
-            // Mirrors, unless a test gives the walls coats.
-            ("COATS", 0.0),
+            // Mirrors, unless a test gives the walls surface_models.
+            ("SURFACE_MODELS", 0.0),
             ("VENTS", 0.0),
             // One block, and one diameter, which no kernel needs but where a test says so.
             ("BLOCK_BITS", 15.0),
@@ -266,7 +267,7 @@ impl Rig {
             records: vec![],
             tails: vec![],
             constants,
-            form: device().form(),
+            variant: device().variant(),
         };
         rig.put("wall_start", &world.walls.start);
         rig.put("wall_list", &world.walls.list);
@@ -274,26 +275,34 @@ impl Rig {
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
         rig.put("counters", &[0u32; COUNTER_WORDS]);
-        rig.put("held", &[0u32; INTERVAL + 1]);
+        rig.put("stalled", &[0u32; STALLED_PARTICLES + 1]);
+        rig.put("step_state", &[0u32; INTERVAL_STEPS + 1]);
         rig.put("dispatches", &[0u32; 3 * LISTS]);
         rig.put("rechoose_dispatches", &[0u32; 3 * LISTS]);
         rig.uniform("modes", &[[0.0f32; 4]; 1024]);
         rig.uniform("motions", &[GpuMotion::default(); MOTION_ENTRIES]);
         rig.put("newborns", &[0u32; 12]);
         // A device alone: all are in layer 0, and nobody is told.
-        rig.put("layers", &[0u32; MOST_PARTICLES]);
+        rig.put("marks", &[0u32; MOST_PARTICLES]);
         rig.put("border", &[[0u32; 2]; 2]);
         rig.put("changed", &[0u32; 4]);
-        rig.put("coats", &[0u32; 8]);
+        rig.put("surface_models", &[0u32; 8]);
         rig.put("vents", &[0u32; 8]);
-        rig.put("asked", &[0u32; 4]);
-        rig.put("asked_dispatches", &[0u32; 3 * LISTS]);
-        rig.put("shares", &[0u32; 4]);
+        rig.put("on_demand", &[0u32; 4]);
+        rig.put("on_demand_dispatches", &[0u32; 3 * LISTS]);
+        rig.put("cross_section_shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        for buffer in
-            ["cell_start", "cell_counts", "counts_apart", "bins", "stretch_sums", "cells", "middles", "neighbour_count"]
-        {
+        for buffer in [
+            "cell_start",
+            "cell_counts",
+            "counts_apart",
+            "bins",
+            "stretch_sums",
+            "cells",
+            "midpoints",
+            "neighbour_count",
+        ] {
             rig.put(buffer, &[0u32; 4]);
         }
         rig
@@ -344,7 +353,7 @@ impl Rig {
         let near2 = if step.near2 == 0 { CELL_NEAR2 } else { step.near2 };
         self.uniform("step", &[GpuStep { total, near2, stride: step.stride.max(1), ..placed }]);
         // The last of its interval.
-        self.set_held(INTERVAL, if step.peers == 0 { step.slot + 1 } else { 0 });
+        self.set_step_state(INTERVAL_STEPS, if step.peers == 0 { step.slot + 1 } else { 0 });
     }
 
     pub fn gases(&mut self, gases: &[GpuGas]) {
@@ -355,12 +364,20 @@ impl Rig {
         self.constant("GASES", gases.len() as f64);
     }
 
-    pub fn set_held(&self, word: usize, value: u32) {
-        device().write(&self.buffers["held"], 4 * word as u64, &[value]);
+    pub fn set_stalled(&self, word: usize, value: u32) {
+        device().write(&self.buffers["stalled"], 4 * word as u64, &[value]);
     }
 
-    pub fn held(&self, word: usize) -> u32 {
-        self.get::<u32>("held", INTERVAL + 1)[word]
+    pub fn stalled(&self, word: usize) -> u32 {
+        self.get::<u32>("stalled", STALLED_PARTICLES + 1)[word]
+    }
+
+    pub fn set_step_state(&self, word: usize, value: u32) {
+        device().write(&self.buffers["step_state"], 4 * word as u64, &[value]);
+    }
+
+    pub fn step_state(&self, word: usize) -> u32 {
+        self.get::<u32>("step_state", INTERVAL_STEPS + 1)[word]
     }
 
     /// Sets one counter, the others as they are.
@@ -372,7 +389,7 @@ impl Rig {
         self.get::<u32>("counters", COUNTER_WORDS)[slot]
     }
 
-    /// Collisions in cells, whatever parts they are counted in.
+    /// Collisions in cells, whatever shards they are counted in.
     pub fn cell_collisions(&self) -> u32 {
         let words: Vec<u32> = self.get("counters", COUNTER_WORDS);
         assert!(words[CELL_COLLISIONS + 1..CELL_COLLISIONS + 64].iter().step_by(2).all(|&high| high == 0));
@@ -381,10 +398,10 @@ impl Rig {
 
     /// Runs a kernel over workgroups.
     pub fn run_groups(&self, kernel: &str, groups: [u32; 3]) {
-        let source = KERNELS.iter().find(|source| source.name == kernel).expect("a shader of this name");
+        let source = shader(kernel).expect("a shader of this name");
         // As in a run of so few particles: most tests then have the same kernels, each compiled once.
-        let numbers = readable_numbers(device());
-        let compiled = Kernel::in_form(device(), self.form, source, &self.constants, numbers).expect("a kernel");
+        let runtime = runtime_constants(device());
+        let compiled = Kernel::in_variant(device(), self.variant, source, &self.constants, runtime).expect("a kernel");
         let bound = compiled.bind(device(), |name| self.buffers.get(name)).expect("all its buffers");
         let mut recording = Recording::new(device());
         bound.dispatch(&mut recording.phase(source.phases.first().unwrap_or(&"test")), 0, groups);
@@ -400,33 +417,33 @@ impl Rig {
         device().read(&self.buffers[name], items).expect("the device's answer")
     }
 
-    /// Where the entries are of a list in parts, if it has any, that has so many at most (`shaders/shared/parted_lists.wgsl`).
-    pub fn parted(&self, list: usize, most: usize) -> Vec<usize> {
+    /// Where the entries are of a list in shards, if it has any, that has so many at most (`shaders/shared/sharded_lists.wgsl`).
+    pub fn sharded(&self, list: usize, most: usize) -> Vec<usize> {
         let lengths: Vec<u32> = self.get("counters", COUNTER_WORDS);
-        if self.form != Form::Gpu {
+        if self.variant != KernelVariant::Gpu {
             return (0..lengths[list] as usize).collect();
         }
-        let room = (most / (64 * LIST_PARTS) + 1) * 64;
-        let places = |part: usize| {
-            let length = lengths[PARTS_OF_LISTS + part * PART_WORDS + list] as usize;
-            (0..length.min(room)).map(move |k| (k / 64 * LIST_PARTS + part) * 64 + k % 64)
+        let room = (most / (64 * LIST_SHARDS) + 1) * 64;
+        let places = |shard: usize| {
+            let length = lengths[LENGTHS_OF_SHARDS + shard * SHARD_WORDS + list] as usize;
+            (0..length.min(room)).map(move |k| (k / 64 * LIST_SHARDS + shard) * 64 + k % 64)
         };
-        (0..LIST_PARTS).flat_map(places).collect()
+        (0..LIST_SHARDS).flat_map(places).collect()
     }
 
     /// The first so many entries of such a list are all that it has.
-    pub fn set_parted(&self, list: usize, count: usize) {
-        self.set_counter(list, if self.form == Form::Gpu { 0 } else { count as u32 });
-        for part in 0..LIST_PARTS {
-            let length = (0..count).filter(|place| place / 64 % LIST_PARTS == part).count();
-            self.set_counter(PARTS_OF_LISTS + part * PART_WORDS + list, length as u32);
+    pub fn set_sharded(&self, list: usize, count: usize) {
+        self.set_counter(list, if self.variant == KernelVariant::Gpu { 0 } else { count as u32 });
+        for shard in 0..LIST_SHARDS {
+            let length = (0..count).filter(|place| place / 64 % LIST_SHARDS == shard).count();
+            self.set_counter(LENGTHS_OF_SHARDS + shard * SHARD_WORDS + list, length as u32);
         }
     }
 
     /// Those that choose in a round, of so many particles, in ascending order.
     pub fn choosers(&self, round: usize, particles: usize) -> Vec<u32> {
-        let places = self.parted(LIST_RECHOOSE + round, particles);
-        let entries: Vec<u32> = self.get("rechoose", particles + 64 * LIST_PARTS);
+        let places = self.sharded(LIST_RECHOOSE + round, particles);
+        let entries: Vec<u32> = self.get("rechoose", particles + 64 * LIST_SHARDS);
         let mut found: Vec<u32> = places.into_iter().map(|place| entries[place]).collect();
         found.sort_unstable();
         found
@@ -434,7 +451,7 @@ impl Rig {
 
     /// The first so many entries of `rechoose` choose in a round.
     pub fn set_choosers(&self, round: usize, count: usize) {
-        self.set_parted(LIST_RECHOOSE + round, count);
+        self.set_sharded(LIST_RECHOOSE + round, count);
     }
 
     /// The entries of a list, in ascending order: which thread appends first is not determined.

@@ -1,6 +1,6 @@
 //! `scan_sums`, `scan_stretches` and `scan_cells`: the parts of an exclusive prefix sum, exactly.
 
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -75,9 +75,9 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
     let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
     // Fewer chunks than there are lists, and more.
     let cases = [(4, 0, 0), (90_001, 0, 0), (90_001, 0, 64), (90_001, 1, 64)];
-    for (form, (cells, peers, few)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
+    for (variant, (cells, peers, few)) in variants().into_iter().flat_map(|variant| cases.map(|case| (variant, case))) {
         let mut rig = rig(cells);
-        rig.form = form;
+        rig.variant = variant;
         rig.constant("FEW_STRETCHES", f64::from(few));
         rig.put("cell_counts", &with_end(&vec![0; cells]));
         rig.put("chunk_sums", &vec![7u32; cells / CHUNK + 1]);
@@ -89,15 +89,16 @@ fn scan_sums_empties_the_lists_of_the_step_before() {
         rig.run("scan_sums", cells / CHUNK + 1);
         let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
         for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
-            let emptied = is_of_part(form, word) || word < LISTS && !kept.contains(&word);
-            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{form:?} {word}");
+            let emptied = is_of_shard(variant, word) || word < LISTS && !kept.contains(&word);
+            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{variant:?} {word}");
         }
         for buffer in ["dispatches", "rechoose_dispatches"] {
             let sizes: Vec<[u32; 3]> = rig.get(buffer, LISTS);
             for (list, (size, before)) in sizes.iter().zip(noise.as_chunks().0).enumerate() {
                 // On a GPU, and where cells are few, the first of `choose` has them to empty.
-                let emptying =
-                    buffer == "rechoose_dispatches" && list == LIST_RECHOOSE && (form == Form::Gpu || few > 0);
+                let emptying = buffer == "rechoose_dispatches"
+                    && list == LIST_RECHOOSE
+                    && (variant == KernelVariant::Gpu || few > 0);
                 let emptied = [if emptying { (cells / STRETCH + 1) as u32 } else { 0 }, 1, 1];
                 assert_eq!(size, if peers == 0 && !kept.contains(&list) { &emptied } else { before }, "{list}");
             }
@@ -112,10 +113,12 @@ fn scan_merged_does_all_of_the_scan() {
     let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
     let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
     let cases: Vec<(usize, bool)> = CELLS.into_iter().flat_map(|cells| [(cells, false), (cells, true)]).collect();
-    for (form, (cells, apart)) in forms().into_iter().flat_map(|form| cases.iter().map(move |&case| (form, case))) {
+    for (variant, (cells, apart)) in
+        variants().into_iter().flat_map(|variant| cases.iter().map(move |&case| (variant, case)))
+    {
         let peers = u32::from(cells == 63);
         let mut rig = rig(cells);
-        rig.form = form;
+        rig.variant = variant;
         rig.constant("COUNTS_APART", f64::from(u8::from(apart)));
         let mut counts = counts(&mut stream, cells);
         counts[cells - 1] = 3;
@@ -131,17 +134,17 @@ fn scan_merged_does_all_of_the_scan() {
         rig.run_groups("scan_merged", [1, 1, 1]);
         let starts = prefix(&counts);
         let found: Vec<u32> = rig.get("cell_start", all.len() + 4);
-        assert_eq!(found[..=cells], starts, "{form:?} {cells} {apart}");
+        assert_eq!(found[..=cells], starts, "{variant:?} {cells} {apart}");
         assert!(found[cells..all.len()].iter().all(|&start| start == starts[cells]));
         assert_eq!(found[all.len()..], [9; 4], "nothing behind them");
-        assert_eq!(rig.held(PRESENT), starts[cells]);
+        assert_eq!(rig.step_state(PRESENT), starts[cells]);
         if apart {
             assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
         }
         let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
         for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
-            let emptied = is_of_part(form, word) || word < LISTS && !kept.contains(&word);
-            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{form:?} {word}");
+            let emptied = is_of_shard(variant, word) || word < LISTS && !kept.contains(&word);
+            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{variant:?} {word}");
         }
         for (list, size) in rig.get::<[u32; 3]>("dispatches", LISTS).iter().enumerate() {
             assert_eq!(*size, if peers == 0 && !kept.contains(&list) { [0, 1, 1] } else { [7; 3] }, "{list}");
@@ -186,7 +189,7 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
-        assert_eq!(rig.held(PRESENT), starts[cells]);
+        assert_eq!(rig.step_state(PRESENT), starts[cells]);
         // Few stretches are summed here.
         let stretches = cells / STRETCH + 1;
         rig.constant("FEW_STRETCHES", stretches as f64);
@@ -194,10 +197,10 @@ fn scan_cells_puts_starts_in_place_of_counts() {
         of_stretches.resize(stretches.next_multiple_of(4), 7);
         rig.put("stretch_sums", &of_stretches);
         rig.put("cell_start", &all);
-        rig.set_held(PRESENT, 7);
+        rig.set_step_state(PRESENT, 7);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), starts);
-        assert_eq!(rig.held(PRESENT), starts[cells]);
+        assert_eq!(rig.step_state(PRESENT), starts[cells]);
         assert_ne!(starts[cells], 0, "the check can fail: there were particles");
     }
 }
@@ -206,9 +209,9 @@ fn scan_cells_puts_starts_in_place_of_counts() {
 #[test]
 fn scan_cells_empties_counts_that_lie_apart() {
     let mut stream = Stream::new(7);
-    for (form, cells) in forms().into_iter().flat_map(|form| CELLS.map(|cells| (form, cells))) {
+    for (variant, cells) in variants().into_iter().flat_map(|variant| CELLS.map(|cells| (variant, cells))) {
         let mut rig = rig(cells);
-        rig.form = form;
+        rig.variant = variant;
         let mut counts = counts(&mut stream, cells);
         counts.chunks_mut(CHUNK).skip(1).step_by(3).for_each(|chunk| chunk.fill(0));
         let all = with_end(&counts);
@@ -220,7 +223,7 @@ fn scan_cells_empties_counts_that_lie_apart() {
         rig.put("counts_apart", &all);
         rig.put("cell_start", &vec![9u32; all.len()]);
         rig.run("scan_cells", cells / CHUNK + 1);
-        assert_eq!(rig.get::<u32>("cell_start", cells + 1), prefix(&counts), "{form:?}");
+        assert_eq!(rig.get::<u32>("cell_start", cells + 1), prefix(&counts), "{variant:?}");
         assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
     }
 }

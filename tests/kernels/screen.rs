@@ -50,13 +50,13 @@ fn lists_lose_exactly_those_behind_a_wall() {
     put_flights(&mut rig, &flights);
     put_lists(&mut rig, &lists);
     let marked = |s: usize| !s.is_multiple_of(8);
-    let middles: Vec<u32> = (0..COUNT).map(|s| u32::from(marked(s)) << 31).collect();
-    rig.put("middles", &middles);
+    let midpoints: Vec<u32> = (0..COUNT).map(|s| u32::from(marked(s)) << 31).collect();
+    rig.put("midpoints", &midpoints);
     // All but the last are to be screened.
     let mut screened: Vec<u32> = (0..COUNT as u32 - 1).collect();
     stream.shuffle(&mut screened);
     put_to_complete(&mut rig, COUNT, &screened);
-    rig.put("layers", &vec![UNSCREENED; COUNT]);
+    rig.put("marks", &vec![UNSCREENED; COUNT]);
     rig.step(GpuStep { count: COUNT as u32, dt: DT, ..GpuStep::default() });
     rig.run("complete_lists", screened.len());
     let kept = crate::neighbour_lists::lists(&rig, COUNT, tails_of(lists.iter().map(Vec::len)));

@@ -109,7 +109,7 @@ pub fn prepared(cloud: &Cloud, pairs: &[(usize, usize, f32)], spin: bool, curves
     }
     rig.put("choices", &choices);
     rig.put("pairs", &pairs.iter().map(|&(i, j, _)| [i as u32, j as u32]).collect::<Vec<_>>());
-    rig.set_parted(ROUND as usize, pairs.len());
+    rig.set_sharded(ROUND as usize, pairs.len());
     rig.step(cloud.step(ROUND));
     rig
 }
@@ -130,7 +130,7 @@ fn fast_pairs_are_counted_by_the_owner_of_the_lower_id() {
     let layers: Vec<u32> = (0..cloud.particles.len()).map(|_| stream.below(2)).collect();
     let mut rig = prepared(&cloud, &pairs, false, false);
     rig.constant("FASTEST2", limit);
-    rig.put("layers", &layers);
+    rig.put("marks", &layers);
     rig.run("settle", pairs.len());
     let counted = pairs.iter().filter(|&&(i, j, _)| layers[i] == 0 && speed2(i, j) > limit).count();
     assert_eq!(rig.counter(FAST_PAIRS) as usize, counted);
@@ -260,18 +260,18 @@ fn exchanges_with_modes_are_those_of_f64() {
     assert!(constant > pairs.len() / 5, "{constant} of {}", pairs.len());
 }
 
-/// How many collide in a round is counted once, for the run and for the sample of lost collisions, in every form of the kernels.
+/// How many collide in a round is counted once, for the run and for the sample of lost collisions, in every variant of the kernels.
 #[test]
 fn the_collisions_of_a_round_are_counted_in_every_form() {
     let cloud = Cloud::new(&mut Stream::new(35), World::plain(), 1600, 0.9);
     let pairs = meetings(&cloud);
-    for form in forms() {
+    for variant in variants() {
         let mut rig = prepared(&cloud, &pairs, true, false);
-        rig.form = form;
-        rig.set_parted(ROUND as usize, pairs.len());
+        rig.variant = variant;
+        rig.set_sharded(ROUND as usize, pairs.len());
         rig.run("settle", pairs.len());
         let counted = [rig.counter(COLLISIONS_LOW), rig.counter(ROUND as usize)];
-        assert_eq!(counted, [pairs.len() as u32; 2], "{form:?}");
+        assert_eq!(counted, [pairs.len() as u32; 2], "{variant:?}");
     }
     // In several parts of a list.
     assert!(pairs.len() > 64, "{}", pairs.len());

@@ -1,6 +1,6 @@
 //! `bin` and `order`: the particles by cell, exactly; `arrange` and `arrange_crowded`: by cell, and by id where `collide` wants it.
 
-use corpuscle::gpu::Form;
+use corpuscle::gpu::KernelVariant;
 use corpuscle::subdomain::{
     CROWD, GpuFlight, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuStep, MEMBERS, MOTION_ENTRIES,
 };
@@ -116,7 +116,7 @@ fn order_is_by_cells() {
         rig.put("bins", &bins);
         rig.put("cell_start", &start);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-        for buffer in ["middles", "cells", "neighbour_count"] {
+        for buffer in ["midpoints", "cells", "neighbour_count"] {
             rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
         }
         rig.step(GpuStep {
@@ -133,7 +133,7 @@ fn order_is_by_cells() {
         rig.constant("BLOCK_BITS", 1.0);
         rig.constant("BLOCKS_X", f64::from(blocks[0]));
         rig.constant("BLOCKS_Y", f64::from(blocks[1]));
-        rig.put("shares", &shares);
+        rig.put("cross_section_shares", &shares);
         put_to_complete(&mut rig, COUNT, &[]);
         rig.run("order", COUNT + EMPTY);
         assert_eq!(rig.get::<GpuParticle>("sorted", COUNT), expected, "shuffle {shuffle}");
@@ -154,16 +154,16 @@ fn order_is_by_cells() {
         }
         assert_eq!(rig.get::<u32>("cells", COUNT), placed.iter().map(|&k| cell[k]).collect::<Vec<_>>());
         assert_eq!(rig.get::<u32>("neighbour_count", COUNT + EMPTY), vec![0; COUNT + EMPTY]);
-        let middles: Vec<u32> = rig.get("middles", COUNT);
+        let midpoints: Vec<u32> = rig.get("midpoints", COUNT);
         for (s, p) in expected.iter().enumerate() {
             let middle = cells.middle(p.position, p.velocity, DT);
             let flag = u32::from(world.near_triangle(cell[placed[s]])) << 31;
-            assert_eq!(middles[s], cells.packed(middle) | flag);
+            assert_eq!(midpoints[s], cells.packed(middle) | flag);
         }
         assert_eq!(to_complete_of(&rig), near_walls);
         // Alone all are in layer 0 and nobody else's ghosts.
         let marked = |s: u32| if near_walls.contains(&s) { NEAR } else { 0 };
-        let layers: Vec<u32> = rig.get("layers", COUNT + EMPTY);
+        let layers: Vec<u32> = rig.get("marks", COUNT + EMPTY);
         assert_eq!(layers[..COUNT], (0..COUNT as u32).map(marked).collect::<Vec<_>>());
         assert!(layers[COUNT..].iter().all(|&layer| layer == LAYER), "slots behind the last cell's hold nobody");
         assert!(near_walls.len() < COUNT - 50 && near_walls.len() > 50, "{}", near_walls.len());
@@ -177,7 +177,7 @@ fn order_is_by_cells() {
 /// crowded cells. Among others their cells are noted, and where walls part a cell the part of each.
 #[test]
 fn particles_of_cells_are_arranged() {
-    const PARTED: u32 = 1 << 31;
+    const DIVIDED: u32 = 1 << 31;
     let Sorted { world, mut particles, mut cell, .. } = sorted(12);
     let cells = world.cells();
     let mut stream = Stream::new(13);
@@ -202,7 +202,7 @@ fn particles_of_cells_are_arranged() {
         particle.position = place_of(of).map(|at| (2 * at + 1) << (cells.bits - 1));
     }
     // In the box around a wall that moves, but not where it is.
-    let parted = cells.index([5, 2, 2]);
+    let divided = cells.index([5, 2, 2]);
     // A wall that is drawn in the first of these cells has moved by one and a half along x; its box is larger.
     let (low, high) = ([5, 2, 2], [6, 3, 2]);
     let moved = |of: u32| {
@@ -237,21 +237,22 @@ fn particles_of_cells_are_arranged() {
         by_slot[place as usize] = particles[k];
     }
     let cases = [(false, 0), (true, 1)];
-    for (form, (walls, peers)) in forms().into_iter().flat_map(|form| cases.map(|case| (form, case))) {
+    for (variant, (walls, peers)) in variants().into_iter().flat_map(|variant| cases.map(|case| (variant, case))) {
         let ordered = |c: u32| {
             let [begin, end] = [start[c as usize], start[c as usize + 1]];
             // On a GPU no thread of `collide_crowded` puts a cell in order by itself.
-            let crowded = if form == Form::Gpu { end - begin > MEMBERS } else { end - begin / 4 * 4 > CROWD };
-            crowded || walls && (c == parted || moved(c))
+            let crowded =
+                if variant == KernelVariant::Gpu { end - begin > MEMBERS } else { end - begin / 4 * 4 > CROWD };
+            crowded || walls && (c == divided || moved(c))
         };
         let mut expected = by_slot.clone();
         for c in (0..cells.count() as u32).filter(|&c| ordered(c)) {
             expected[start[c as usize] as usize..start[c as usize + 1] as usize].sort_by_key(GpuParticle::id);
         }
         let mut volume = vec![1e-9f32.to_bits(); cells.count()];
-        volume[parted as usize] = PARTED | 2 << 24;
+        volume[divided as usize] = DIVIDED | 2 << 24;
         let mut rig = Rig::new(&world);
-        rig.form = form;
+        rig.variant = variant;
         rig.put("particles", &particles);
         rig.put("bins", &bins);
         rig.put("cell_start", &start);
@@ -262,10 +263,10 @@ fn particles_of_cells_are_arranged() {
         rig.put("cell_parts", &[part(beyond), part(world.fixed([0.03, 0.035, 0.04]))]);
         rig.put("slots", &vec![NOBODY; COUNT]);
         rig.put("sorted", &vec![GpuParticle::default(); COUNT]);
-        for buffer in ["crowded", "cells", "layers"] {
+        for buffer in ["crowded", "cells", "marks"] {
             rig.put(buffer, &vec![9u32; COUNT + EMPTY]);
         }
-        rig.constant("PARTED_GAS", f64::from(u8::from(walls)));
+        rig.constant("DIVIDED_GAS", f64::from(u8::from(walls)));
         if walls {
             let mut table = [GpuMotion::default(); MOTION_ENTRIES];
             table[0] = moving;
@@ -292,12 +293,12 @@ fn particles_of_cells_are_arranged() {
         if peers > 0 {
             cell.iter().zip(&bins).for_each(|(&c, bin)| noted[(start[c as usize] + bin[1]) as usize] = c);
             layers[..COUNT].fill(0);
-            layers[start[parted as usize] as usize..start[parted as usize + 1] as usize].fill(1 << 16);
+            layers[start[divided as usize] as usize..start[divided as usize + 1] as usize].fill(1 << 16);
             layers[COUNT..].fill(LAYER);
         }
-        assert_eq!((rig.get::<u32>("cells", COUNT + EMPTY), rig.get::<u32>("layers", COUNT + EMPTY)), (noted, layers));
+        assert_eq!((rig.get::<u32>("cells", COUNT + EMPTY), rig.get::<u32>("marks", COUNT + EMPTY)), (noted, layers));
     }
-    assert!((0..COUNT).any(|k| cell[k] == parted) && (0..COUNT).any(|k| moved(cell[k])));
+    assert!((0..COUNT).any(|k| cell[k] == divided) && (0..COUNT).any(|k| moved(cell[k])));
 }
 
 /// Only walls that can part two points of the gas have neighbours screened; the surface of a convex cavity

@@ -44,7 +44,7 @@ fn histograms_are_the_sums_over_planes_of_the_open_boxes() {
     let rig = |weights: GpuWeights| {
         let mut rig = Rig::new(&world);
         rig.put("cells", &bins);
-        rig.put("layers", &layers);
+        rig.put("marks", &layers);
         rig.put("neighbour_count", &listed);
         rig.put("cuts", &cuts);
         rig.put("histogram", &vec![0u32; 2 * planes]);

@@ -26,6 +26,7 @@ mod two_chambers;
 mod vents;
 mod vessels;
 mod wall_hits;
+mod wall_parts;
 mod wall_pressure;
 mod walls;
 #[path = "../whole_run/mod.rs"]

@@ -50,7 +50,7 @@ pub fn agree_on_device(device: &Device, comm: &dyn Communicator) -> Result<(), C
     let facts = [
         ("adapter", info.name.clone()),
         ("driver", format!("{} {}", info.driver, info.driver_info)),
-        ("form of the kernels", device.form().name().to_owned()),
+        ("form of the kernels", device.variant().name().to_owned()),
     ];
     Ok(ranks::agree(comm, &facts)?)
 }

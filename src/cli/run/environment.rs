@@ -24,7 +24,7 @@ pub(super) fn record(device: &Device) -> AdapterRecord {
         driver: info.driver.clone(),
         driver_info: info.driver_info.clone(),
         device_type: format!("{:?}", info.device_type),
-        form: device.form().name().to_owned(),
+        form: device.variant().name().to_owned(),
         limits: limits.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         features: features.iter_names().map(|(name, _)| name.to_owned()).collect(),
     }

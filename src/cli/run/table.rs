@@ -17,7 +17,7 @@ pub struct Owners {
     pub chambers: Vec<String>,
     pub probes: Vec<String>,
     pub surfaces: Vec<String>,
-    /// Walls that exchange heat.
+    /// Walls, and parts of walls, that exchange heat.
     pub walls: Vec<String>,
     pub vents: Vec<String>,
     /// Walls that move.
@@ -29,8 +29,6 @@ impl Owners {
         let chambers: Vec<&str> = scene.chambers.iter().map(|chamber| chamber.name.as_str()).collect();
         let probes: Vec<&str> = scene.probes.iter().map(|probe| probe.name.as_str()).collect();
         let surfaces: Vec<&str> = scene.surfaces.iter().map(|surface| surface.name.as_str()).collect();
-        let hot = scene.walls.iter().filter(|wall| wall.heat.is_some());
-        let walls: Vec<&str> = hot.map(|wall| wall.name.as_str()).collect();
         let vents: Vec<&str> = scene.vents.iter().map(|vent| vent.name.as_str()).collect();
         let moving: Vec<&str> = scene.motions.iter().map(|motion| scene.walls[motion.wall].name.as_str()).collect();
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
@@ -44,7 +42,7 @@ impl Owners {
             probes: apart("probe", &probes, &[chambers.as_slice(), &surfaces].concat()),
             surfaces: apart("surface", &surfaces, &chambers),
             chambers: owned(&chambers),
-            walls: owned(&walls),
+            walls: scene.heated_surfaces().map(|(id, _)| scene.surface_name(id)).collect(),
             vents: owned(&vents),
             motions: owned(&moving),
         }
@@ -181,8 +179,8 @@ mod tests {
         let heads = |scene: &Scene| columns(scene).iter().map(Column::header).collect::<Vec<_>>();
         let [vents, pistons] = ["vent.toml", "piston.toml"].map(scene);
         let mut more = before.clone();
-        let heat = vents.walls.iter().find_map(|wall| wall.heat);
-        more.walls.iter_mut().for_each(|wall| wall.heat = heat);
+        let heat = vents.walls.iter().find_map(|wall| wall.surface.heat);
+        more.walls.iter_mut().for_each(|wall| wall.surface.heat = heat);
         assert!(heat.is_some() && more.walls.iter().any(|wall| wall.name == before.chambers[1].name));
         let probe = before.probes[0].clone();
         for name in [&before.chambers[0].name, &before.surfaces[0].name, &before.walls[0].name] {

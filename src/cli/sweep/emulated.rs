@@ -19,7 +19,7 @@ pub(super) const EMULATED_STEPS: u32 = 3;
 /// So few steps are no time to try what is faster, and what is compared must have one halo.
 pub(super) fn halo(raw: &TuningArguments) -> HaloOptions {
     let asked = HaloOptions::from(raw);
-    HaloOptions { rounds: asked.rounds.or(Some(1)), ghosts: asked.ghosts.or(Some(Ghosts::Asked)) }
+    HaloOptions { rounds: asked.rounds.or(Some(1)), ghosts: asked.ghosts.or(Some(Ghosts::OnDemand)) }
 }
 
 /// The states of a count, and how many steps of the run each stands for.

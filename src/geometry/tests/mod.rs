@@ -6,12 +6,12 @@ mod triangle_grid;
 mod vessels;
 
 use crate::geometry::{GeometryError, Vessel};
-use crate::scene::{Face, GasSide, Hole, Outline, Shape, Wall};
+use crate::scene::{Face, GasSide, Hole, Outline, Shape, SurfaceModel, Wall};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 
 pub(super) fn wall(name: &str, shape: Shape, gas: GasSide) -> Wall {
-    Wall { name: name.into(), shape, gas, heat: None, friction: 0.0 }
+    Wall { name: name.into(), shape, gas, surface: SurfaceModel::default(), parts: Vec::new() }
 }
 
 /// A box of gas from the origin.

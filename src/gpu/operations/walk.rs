@@ -9,10 +9,11 @@ use wgpu::naga::{
     Override, ScalarKind, Statement, TypeInner, UnaryOperator, VectorSize,
 };
 
-use super::{Constants, Item, Operations, Stretch};
+use super::stretch::{Item, Operations, Stretch};
+use crate::gpu::source::Constants;
 
 /// A kernel with all of its functions.
-pub struct Whole<'a> {
+pub struct WholeKernel<'a> {
     pub module: &'a Module,
     pub info: &'a ModuleInfo,
     pub constants: &'a Constants,
@@ -21,7 +22,7 @@ pub struct Whole<'a> {
 
 /// A function on the way through it.
 struct Walk<'a> {
-    whole: &'a Whole<'a>,
+    whole: &'a WholeKernel<'a>,
     function: &'a Function,
     info: &'a FunctionInfo,
     /// Values of its variables, as far as they are known.
@@ -30,7 +31,7 @@ struct Walk<'a> {
     results: HashMap<Handle<Expression>, f64>,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> WholeKernel<'a> {
     pub fn function(&'a self, function: &'a Function, info: &'a FunctionInfo) -> Stretch {
         let mut walk = Walk { whole: self, function, info, known: HashMap::new(), results: HashMap::new() };
         for (variable, declared) in function.local_variables.iter() {
@@ -62,7 +63,7 @@ impl<'a> Whole<'a> {
 
     fn global(&self, expression: Handle<Expression>) -> Option<f64> {
         match self.module.global_expressions[expression] {
-            Expression::Literal(literal) => Whole::literal(literal),
+            Expression::Literal(literal) => WholeKernel::literal(literal),
             _ => None,
         }
     }
@@ -189,7 +190,7 @@ impl Walk<'_> {
         let Expression::Load { pointer } = self.function.expressions[left] else { return None };
         let Expression::LocalVariable(variable) = self.function.expressions[pointer] else { return None };
         let end = match self.function.expressions[right] {
-            Expression::Literal(literal) => Whole::literal(literal)?,
+            Expression::Literal(literal) => WholeKernel::literal(literal)?,
             Expression::Constant(constant) => self.whole.constant(constant)?,
             _ => return None,
         };
@@ -244,7 +245,7 @@ impl Walk<'_> {
     fn value(&self, expression: Handle<Expression>) -> Option<f64> {
         let truth = |yes: bool| f64::from(u8::from(yes));
         match self.function.expressions[expression] {
-            Expression::Literal(literal) => Whole::literal(literal),
+            Expression::Literal(literal) => WholeKernel::literal(literal),
             Expression::Constant(constant) => self.whole.constant(constant),
             Expression::Override(constant) => self.whole.overridden(constant),
             Expression::CallResult(_) => self.results.get(&expression).copied(),

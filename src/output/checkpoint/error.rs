@@ -11,6 +11,19 @@ pub enum CheckpointError {
     #[error("{path} holds no complete checkpoint", path = path.display())]
     #[diagnostic(help("name a run's folder, its `checkpoints` or one of the folders `step-...` in there"))]
     None { path: PathBuf },
+    #[error("{path} does not exist", path = path.display())]
+    #[diagnostic(help(
+        "name a run's folder (that of its `--out`), its `checkpoints` or one of the folders `step-...` in there"
+    ))]
+    Absent { path: PathBuf },
+    #[error("{path} is {what}, not the folder of a run", path = path.display())]
+    #[diagnostic(help("{help}"))]
+    NoFolder { path: PathBuf, what: &'static str, help: &'static str },
+    #[error("{path} holds no complete checkpoint: it is a run's folder, but the run has written none", path = path.display())]
+    #[diagnostic(help(
+        "a run writes one when it is stopped by a signal or `--stop-after`, or every so often with `--checkpoint-every`; start the run anew with `corpuscle run --force`"
+    ))]
+    NoneYet { path: PathBuf },
     #[error("{path} is missing from the checkpoint", path = path.display())]
     #[diagnostic(help("the folder was copied in part, or changed; copy all of it again"))]
     Missing { path: PathBuf },

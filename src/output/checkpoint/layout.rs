@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::CheckpointError;
 use crate::output::error::PARTIAL_SUFFIX;
+use crate::output::marker::check_marker;
 use crate::output::names::CHECKPOINT_FOLDER;
 
 /// Of the files' layout and of what is in `state.bin`; another is refused.
@@ -84,10 +85,27 @@ pub fn latest(path: &Path) -> Result<PathBuf, CheckpointError> {
     let inner = path.join(CHECKPOINT_FOLDER);
     let folder = if inner.is_dir() { inner } else { path.to_path_buf() };
     if !folder.is_dir() {
-        return Err(CheckpointError::None { path: folder });
+        return Err(no_folder(folder));
     }
     let newest = complete(&folder)?.pop();
-    newest.map(|(_, path)| path).ok_or(CheckpointError::None { path: folder })
+    newest.map(|(_, path)| path).ok_or_else(|| match check_marker(path) {
+        Ok(()) => CheckpointError::NoneYet { path: path.to_path_buf() },
+        Err(_) => CheckpointError::None { path: folder },
+    })
+}
+
+/// What a path is in place of a folder.
+fn no_folder(path: PathBuf) -> CheckpointError {
+    if !path.exists() {
+        return CheckpointError::Absent { path };
+    }
+    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    let (what, help) = if is_scene {
+        ("a scene file", "a scene is run by `corpuscle run`; to go on with a run name the folder of its results")
+    } else {
+        ("a file", "name a run's folder, its `checkpoints` or one of the folders `step-...` in there")
+    };
+    CheckpointError::NoFolder { path, what, help }
 }
 
 /// The folder of the run that the checkpoint `path`, found for `from`, is of.

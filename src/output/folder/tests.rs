@@ -1,5 +1,6 @@
 use super::super::names::*;
 use super::*;
+use crate::output::marker::has_ended;
 use crate::output::{Column, HistoryWriter, SnapshotWriter};
 
 fn claim(force: bool) -> Claim<'static> {

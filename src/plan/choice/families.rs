@@ -4,7 +4,7 @@
 use crate::gas::kinetics;
 use crate::plan::amounts::Amounts;
 use crate::plan::resolution::default_occupancy;
-use crate::plan::{Measured, PlanError, Reason, forecast::Forecaster};
+use crate::plan::{Measured, PlanError, Quantity, Reason, forecast::Forecaster, limit};
 use crate::scene::{DiameterCap, Method, Scene};
 
 /// All candidates but for the number of particles.
@@ -45,6 +45,8 @@ pub fn families(
             Some(asked) if collides => vec![Some(asked)],
             None if collides && scene.model.diameter.is_none() => match method {
                 Method::HardSphere => vec![Some(default_occupancy(method))],
+                // Nothing holds its diameter down where gas is dense.
+                Method::Cell => vec![Some(where_dense(measured, amounts))],
                 _ => occupancies.iter().copied().map(Some).collect(),
             },
             _ => vec![None],
@@ -67,14 +69,25 @@ pub fn families(
     Ok((families, Reason { quantity: "methods compared".into(), value: names.join(", "), why }))
 }
 
+/// The occupancy at the mean density of the end, of cells: the usual one, or that of which the densest chamber at the start is within
+/// the limit.
+fn where_dense(measured: &Measured, amounts: &Amounts) -> f64 {
+    let of_chamber =
+        |(moles, volume): (&Vec<f64>, &f64)| moles.iter().sum::<f64>() / amounts.total() * measured.gas_volume / volume;
+    let denser = amounts.initial.iter().zip(&measured.chamber_volumes).map(of_chamber).fold(1.0, f64::max);
+    let most = limit(Quantity::Occupancy, Method::Cell).map_or(f64::INFINITY, |limit| limit.bound.value());
+    // Three digits, downwards: chambers are rounded to particles.
+    let unit = libm::pow(10.0, libm::log10(most / denser).floor() - 2.0);
+    (((most / denser) / unit).floor() * unit).min(USUAL[0])
+}
+
 /// What the scene is that no control volume is, or whose effect on one is not predicted.
 fn beyond_control_volumes(scene: &Scene, forecaster: &Forecaster<'_>) -> Option<&'static str> {
-    let rough = scene.walls.iter().any(|wall| wall.heat.is_some() || wall.friction > 0.0);
     if forecaster.is_release() {
         Some("a release without a wall is no control volume")
     } else if forecaster.has_open_borders() {
         Some("gas passes where chambers touch without a wall, and between control volumes there it does not")
-    } else if !scene.vents.is_empty() || rough {
+    } else if !scene.vents.is_empty() || !scene.has_mirrors_only() {
         Some("its error beside vents, rough walls and walls that keep a temperature is not predicted yet")
     } else {
         None

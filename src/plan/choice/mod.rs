@@ -9,6 +9,7 @@ mod cost;
 mod families;
 mod halvings;
 mod holes;
+mod kept;
 mod report;
 
 use super::amounts::{Amounts, highest_temperature};
@@ -50,6 +51,21 @@ pub struct Possible {
     pub columns: Vec<ColumnForecast>,
     pub error: f64,
     pub cost: Cost,
+    /// The limits that it would be beyond, of those that a choice keeps ([`kept`]).
+    pub beyond: Vec<Quantity>,
+}
+
+/// Whether only plans within their limits will do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Limits {
+    Kept,
+    Broken,
+}
+
+impl Limits {
+    fn allow(self, plan: &Possible) -> bool {
+        self == Limits::Broken || plan.beyond.is_empty()
+    }
 }
 
 struct Chooser<'a> {
@@ -112,24 +128,29 @@ fn range(scene: &Scene, amounts: &Amounts) -> [f64; 2] {
 }
 
 impl Chooser<'_> {
-    /// The cheapest plan of the wished accuracy.
+    /// The cheapest plan of the wished accuracy, within its limits if that can be had.
     fn accurate(&self, accuracy: f64, wish: &Wish) -> Result<Possible, PlanError> {
         let affordable = |plan: &Possible| wish.time_budget.is_none_or(|budget| plan.cost.seconds <= budget);
-        // If the aim is out of reach, the wish itself may not be.
-        for error in [AIM * accuracy, accuracy] {
-            if let Some(plan) = self.cheapest(error).filter(affordable) {
+        for limits in [Limits::Kept, Limits::Broken] {
+            // If the aim is out of reach, the wish itself may not be.
+            for error in [AIM * accuracy, accuracy] {
+                if let Some(plan) = self.cheapest(error, limits).filter(affordable) {
+                    return Ok(plan);
+                }
+            }
+            // A plan between the aim and the wish itself will do.
+            if let Some(plan) = self.best(affordable, limits).filter(|plan| plan.error <= accuracy) {
                 return Ok(plan);
             }
         }
         // What is the best that can be had?
         let best = match wish.time_budget {
-            Some(_) => self.affordable(wish)?,
-            None => self.best(|_| true).ok_or_else(|| self.nothing())?,
+            Some(_) => match self.best(affordable, Limits::Broken) {
+                Some(best) => best,
+                None => self.affordable(wish)?,
+            },
+            None => self.best(|_| true, Limits::Broken).ok_or_else(|| self.nothing())?,
         };
-        // A plan between the aim and the wish itself will do.
-        if best.error <= accuracy && affordable(&best) {
-            return Ok(best);
-        }
         let best_of_all = report::shortfall(&best);
         Err(PlanError::Accuracy {
             asked: accuracy,
@@ -139,10 +160,13 @@ impl Chooser<'_> {
         })
     }
 
-    /// The most accurate plan within the budgets.
+    /// The most accurate plan within the budgets, and within its limits if that is not much worse.
     fn affordable(&self, wish: &Wish) -> Result<Possible, PlanError> {
         let budget = wish.time_budget.unwrap_or(f64::INFINITY);
-        if let Some(plan) = self.best(|plan| plan.cost.seconds <= budget) {
+        let [kept, broken] =
+            [Limits::Kept, Limits::Broken].map(|limits| self.best(|plan| plan.cost.seconds <= budget, limits));
+        let as_good = |kept: &Possible| broken.as_ref().is_none_or(|broken| kept.error <= NEXT * broken.error);
+        if let Some(plan) = kept.filter(as_good).or_else(|| broken.clone()) {
             return Ok(plan);
         }
         let least = self.families.iter().filter_map(|family| self.possible(family, self.range[0]));
@@ -177,14 +201,17 @@ impl Chooser<'_> {
     }
 
     /// The cheapest plan with at most this error.
-    fn cheapest(&self, error: f64) -> Option<Possible> {
-        let least = self.families.iter().filter_map(|family| self.least(family, |plan| plan.error <= error));
+    fn cheapest(&self, error: f64, limits: Limits) -> Option<Possible> {
+        let enough = |plan: &Possible| plan.error <= error && limits.allow(plan);
+        let least = self.families.iter().filter_map(|family| self.least(family, enough));
         least.min_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds))
     }
 
     /// The plan with the least error of those allowed, which are those with few particles.
-    fn best(&self, allowed: impl Fn(&Possible) -> bool) -> Option<Possible> {
+    /// (More particles are never beyond a limit that fewer keep.)
+    fn best(&self, allowed: impl Fn(&Possible) -> bool, limits: Limits) -> Option<Possible> {
         let most = self.families.iter().filter_map(|family| self.most(family, &allowed));
+        let most = most.filter(|plan| limits.allow(plan));
         most.min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
@@ -259,7 +286,14 @@ impl Chooser<'_> {
         let [at_start, at_end] = halvings::steps_over_planned(&gas, &resolution);
         let mean = 0.5 * (initial * at_start + particles * at_end);
         let cost = Cost::of(family.method, &resolution, mean, density, self.rate);
-        Some(Possible { time_step: longer.then_some(resolution.time_step), ..self.forecast(family, candidate, cost) })
+        Some(Possible {
+            time_step: longer.then_some(resolution.time_step),
+            beyond: kept::beyond(
+                &kept::Wanted { scene, measured, amounts, method: family.method, particles, cap },
+                &resolution,
+            ),
+            ..self.forecast(family, candidate, cost)
+        })
     }
 
     /// `None` if it is impossible. With the step of a scene that asks for none where a longer one is more than collisions or
@@ -288,7 +322,7 @@ impl Chooser<'_> {
     fn forecast(&self, family: &Family, candidate: Candidate, cost: Cost) -> Possible {
         let columns = self.forecaster.columns(&candidate);
         let error = worst(&columns).map_or(0.0, |column| column.error);
-        Possible { family: *family, candidate, time_step: None, columns, error, cost }
+        Possible { family: *family, candidate, time_step: None, columns, error, cost, beyond: Vec::new() }
     }
 
     /// The scene's request with the choices in it.

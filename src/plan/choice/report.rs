@@ -1,11 +1,10 @@
 //! The choice in words: what was chosen, what it is worth and costs, what the next plans would be, and why.
 
 use super::holes::Holes;
-use super::{AIM, Chooser, NEXT, Possible};
-use crate::plan::forecast::{Alternative, Forecast};
-use crate::plan::forecast::{Cause, ColumnForecast, worst};
+use super::{AIM, Chooser, Limits, NEXT, Possible};
+use crate::plan::forecast::{Alternative, Cause, ColumnForecast, Forecast, worst};
 use crate::plan::text::{grouped, significant};
-use crate::plan::{Plan, Reason};
+use crate::plan::{Plan, Quantity, Reason};
 use crate::scene::{Method, ModelRequest, Wish};
 
 /// The request to plan, and what to add to its plan.
@@ -94,6 +93,9 @@ impl Choice {
                 reasons.push(own.clone());
             }
         }
+        // What a hole that is not resolved is off by is in the forecast, and in the reason of the hole.
+        let counted = |text: &String| text.starts_with("opening `") && text.contains(Quantity::Knudsen.name());
+        plan.warnings.retain(|text| !counted(text));
         plan.reasons = reasons;
         plan.forecast = Some(self.forecast.clone());
     }
@@ -176,8 +178,10 @@ fn alternative(plan: &Possible) -> Alternative {
 pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choice {
     let wish = &chooser.scene.model.wish;
     // Half a plan's cost is no other plan.
-    let cheaper = chooser.cheapest(NEXT * chosen.error).filter(|plan| plan.cost.seconds < 0.8 * chosen.cost.seconds);
-    let better = chooser.cheapest(chosen.error / NEXT).filter(|plan| plan.error < chosen.error);
+    let limits = if chosen.beyond.is_empty() { Limits::Kept } else { Limits::Broken };
+    let cheaper =
+        chooser.cheapest(NEXT * chosen.error, limits).filter(|plan| plan.cost.seconds < 0.8 * chosen.cost.seconds);
+    let better = chooser.cheapest(chosen.error / NEXT, limits).filter(|plan| plan.error < chosen.error);
     let mut reasons = Vec::new();
     let aim = percent(AIM);
     let asked = match wish.accuracy {
@@ -218,6 +222,7 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
         )
     };
     reasons.push(reason("predicted cost", duration(chosen.cost.seconds), cost));
+    reasons.extend(limits_reason(&chosen, wish));
     reasons.push(methods);
     reasons.push(method_reason(chooser, &chosen));
     if chosen.candidate.method != Method::ControlVolume {
@@ -248,6 +253,20 @@ pub fn choice(chooser: &Chooser<'_>, chosen: Possible, methods: Reason) -> Choic
     let aimed = wish.accuracy.map_or(chosen.error, |accuracy| AIM * accuracy);
     let holes = Holes::new(chooser.scene, &chosen, aimed);
     Choice { request, forecast, reasons, holes, hole_notes: Vec::new() }
+}
+
+/// What the plan will warn of, where no other does better.
+fn limits_reason(chosen: &Possible, wish: &Wish) -> Option<Reason> {
+    if chosen.beyond.is_empty() {
+        return None;
+    }
+    let names: Vec<&str> = chosen.beyond.iter().map(|quantity| quantity.name()).collect();
+    let budget = match (wish.particle_budget, wish.time_budget) {
+        (None, None) => "with what [model] asks for",
+        _ => "within the budget",
+    };
+    let why = format!("no plan {budget} that is about as good keeps all limits: warned of below");
+    Some(reason("limits not kept", names.join(", "), why))
 }
 
 /// How many rounds, and why not the other number.
@@ -324,6 +343,8 @@ fn occupancy_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Option<Reason> 
     let diameter = crate::gas::kinetics::diameter(density, occupancy);
     let why = if occupancy > 0.12 {
         format!("occupancy {occupancy}: sharper fronts for the cost than more particles")
+    } else if occupancy < 0.12 {
+        format!("occupancy {}: more would crowd the densest chamber", significant(occupancy))
     } else {
         format!("occupancy {occupancy}: more buys almost no resolution")
     };

@@ -157,7 +157,7 @@ fn sources(scene: &Scene, outlook: &Outlook, group: &[usize]) -> Vec<Source> {
 
 fn heated(scene: &Scene, outlook: &Outlook, group: &[usize]) -> Vec<HeatedWall> {
     let walls = outlook.heated.iter().filter_map(|seen| {
-        let heat = scene.walls[seen.wall].heat?;
+        let heat = scene.surface_model(seen.surface).heat?;
         Some(HeatedWall { chamber: group[seen.chamber], area: seen.area, heat })
     });
     walls.collect()

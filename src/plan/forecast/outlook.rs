@@ -1,6 +1,8 @@
 //! What a forecast needs to know of the geometry, beside what every plan does: what the columns of the history see,
 //! where gas flows in, and which chambers touch without a wall between them.
 
+use crate::scene::SurfaceId;
+
 /// Measured where the scene wishes an accuracy or has a budget.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outlook {
@@ -12,7 +14,7 @@ pub struct Outlook {
     pub probes: Vec<SeenProbe>,
     /// Pairs of chambers between which a part of the border is neither wall nor a hole of one.
     pub borders: Vec<[usize; 2]>,
-    /// Walls that keep a temperature.
+    /// Surfaces that keep a temperature.
     pub heated: Vec<SeenHeat>,
     /// Where vents stand for holes, what that makes of the pressure of each chamber; else empty.
     pub modelled: Vec<Modelled>,
@@ -45,7 +47,7 @@ pub struct SeenProbe {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenHeat {
-    pub wall: usize,
+    pub surface: SurfaceId,
     pub chamber: usize,
     /// m2.
     pub area: f64,

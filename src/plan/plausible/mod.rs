@@ -4,17 +4,21 @@
 //! A scene may mean it, so these are warnings. What is meant now and then is let pass: a chamber of near vacuum beside gas of
 //! ordinary pressure or before an inflow, free flight at any pressure, a vent into vacuum.
 
+mod places;
 mod shapes;
+mod systems;
+mod times;
 mod units;
 
 use super::Measured;
 use super::amounts::Contents;
-use super::text::{grouped, significant};
+use super::text::significant;
 use crate::scene::{
     Course, Curve, Dimension, GAS_CONSTANT, Gas, HeatCapacity, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape,
-    UnitSystem, Vent, VentFlow, Wall,
+    SurfaceId, UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
-use units::{as_written, atmosphere_in, likely};
+pub use times::{long_run, many_steps};
+use units::{as_written, atmosphere_in, likely, question};
 
 /// What a number is of, where that decides its range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,6 +33,8 @@ pub enum Kind {
     HeatTransfer,
     Speed,
     Discharge,
+    /// Of what gas flows through.
+    Area,
     EndTime,
     Steps,
 }
@@ -58,9 +64,10 @@ pub const RANGES: &[Range] = &[
     range(Kind::MolarMass, Dimension::MolarMass, [1e-3, 0.5], 0.029),
     range(Kind::MolarHeat, Dimension::MolarHeat, [0.0, 20.0 * GAS_CONSTANT], 29.0),
     range(Kind::MassFlow, Dimension::MassFlow, [0.0, 100.0], 1.0),
-    range(Kind::HeatTransfer, Dimension::HeatTransfer, [0.0, 1e5], 50.0),
+    range(Kind::HeatTransfer, Dimension::HeatTransfer, [0.1, 1e5], 50.0),
     range(Kind::Speed, Dimension::Velocity, [0.0, 1e4], 300.0),
     range(Kind::Discharge, Dimension::Pure, [0.0, 1.0], 0.7),
+    range(Kind::Area, Dimension::Area, [1e-8, 1.0], 5e-4),
     range(Kind::EndTime, Dimension::Time, [1e-6, 100.0], 0.02),
     range(Kind::Steps, Dimension::Pure, [0.0, 1e8], 1e4),
 ];
@@ -105,7 +112,7 @@ impl Named<'_> {
     /// A warning if the value, SI, is beyond the range of its kind.
     fn check(&self, kind: Kind, si: f64) -> Option<String> {
         let range = range_of(kind);
-        let question = likely(range, si, self.units).map_or(String::new(), |unit| format!(": is it in {unit}?"));
+        let question = question(&likely(range, si, self.units));
         (!range.holds(si)).then(|| self.beyond(range, si, &question))
     }
 
@@ -125,9 +132,11 @@ impl Named<'_> {
 /// All that is beyond its range by the scene alone, in its order: known also where no plan can be made of it, often for that reason.
 pub fn of_scene(scene: &Scene) -> Vec<String> {
     let named = |subject: String, key: &'static str| Named { subject, key, units: scene.units };
-    let mut found = vec![named("the run".into(), "end_time").check(Kind::EndTime, scene.end_time)];
+    let mut found =
+        vec![systems::other_system(scene), named("the run".into(), "end_time").check(Kind::EndTime, scene.end_time)];
     found.extend(scene.gases.iter().flat_map(|gas| of_gas(scene, gas)));
-    found.extend(scene.walls.iter().flat_map(|wall| of_wall(scene, wall)));
+    found.extend(scene.walls.iter().map(|wall| of_wall(scene, wall)));
+    found.extend(scene.surface_ids().flat_map(|id| of_surface(scene, id)));
     for chamber in &scene.chambers {
         let subject = format!("chamber `{}`", chamber.name);
         found.push(chamber_pressure(scene, &named(subject.clone(), "pressure"), chamber.pressure));
@@ -140,10 +149,10 @@ pub fn of_scene(scene: &Scene) -> Vec<String> {
         let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
         named(subject, "velocity").check(Kind::Speed, most(curve))
     }));
-    found.into_iter().flatten().chain(shapes::doubts(scene)).collect()
+    found.into_iter().flatten().chain(times::doubts(scene)).chain(shapes::doubts(scene)).collect()
 }
 
-/// The same, and by its meshes and all its gas at the end.
+/// The same, and by its meshes, where its walls and its gas are, and all its gas at the end.
 pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String> {
     let mut found = of_scene(scene);
     for (wall, measured) in scene.walls.iter().zip(&measured.walls).filter(|(wall, _)| is_mesh(wall)) {
@@ -156,24 +165,8 @@ pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String>
         let question = ": are `mass_flow` and the walls in the units of the scene?";
         found.push(all.beyond(range, end.pressure, question));
     }
+    found.extend(places::doubts(scene, measured));
     found
-}
-
-/// What is odd about the number of steps of a run of particles.
-pub fn many_steps(scene: &Scene, steps: f64) -> Option<String> {
-    let range = range_of(Kind::Steps);
-    let shown = |si: f64| {
-        format!("{} {}", as_written(si / scene.units.factor(Dimension::Time)), scene.units.symbol(Dimension::Time))
-    };
-    let step = scene.model.time_step.map_or(String::new(), |step| format!(" or `time_step` {}", shown(step)));
-    (!range.holds(steps)).then(|| {
-        format!(
-            "the run: {} steps, usual is {}: is `end_time` {}{step} in another unit?",
-            grouped(steps as u64),
-            range.words(scene.units),
-            shown(scene.end_time)
-        )
-    })
 }
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
@@ -196,8 +189,7 @@ fn temperature(named: &Named<'_>, kelvin: f64) -> Option<String> {
     (!range.holds(kelvin)).then(|| named.beyond(range, kelvin, &question))
 }
 
-fn of_wall(scene: &Scene, wall: &Wall) -> Vec<Option<String>> {
-    let named = |key| Named { subject: format!("wall `{}`", wall.name), key, units: scene.units };
+fn of_wall(scene: &Scene, wall: &Wall) -> Option<String> {
     let longest = match &wall.shape {
         Shape::Box { min, max, .. } => Some(largest((0..3).map(|axis| max[axis] - min[axis]))),
         Shape::Cylinder { radius, height, .. } => Some(height.max(2.0 * radius)),
@@ -205,14 +197,25 @@ fn of_wall(scene: &Scene, wall: &Wall) -> Vec<Option<String>> {
         Shape::Plane { size, .. } => Some(size[0].max(size[1])),
         Shape::Mesh { .. } => None,
     };
-    let coefficient = wall.heat.and_then(|heat| match heat.transfer {
+    longest.and_then(|longest| extent(scene.units, wall, longest))
+}
+
+fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {
+    let Some(heat) = scene.surface_model(id).heat else { return Vec::new() };
+    let own = scene.walls[id.wall].surface.heat.filter(|_| id.part.is_some());
+    let subject = format!("wall `{}`", scene.surface_name(id));
+    let named = |key| Named { subject: subject.clone(), key, units: scene.units };
+    // What a part has from its wall is told of the wall.
+    let differs = |own: Option<f64>, value: f64| own != Some(value);
+    let coefficient = |heat: WallHeat| match heat.transfer {
         HeatTransfer::Coefficient(coefficient) => Some(coefficient),
         HeatTransfer::Accommodation(_) => None,
-    });
+    };
+    let kept = Some(heat.temperature).filter(|&kept| differs(own.map(|own| own.temperature), kept));
+    let given = coefficient(heat).filter(|&given| differs(own.and_then(coefficient), given));
     vec![
-        longest.and_then(|longest| extent(scene.units, wall, longest)),
-        wall.heat.and_then(|heat| temperature(&named("temperature"), heat.temperature)),
-        coefficient.and_then(|coefficient| named("heat_transfer").check(Kind::HeatTransfer, coefficient)),
+        kept.and_then(|kelvin| temperature(&named("temperature"), kelvin)),
+        given.filter(|given| *given > 0.0).and_then(|given| named("heat_transfer").check(Kind::HeatTransfer, given)),
     ]
 }
 
@@ -226,7 +229,7 @@ fn extent(units: UnitSystem, wall: &Wall, longest: f64) -> Option<String> {
     if range.holds(longest) {
         return None;
     }
-    let question = match likely(range, longest, units) {
+    let question = match likely(range, longest, units).first() {
         None => String::new(),
         Some(unit) if is_mesh(wall) => {
             let scale = units::factor_of(unit, Dimension::Length) / units.factor(Dimension::Length);
@@ -269,41 +272,38 @@ fn of_orifice(scene: &Scene, orifice: &Orifice) -> Vec<Option<String>> {
     let flow = most(&orifice.mass_flow);
     let coldest = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let hottest = most(&orifice.temperature);
-    let of_time = |time: f64| {
-        let units = scene.units;
-        format!("{} {}", as_written(time / units.factor(Dimension::Time)), units.symbol(Dimension::Time))
-    };
-    let ends = orifice.mass_flow.points.last().map_or(0.0, |point| point[0]);
-    let late = (ends > FAR_BEYOND * scene.end_time).then(|| {
-        format!(
-            "orifice `{}`: its mass flow goes on until {}, {} times `end_time` {}: is `end_time` in another unit?",
-            orifice.name,
-            of_time(ends),
-            significant(ends / scene.end_time),
-            of_time(scene.end_time)
-        )
-    });
     let speed = match orifice.jet.map(|jet| jet.speed) {
         Some(JetSpeed::Velocity(speed)) => slow(&named("jet velocity"), speed),
         _ => None,
     };
     vec![
+        named("area").check(Kind::Area, orifice.area),
+        narrow_cone(orifice),
         named("mass_flow up to").check(Kind::MassFlow, flow).or_else(|| driven(scene, orifice, flow)),
         temperature(&named("temperature"), if range_of(Kind::Temperature).holds(hottest) { coldest } else { hottest }),
-        late,
         speed,
     ]
 }
 
-/// How many times the length of a run a curve may go on.
-const FAR_BEYOND: f64 = 100.0;
+/// Radians of the half angle of a cone that is given in degrees: nobody spreads a jet by less than one.
+fn narrow_cone(orifice: &Orifice) -> Option<String> {
+    let degrees = orifice.jet?.cone_angle.to_degrees();
+    (degrees > 0.0 && degrees < 1.0).then(|| {
+        format!(
+            "orifice `{}`: cone_angle {} degrees, usual is 0, or at least 1: is it in radians? {} degrees then",
+            orifice.name,
+            as_written(degrees),
+            significant(degrees.to_degrees())
+        )
+    })
+}
+
 /// m/s: no jet that anybody models is slower.
 const SLOW: f64 = 1.0;
 
 fn slow(named: &Named<'_>, speed: f64) -> Option<String> {
     let range = range_of(Kind::Speed);
-    let unit = likely(&Range { least: SLOW, ..*range }, speed, named.units);
-    let question = unit.map_or(String::new(), |unit| format!(": is it in {unit}?"));
+    let question = question(&likely(&Range { least: SLOW, ..*range }, speed, named.units));
     (speed < SLOW || !range.holds(speed)).then(|| named.beyond(&Range { least: SLOW, ..*range }, speed, &question))
 }
 
@@ -346,6 +346,8 @@ fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
         VentFlow::LeakVelocity(curve) => named("leak_velocity").check(Kind::Speed, most(curve)),
     };
     vec![
+        vent.area.and_then(|area| named("area").check(Kind::Area, area)),
+        absolute_points(vent),
         // Vacuum is no mistake.
         external
             .atmosphere(outside)
@@ -353,4 +355,16 @@ fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
         if vent.opening_pressure > 0.0 { opening.check(Kind::Pressure, vent.opening_pressure) } else { None },
         flow,
     ]
+}
+
+/// Points of a curve over the pressure above the external one that begin about there.
+fn absolute_points(vent: &Vent) -> Option<String> {
+    let (VentFlow::DischargeByPressure(curve) | VentFlow::LeakVelocity(curve)) = &vent.flow else { return None };
+    let first = curve.points.first()?[0];
+    (curve.points.len() > 1 && first > 0.0 && (0.9..1.1).contains(&(first / vent.external_pressure))).then(|| {
+        format!(
+            "vent `{}`: its curve begins at about the external pressure: are its pressures absolute? They are those above the external one",
+            vent.name
+        )
+    })
 }

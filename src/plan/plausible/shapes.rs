@@ -2,10 +2,13 @@
 //! radius, a vent through exactly four times the disc that it is given.
 
 use super::units::as_written;
-use crate::scene::{Dimension, Region, Scene, Shape, Vent};
+use crate::scene::{Dimension, GasSide, Region, Scene, Shape, Vent};
 
 /// How near to 1 the ratio of two lengths is that were meant to be the same number.
 const SAME: f64 = 1e-6;
+
+/// m: of 2^28 particles in a cubic millimetre.
+const SMALLEST_PARTICLE: f64 = 1e-7;
 
 fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
@@ -27,7 +30,30 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
             wall.name
         ))
     });
-    doubled.chain(scene.vents.iter().filter_map(|vent| wide_vent(scene, vent))).collect()
+    let vents = scene.vents.iter().filter_map(|vent| wide_vent(scene, vent));
+    doubled.chain(vents).chain(two_insides(scene)).chain(molecules(scene)).collect()
+}
+
+/// Gas inside of several walls is only where all of them enclose it.
+fn two_insides(scene: &Scene) -> Option<String> {
+    let inside: Vec<String> =
+        scene.walls.iter().filter(|wall| wall.gas == GasSide::Inside).map(|wall| format!("`{}`", wall.name)).collect();
+    (inside.len() > 1).then(|| {
+        format!(
+            "walls {}: all have the gas inside, so gas is only where all of them enclose it: a body in the gas has `gas = \"outside\"`",
+            inside.join(", ")
+        )
+    })
+}
+
+/// The diameter of particles, each of which stands for very many molecules, m.
+fn molecules(scene: &Scene) -> Option<String> {
+    let diameter = scene.model.diameter.filter(|diameter| *diameter < SMALLEST_PARTICLE)?;
+    Some(format!(
+        "the model: diameter {} {}: is it of molecules? That of particles follows from their number: leave it out",
+        as_written(diameter / scene.units.factor(Dimension::Length)),
+        scene.units.symbol(Dimension::Length)
+    ))
 }
 
 /// The radius of the wall, if the region has the same place and twice that.

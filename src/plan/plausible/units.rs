@@ -8,6 +8,9 @@ const UNITS: &[(Dimension, &str, f64)] = &[
     (Dimension::Length, "m", 1.0),
     (Dimension::Length, "mm", 1e-3),
     (Dimension::Length, "cm", 1e-2),
+    (Dimension::Area, "m2", 1.0),
+    (Dimension::Area, "mm2", 1e-6),
+    (Dimension::Area, "cm2", 1e-4),
     (Dimension::Pressure, "Pa", 1.0),
     (Dimension::Pressure, "kPa", 1e3),
     (Dimension::Pressure, "bar", 1e5),
@@ -36,17 +39,30 @@ pub fn factor_of(unit: &str, dimension: Dimension) -> f64 {
     UNITS.iter().find(|known| known.0 == dimension && known.1 == unit).map_or(1.0, |known| known.2)
 }
 
-/// The unit in which the number that was written for `si` would lie within the range, nearest to what is usual.
-pub fn likely(range: &Range, si: f64, units: UnitSystem) -> Option<&'static str> {
+/// How much farther from what is usual than the nearest another unit may lie to be named beside it, in powers of ten: pressures in
+/// hPa and kPa are both common.
+const AS_LIKELY: f64 = 0.4;
+
+/// The units in which the number that was written for `si` would lie within the range, by how near to what is usual: those that
+/// are about as likely as the first.
+pub fn likely(range: &Range, si: f64, units: UnitSystem) -> Vec<&'static str> {
     let own = units.factor(range.dimension);
     let written = si / own;
     let distance = |factor: f64| libm::fabs(libm::log10(written * factor / range.usual));
-    UNITS
+    let mut fitting: Vec<(f64, &'static str)> = UNITS
         .iter()
         .filter(|(dimension, _, factor)| *dimension == range.dimension && libm::fabs(factor / own - 1.0) > 1e-9)
         .filter(|(_, _, factor)| written > 0.0 && range.holds(written * factor))
-        .min_by(|a, b| distance(a.2).total_cmp(&distance(b.2)))
-        .map(|known| known.1)
+        .map(|known| (distance(known.2), known.1))
+        .collect();
+    fitting.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = fitting.first().map_or(0.0, |first| first.0);
+    fitting.into_iter().filter(|(distance, _)| distance - nearest < AS_LIKELY).map(|known| known.1).collect()
+}
+
+/// ": is it in kPa or hPa (mbar)?", or nothing.
+pub fn question(likely: &[&str]) -> String {
+    if likely.is_empty() { String::new() } else { format!(": is it in {}?", likely.join(" or ")) }
 }
 
 /// The standard atmosphere, Pa, and how far from it its rounded digits are (1.013, 1.0133).

@@ -24,6 +24,7 @@ prop_compose! {
         axis in unit_vector(),
         heat in prop::option::of((1.0..1e4f64, prop::bool::ANY, 0.0..=1.0f64)),
         friction in prop::option::of(0.0..=1.0f64),
+        part in prop::option::of((0usize..6, 0.0..=1.0f64)),
         state in (1e-3..1e9f64, 1.0..1e4f64),
         flow in prop::collection::vec((1e-6..1.0f64, 0.0..10.0f64), 2..9),
         jet in prop::option::of((prop::bool::ANY, 1e-3..20.0f64, 0.0..89.9f64)),
@@ -52,6 +53,10 @@ prop_compose! {
         }
         if let Some(share) = friction {
             text += &format!("friction = {share:?}\n");
+        }
+        if let Some((face, share)) = part {
+            let face = ["-x", "+x", "-y", "+y", "-z", "+z"][face];
+            text += &format!("[[wall.part]]\nface = '{face}'\nfriction = {share:?}\n");
         }
         let axis = if axis.iter().all(|&c| c == 0.0) { [1.0, 0.0, 0.0] } else { axis };
         text += &format!(

@@ -168,7 +168,7 @@ impl Account {
     /// The energy that walls took, also as work, and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
     /// over them.
     fn lost(&self, tallies: &Tallies) -> (f64, f64) {
-        let coats = tallies.coats.iter().map(|coat| (coat.energy, coat.tallied));
+        let coats = tallies.surface_models.iter().map(|coat| (coat.energy, coat.tallied));
         let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
         let (energy, tallied) = coats
             .chain(vents)
@@ -349,7 +349,7 @@ impl Account {
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
             work_by_walls: (!model.moving.is_empty()).then(|| averages.total_work()),
-            heat_to_walls: model.scene.walls.iter().any(|wall| wall.heat.is_some()).then(|| averages.total_heat()),
+            heat_to_walls: model.scene.has_heat().then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
                 .collect(),

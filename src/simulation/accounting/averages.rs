@@ -57,8 +57,15 @@ pub struct SurfaceState {
 pub struct WallState {
     /// J since the start of the run; negative if the wall gave more.
     pub heat: f64,
-    /// W/m2 in the window.
+    /// W/m2 in the window; 0 where its parts leave nothing of a wall.
     pub heat_flux: f64,
+}
+
+impl WallState {
+    /// `heat` since the start and `taken` in a window of this duration, s, by this area, m2.
+    pub fn new(heat: f64, taken: f64, area: f64, duration: f64) -> WallState {
+        WallState { heat, heat_flux: if area > 0.0 { taken / (area * duration) } else { 0.0 } }
+    }
 }
 
 /// What left through a vent.
@@ -258,7 +265,7 @@ impl Averages {
     }
 
     fn add_losses(&mut self, tallies: &Tallies, wanted: &[VentTarget]) {
-        for (heat, coat) in self.heat.iter_mut().zip(&tallies.coats) {
+        for (heat, coat) in self.heat.iter_mut().zip(&tallies.surface_models) {
             for total in heat {
                 *total += i128::from(coat.energy);
             }
@@ -413,7 +420,7 @@ impl Averages {
 
     fn wall(&self, coats: &[usize], area: f64, duration: f64) -> WallState {
         let sum = |since: usize| coats.iter().map(|&coat| self.heat[coat][since]).sum::<i128>() as f64;
-        WallState { heat: sum(1) * self.energy_unit(), heat_flux: sum(0) * self.energy_unit() / (area * duration) }
+        WallState::new(sum(1) * self.energy_unit(), sum(0) * self.energy_unit(), area, duration)
     }
 
     fn mass(&self, passed: &Passed) -> f64 {

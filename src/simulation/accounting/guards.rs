@@ -287,7 +287,7 @@ mod tests {
             counters: Counters { lost, sampled, ..Counters::default() },
             zones: Vec::new(),
             surfaces: Vec::new(),
-            coats: Vec::new(),
+            surface_models: Vec::new(),
             vents: Vec::<VentSum>::new(),
             works: Vec::new(),
             blocks,

@@ -16,7 +16,7 @@ use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer};
-use crate::subdomain::{GpuCoat, GpuVent, Scales, Tables, Tallies, ZoneSum};
+use crate::subdomain::{GpuSurfaceModel, GpuVent, Scales, Tables, Tallies, ZoneSum};
 
 /// A vent pays what it owes within so many intervals of its flow, or while so many particles leave.
 const PAID_IN: f64 = 8.0;
@@ -260,8 +260,9 @@ impl<'a> SurfaceStates<'a> {
                 let (beta, index) = (betas[vent] as f32, vent as u32);
                 tables.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
             }
+            let surface = model.scene.surface_model(coat.surface);
             let (mut thermal, mut share) = (0.0, 0.0);
-            if let Some(heat) = &model.scene.walls[coat.wall].heat {
+            if let Some(heat) = &surface.heat {
                 thermal = GAS_CONSTANT * heat.temperature / heaviest;
                 share = match self.state.current.chambers.get(coat.chamber) {
                     Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
@@ -272,10 +273,10 @@ impl<'a> SurfaceStates<'a> {
                     self.state.most_asked[index] = self.state.most_asked[index].max(share);
                 }
             }
-            tables.coats.push(GpuCoat {
+            tables.surface_models.push(GpuSurfaceModel {
                 thermal: thermal as f32,
                 accommodation: share.min(1.0) as f32,
-                friction: model.scene.walls[coat.wall].friction as f32,
+                friction: surface.friction as f32,
                 first_vent,
                 end_vent: tables.vents.len() as u32,
             });
@@ -322,10 +323,10 @@ impl<'a> SurfaceStates<'a> {
         let mut beyond: Vec<(String, f64)> = Vec::new();
         for (coat, &asked) in self.model.coats.coats.iter().zip(&self.state.most_asked) {
             if asked > 1.0 {
-                let name = &self.model.scene.walls[coat.wall].name;
-                match beyond.iter_mut().find(|(known, _)| known == name) {
+                let name = self.model.scene.surface_name(coat.surface);
+                match beyond.iter_mut().find(|(known, _)| *known == name) {
                     Some((_, most)) => *most = most.max(asked),
-                    None => beyond.push((name.clone(), asked)),
+                    None => beyond.push((name, asked)),
                 }
             }
         }
@@ -359,7 +360,7 @@ mod tests {
                 counters: Counters::default(),
                 zones: vec![zone; 2],
                 surfaces: Vec::new(),
-                coats: Vec::new(),
+                surface_models: Vec::new(),
                 vents: vec![VentSum { left: of_gas, ..VentSum::default() }],
                 works: Vec::new(),
                 blocks: Vec::new(),

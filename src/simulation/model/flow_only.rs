@@ -119,7 +119,10 @@ impl Cavity {
     /// The box without its holes, with gas inside alone.
     fn closed(&self, wall: &Wall) -> Wall {
         let shape = Shape::Box { min: self.min, max: self.max, thickness: None, holes: Vec::new() };
-        Wall { shape, gas: GasSide::Inside, ..wall.clone() }
+        let mut closed = Wall { shape, gas: GasSide::Inside, ..wall.clone() };
+        // The outside of the shell is behind the holes.
+        closed.parts.retain(|part| part.face != Face::Outside);
+        closed
     }
 
     fn part(&self, whole: &Whole<'_>, holes: &[&Hole]) -> Result<Part, String> {

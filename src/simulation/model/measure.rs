@@ -1,6 +1,7 @@
 //! What the plan needs to know of the walls.
 
 use super::moving::{Moving, extent};
+use super::outlook::is_open_to_empty;
 use super::places::{along, chamber_of};
 use super::surface_models::Coats;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
@@ -12,7 +13,9 @@ pub fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving, 
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     let Narrowest { gap, body } = vessel.narrowest();
+    let empty = vessel.gas_volume() - chamber_volumes.iter().sum::<f64>();
     Measured {
+        open_to_empty: empty > 1e-3 * vessel.gas_volume() && is_open_to_empty(scene, vessel),
         gas_volume: vessel.gas_volume(),
         motion: moving.measured(&chamber_volumes),
         chamber_volumes,
@@ -24,14 +27,15 @@ pub fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving, 
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
         probe_volumes: probe_volumes.to_vec(),
         vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
-        heated: coats.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect(),
+        coated: coats.coats.iter().map(|coat| (coat.surface, coat.chamber)).collect(),
         walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
 }
 
 pub fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {
     let (min, max) = extent(vessel, |of, _| of == index);
-    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity }
+    let outside = vessel.outside_share(index);
+    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity, outside }
 }
 
 /// Holes of walls that join two chambers.

@@ -29,13 +29,13 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coat
         let chamber = chamber_of(scene, vessel, middle).unwrap_or(scene.chambers.len() - 1);
         SeenProbe { chamber, volume: vessel.gas_volume_in(&probe.region) }
     });
-    let heated = coats.coats.iter().filter(|coat| scene.walls[coat.wall].heat.is_some());
+    let heated = coats.coats.iter().filter(|coat| scene.surface_model(coat.surface).heat.is_some());
     Outlook {
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         surfaces: surfaces.collect(),
         probes: probes.collect(),
         borders: borders(scene, vessel, measured),
-        heated: heated.map(|coat| SeenHeat { wall: coat.wall, chamber: coat.chamber, area: coat.area }).collect(),
+        heated: heated.map(|coat| SeenHeat { surface: coat.surface, chamber: coat.chamber, area: coat.area }).collect(),
         modelled: Vec::new(),
     }
 }
@@ -73,6 +73,23 @@ fn borders(scene: &Scene, vessel: &Vessel, measured: &Measured) -> Vec<[usize; 2
         measured.openings.iter().chain(declared).filter(joins).map(|opening| opening.area).sum()
     };
     open.into_iter().filter(|&(pair, area)| area > OPEN * holes(pair)).map(|(pair, _)| pair).collect()
+}
+
+/// Whether chambers border, over more than the holes of walls, on gas space that is in no chamber.
+pub fn is_open_to_empty(scene: &Scene, vessel: &Vessel) -> bool {
+    let mut open = 0.0;
+    for (index, chamber) in scene.chambers.iter().enumerate() {
+        let Some(region) = &chamber.region else { continue };
+        let lift = 1e-4 * libm::cbrt(region_volume(region));
+        for (point, outward, area) in surface_of(region) {
+            let [inside, outside] = [-lift, lift].map(|distance| (point + distance * outward).to_array());
+            let leaves = chamber_of(scene, vessel, inside) == Some(index) && vessel.is_gas(outside);
+            if leaves && chamber_of(scene, vessel, outside).is_none() {
+                open += area;
+            }
+        }
+    }
+    open > OPEN * vessel.holes.iter().map(|hole| hole.area).sum::<f64>()
 }
 
 /// Points of the surface of a region with the unit normal outwards and the area that each stands for, m2.

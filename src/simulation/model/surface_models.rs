@@ -6,7 +6,7 @@ use super::places::chamber_of;
 use glam::DVec3;
 
 use crate::geometry::Vessel;
-use crate::scene::{Chamber, Disc, Scene, Vent};
+use crate::scene::{Chamber, Disc, Scene, SurfaceId, Vent};
 
 const NOBODY: u32 = u32::MAX;
 /// Points of a triangle that are asked for the chamber on its gas side: a lattice of this many along each side.
@@ -27,7 +27,7 @@ pub struct Coats {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coat {
-    pub wall: usize,
+    pub surface: SurfaceId,
     pub chamber: usize,
     /// m2.
     pub area: f64,
@@ -46,17 +46,18 @@ impl Coats {
     /// # Errors
     /// If a vent has no place, or none can say which chamber it empties.
     pub fn new(scene: &Scene, vessel: &Vessel) -> Result<Coats, ModelError> {
-        let mirrors = |wall: usize| scene.walls[wall].heat.is_none() && scene.walls[wall].friction == 0.0;
-        let coated = |wall: usize| !mirrors(wall) || scene.vents.iter().any(|vent| vent.wall == wall);
-        if !(0..scene.walls.len()).any(coated) {
+        if scene.has_mirrors_only() && scene.vents.is_empty() {
             return Ok(Coats::default());
         }
+        let mirrors = |id: SurfaceId| scene.surface_model(id).is_mirror();
+        let has_vents = |wall: usize| scene.vents.iter().any(|vent| vent.wall == wall);
         let chambers: Vec<Option<usize>> = vessel
             .triangles
             .iter()
             .map(|triangle| {
                 let wall = triangle.wall as usize;
-                coated(wall).then(|| chamber_before(scene, vessel, corners(vessel, triangle.vertices)))
+                let coated = !mirrors(scene.surface_of(wall, triangle.face)) || has_vents(wall);
+                coated.then(|| chamber_before(scene, vessel, corners(vessel, triangle.vertices)))
             })
             .collect();
         let places = places(scene, vessel, &chambers)?;
@@ -68,16 +69,17 @@ impl Coats {
                 continue;
             };
             let wall = triangle.wall as usize;
+            let surface = scene.surface_of(wall, triangle.face);
             let vents: Vec<usize> = (0..scene.vents.len())
                 .filter(|&index| places[index].chamber == chamber && on_face(&scene.vents[index], wall, triangle.face))
                 .collect();
-            if mirrors(wall) && vents.is_empty() {
+            if mirrors(surface) && vents.is_empty() {
                 of_triangle.push(NOBODY);
                 continue;
             }
-            let same = |coat: &Coat| coat.wall == wall && coat.chamber == chamber && coat.vents == vents;
+            let same = |coat: &Coat| coat.surface == surface && coat.chamber == chamber && coat.vents == vents;
             let index = coats.iter().position(same).unwrap_or_else(|| {
-                coats.push(Coat { wall, chamber, area: 0.0, vents: vents.clone() });
+                coats.push(Coat { surface, chamber, area: 0.0, vents: vents.clone() });
                 coats.len() - 1
             });
             coats[index].area += area(corners(vessel, triangle.vertices));
@@ -263,7 +265,27 @@ mod tests {
         assert!((coats.vents[0].area - 6.0 * 0.05 * 0.05).abs() < 1e-12 && coats.vents[0].chamber == 0);
         assert_eq!(coats.coats.len(), 1);
         let heated = model(&one, "temperature = 400.0\n").unwrap().coats;
-        assert_eq!(heated.coats.iter().map(|coat| (coat.wall, coat.chamber)).collect::<Vec<_>>(), [(0, 1), (1, 0)]);
+        assert_eq!(
+            heated.coats.iter().map(|coat| (coat.surface.wall, coat.chamber)).collect::<Vec<_>>(),
+            [(0, 1), (1, 0)]
+        );
+    }
+
+    /// A part has its own coat, the wall's others another, whatever a vent on it does; a mirror has none.
+    #[test]
+    fn parts_have_coats_of_their_own() {
+        let part = "[[wall.part]]\nface = \"+x\"\ntemperature = 600.0\n";
+        let found = |vents: &str, wall: &str| {
+            let Model { scene, coats, .. } = model(vents, wall).unwrap();
+            let of =
+                |coat: &Coat| (scene.surface_name(coat.surface), (1e4 * coat.area).round() as u32, coat.vents.len());
+            coats.coats.iter().map(of).collect::<Vec<_>>()
+        };
+        assert_eq!(found("", part), [("outer/+x".to_string(), 400, 0)]);
+        let all = found("", &format!("friction = 0.5\n{part}"));
+        assert_eq!(all.len(), 2);
+        assert!(all.contains(&("outer/+x".into(), 400, 0)) && all.contains(&("outer".into(), 2000, 0)), "{all:?}");
+        assert_eq!(found(&vent("disc", DISC), part), [("outer/+x".to_string(), 400, 1)]);
     }
 
     /// What a probability cannot pass is told before the run.

@@ -54,7 +54,7 @@ impl Tuner {
             Some(fixed) => vec![fixed.clamp(1, rounds)],
             None => powers.chain([rounds]).collect(),
         };
-        let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::All, Ghosts::Asked], |ghosts| vec![ghosts]);
+        let of_ghosts = fixed.ghosts.map_or(vec![Ghosts::All, Ghosts::OnDemand], |ghosts| vec![ghosts]);
         let halos = |&rounds: &u32| of_ghosts.iter().map(move |&ghosts| Halo { rounds, ghosts });
         Tuner::among(of_rounds.iter().flat_map(halos).collect())
     }
@@ -162,7 +162,7 @@ impl Tuner {
 mod tests {
     use super::*;
 
-    const ASKED: HaloOptions = HaloOptions { rounds: None, ghosts: Some(Ghosts::Asked) };
+    const ASKED: HaloOptions = HaloOptions { rounds: None, ghosts: Some(Ghosts::OnDemand) };
 
     /// Runs `intervals`, two under way at once, with a cost for each choice; what was run with.
     fn run(tuner: &mut Tuner, intervals: usize, particles: u64, cost: impl Fn(u32) -> f64) -> Vec<u32> {
@@ -224,13 +224,13 @@ mod tests {
     /// Both ways of the ghosts are tried with each number of rounds, and the better one stays, whichever that is.
     #[test]
     fn ghosts_are_tried_both_ways() {
-        for better in [Ghosts::Asked, Ghosts::All] {
+        for better in [Ghosts::OnDemand, Ghosts::All] {
             let mut tuner = Tuner::new(4, HaloOptions::default());
             let cost =
                 |halo: Halo| (1.0 + 0.01 * f64::from(halo.rounds)) * if halo.ghosts == better { 1.0 } else { 1.5 };
             let ran = run_halos(&mut tuner, 40, 1000, cost);
             for rounds in [1, 2, 4] {
-                for ghosts in [Ghosts::Asked, Ghosts::All] {
+                for ghosts in [Ghosts::OnDemand, Ghosts::All] {
                     assert!(ran[..18].contains(&Halo { rounds, ghosts }), "{rounds} {ghosts:?}: {ran:?}");
                 }
             }

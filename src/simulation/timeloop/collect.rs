@@ -101,7 +101,7 @@ impl Simulation<'_> {
             time: self.progress.read_until,
             step: interval.dt,
             tallies: &tallies,
-            shares: &interval.tables.shares,
+            shares: &interval.tables.cross_section_shares,
             particle_steps,
             drift,
             clipped,

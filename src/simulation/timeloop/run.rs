@@ -228,7 +228,7 @@ impl Simulation<'_> {
         };
         let mut interval = Interval::new(plan, &mut self.inflow, &Span { start, end, first_step, steps }, deal)?;
         interval.tables = self.control.surfaces.tables(start, end);
-        interval.tables.shares = self.control.ladder.shares().to_vec();
+        interval.tables.cross_section_shares = self.control.ladder.shares().to_vec();
         interval.tables.halvings = self.control.ladder.halvings(level);
         let moving = &self.model.moving;
         if !moving.is_empty() {

@@ -61,7 +61,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::Whole)
+        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::AllFeatures)
     }
 
     /// With the kernels of many particles also where these are few: for tests of those.
@@ -129,7 +129,7 @@ impl Setup {
         let zones = zones(model);
         let tallied = Patches {
             surfaces: patches.len(),
-            coats: model.coats.coats.len(),
+            surface_models: model.coats.coats.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };
@@ -212,8 +212,8 @@ fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -
         let area = members.iter().map(|&index| area_of(patches[index].0, patches[index].1)).sum();
         (members, area)
     });
-    let walls = scene.walls.iter().enumerate().filter(|(_, wall)| wall.heat.is_some()).map(|(wall, _)| {
-        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.wall == wall);
+    let walls = scene.heated_surfaces().map(|(surface, _)| {
+        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.surface == surface);
         let members: Vec<usize> = own.map(|(index, _)| index).collect();
         let area = members.iter().map(|&index| coats.coats[index].area).sum();
         (members, area)

@@ -5,7 +5,7 @@ use crate::gas::{
     Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at,
 };
 use crate::plan::{OpeningPlan, Plan};
-use crate::scene::{Method, Opening, Scene};
+use crate::scene::{Method, Opening, Scene, SurfaceId};
 use crate::simulation::model::build::Model;
 use crate::simulation::model::places::chamber_of;
 
@@ -57,16 +57,16 @@ fn volume(model: &Model) -> ControlVolume {
     }
 }
 
-/// The scene's walls that the heat of [`Lost`] went to.
-pub fn heated_walls(model: &Model) -> Vec<usize> {
-    let coats = model.coats.coats.iter().map(|coat| coat.wall);
-    coats.filter(|&wall| model.scene.walls[wall].heat.is_some()).collect()
+/// The scene's surfaces that the heat of [`Lost`] went to.
+pub fn heated_walls(model: &Model) -> Vec<SurfaceId> {
+    let coats = model.coats.coats.iter().map(|coat| coat.surface);
+    coats.filter(|&surface| model.scene.surface_model(surface).heat.is_some()).collect()
 }
 
 fn walls(model: &Model) -> Vec<HeatedWall> {
     let coats = model.coats.coats.iter();
     let heated = coats.filter_map(|coat| {
-        let heat = model.scene.walls[coat.wall].heat?;
+        let heat = model.scene.surface_model(coat.surface).heat?;
         Some(HeatedWall { chamber: coat.chamber, area: coat.area, heat })
     });
     heated.collect()

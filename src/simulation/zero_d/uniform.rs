@@ -18,6 +18,7 @@ use crate::gas::{
     Beginning, FlowIntegral, Lost, State, Vented, flow_times_of_temperature, flow_times_temperature, thermo,
 };
 use crate::output::Audit;
+use crate::scene::{SurfaceId, WallHeat};
 
 /// Parts of a row over which the work of moving walls is summed.
 const WORK_PARTS: u32 = 32;
@@ -155,17 +156,22 @@ fn watch_vents(model: &Model, watches: &mut [VentWatch], time: f64, states: &[St
 }
 
 /// Those that keep a temperature, in the order of the scene; `lost`: until the start and the end of the window.
-fn walls(model: &Model, heated: &[usize], window: [f64; 2], lost: [&Lost; 2], last: Option<&Row>) -> Vec<WallState> {
-    let of_wall = |(index, wall): (usize, usize)| {
+fn walls(
+    model: &Model,
+    heated: &[SurfaceId],
+    window: [f64; 2],
+    lost: [&Lost; 2],
+    last: Option<&Row>,
+) -> Vec<WallState> {
+    let of_surface = |(index, (surface, _)): (usize, (SurfaceId, WallHeat))| {
         let earlier = last.map_or(0.0, |row| row.walls[index].heat);
-        let own = heated.iter().enumerate().filter(|(_, of)| **of == wall).map(|(index, _)| index);
+        let own = heated.iter().enumerate().filter(|(_, of)| **of == surface).map(|(index, _)| index);
         let [before, after] = lost.map(|lost| own.clone().map(|index| lost.heat[index]).sum::<f64>());
-        let coats = model.coats.coats.iter().filter(|coat| coat.wall == wall);
+        let coats = model.coats.coats.iter().filter(|coat| coat.surface == surface);
         let area: f64 = coats.map(|coat| coat.area).sum();
-        WallState { heat: earlier + after, heat_flux: (after - before) / (area * (window[1] - window[0])) }
+        WallState::new(earlier + after, after - before, area, window[1] - window[0])
     };
-    let kept = (0..model.scene.walls.len()).filter(|&wall| model.scene.walls[wall].heat.is_some());
-    kept.enumerate().map(of_wall).collect()
+    model.scene.heated_surfaces().enumerate().map(of_surface).collect()
 }
 
 /// What passes is what should: there is no particle that could not.

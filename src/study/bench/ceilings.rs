@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use crate::gpu::{Device, GpuError, Kernel, Recording, fold};
+use crate::subdomain::shader;
 
 const ITEM_BYTES: u64 = 16;
 /// Measurements of which the best counts.
@@ -68,7 +69,7 @@ impl Ceilings {
         // Seconds of a dispatch.
         let best = |kernel: &str, threads: u64| -> Result<f64, GpuError> {
             let constants = [("WORKGROUP", f64::from(WORKGROUP)), ("LOOPS", loops)];
-            let compiled = Kernel::new(device, kernel, &constants)?;
+            let compiled = Kernel::new(device, shader(kernel)?, &constants)?;
             let bound = compiled.bind(device, |name| match name {
                 "copy_from" => Some(&from),
                 "copy_to" => Some(&to),
@@ -115,7 +116,7 @@ pub fn wake(device: &Device) -> Result<(), GpuError> {
         return Ok(());
     }
     let moved = device.storage::<[[u32; 4]; 2]>("copy_to", WAKING_PARTICLES)?;
-    let kernel = Kernel::new(device, "ceiling_flights", &[("WORKGROUP", f64::from(WORKGROUP))])?;
+    let kernel = Kernel::new(device, shader("ceiling_flights")?, &[("WORKGROUP", f64::from(WORKGROUP))])?;
     let bound = kernel.bind(device, |name| (name == "copy_to").then_some(&moved))?;
     let groups = fold(WAKING_PARTICLES, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
     let start = Instant::now();

@@ -152,7 +152,7 @@ pub fn measure(
     let buffers = simulation.buffer_bytes();
     let counted = Counted::new(simulation.constants())?;
     let outcome = simulation.finish(&mut ())?;
-    let work = Work::new(&model, &before, &after, &outcome, lists, device.form());
+    let work = Work::new(&model, &before, &after, &outcome, lists, device.variant());
     let phases = since(&before.phases, &after.phases);
     let costs = phases.rows.iter().map(|(name, seconds, dispatches)| Cost {
         phase: name.clone(),

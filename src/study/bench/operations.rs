@@ -17,9 +17,9 @@
 //! What only some do (branches that this does not name, longer lists, cells with moving walls, candidates of a cell in vain) does not count, so
 //! operations over time are less than what is really done.
 
-use crate::gpu::{Constants, GpuError, KERNELS, Operations, Stretch};
+use crate::gpu::{Constants, GpuError, Operations, Stretch};
 use crate::scene::Method;
-use crate::subdomain::CROWD;
+use crate::subdomain::{CROWD, KERNELS};
 
 use super::work::{CHUNK, Work};
 
@@ -54,7 +54,7 @@ const FEWEST_TURNS: f64 = 4.0;
 
 // Beginnings of lines of the kernels, by which their branches and loops are found.
 const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
-const MEETING_WALLS: &str = "if (step.ghosts != GHOSTS_ASKED && (layers";
+const MEETING_WALLS: &str = "if (step.ghosts != GHOSTS_ON_DEMAND && (marks";
 const MUTUAL: &str = "if (!has_chosen";
 const LISTED: &str = "for (var k = 0u; k < listed";
 const IN_ORDER: &str = "if (count <= MEMBERS)";
@@ -229,7 +229,7 @@ mod tests {
     /// As a scene of one gas between mirrors at rest has it.
     fn lean(method: Method) -> Counted {
         let on = |yes: bool| f64::from(u8::from(yes));
-        let lacks = ["HALO", "MOVING", "COATS", "VENTS", "SURFACES", "ORIFICES", "SPIN", "CURVES", "CAPPED"];
+        let lacks = ["HALO", "MOVING", "SURFACE_MODELS", "VENTS", "SURFACES", "ORIFICES", "SPIN", "CURVES", "CAPPED"];
         let mut constants: Vec<(&str, f64)> = lacks.iter().map(|&name| (name, 0.0)).collect();
         constants.extend([
             ("GASES", 1.0),

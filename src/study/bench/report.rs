@@ -172,7 +172,7 @@ pub fn json(all: &[Measured], missing: &[(String, String)], ceilings: &Ceilings,
     let own = json!({
         "adapter": info.name,
         "driver": format!("{} {}", info.driver, info.driver_info).trim(),
-        "form": device.form().name(),
+        "form": device.variant().name(),
         "software_threads": if device.adapter().is_cpu() { Some(host::threads()) } else { None },
         "copy_bytes_per_second": ceilings.copy,
         "arithmetic_operations_per_second": ceilings.arithmetic,

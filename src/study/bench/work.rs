@@ -1,7 +1,7 @@
 //! What a run did in its steps: the amounts by which bytes and operations are counted.
 
 use crate::geometry::Grid;
-use crate::gpu::Form;
+use crate::gpu::KernelVariant;
 use crate::simulation::{Done, Model, Outcome};
 use crate::subdomain::{GpuParticle, MEMBERS, choose_empties, few_stretches, merges};
 
@@ -55,7 +55,14 @@ pub struct Work {
 impl Work {
     /// Of the steps since `before`. The lengths of lists are those in the last steps of intervals, `lists` those of neighbours in the last step
     /// of all; the cells are those of the particles at the end.
-    pub fn new(model: &Model, before: &Done, after: &Done, outcome: &Outcome, lists: [f64; 2], form: Form) -> Work {
+    pub fn new(
+        model: &Model,
+        before: &Done,
+        after: &Done,
+        outcome: &Outcome,
+        lists: [f64; 2],
+        variant: KernelVariant,
+    ) -> Work {
         let plan = &model.plan;
         let steps = (after.phases.steps - before.phases.steps) as f64;
         let particle_steps = (after.phases.particle_steps - before.phases.particle_steps) as f64;
@@ -71,15 +78,15 @@ impl Work {
             steps,
             particle_steps,
             cell_steps: cells * steps,
-            emptied: if has_rounds && choose_empties(form, cells as u64) { cells * steps } else { 0.0 },
+            emptied: if has_rounds && choose_empties(variant, cells as u64) { cells * steps } else { 0.0 },
             few_stretches: few_stretches(cells as u64),
             filled: filled * steps,
             shared: shared * steps,
             gathered: gathered * steps,
             few: few * steps,
             crowded: crowded * steps,
-            by_threads: form == Form::Gpu,
-            merged: merges(plan, form),
+            by_threads: variant == KernelVariant::Gpu,
+            merged: merges(plan, variant),
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,

@@ -77,7 +77,7 @@ pub fn transmission(device: &Device, particles: u64, friction: f64) -> Result<(f
     for wall in &mut scene.walls {
         if let Shape::Box { holes, thickness: Some(thickness), .. } = &mut wall.shape {
             *thickness = length;
-            wall.friction = friction;
+            wall.surface.friction = friction;
             for hole in holes {
                 hole.outline = Outline::Circle { diameter: 2.0 * radius, segments: 32 };
             }

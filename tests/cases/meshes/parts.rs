@@ -105,3 +105,23 @@ fn a_vent_has_a_part_as_its_place() {
     assert_eq!(code, 0, "{error}");
     assert!(said.contains("100 of 100 cm2"), "{said}");
 }
+
+/// Solids with surfaces of their own: both read back, also beside a measured one, and a name that the file does not have is
+/// refused.
+#[test]
+fn solids_have_surfaces_of_their_own() {
+    let box_of = cube([0.0; 3], [0.1; 3]);
+    let mesh = Mesh::new("box.stl", solid("floor", &box_of[..2]) + &solid("rest", &box_of[2..]));
+    let part = |face: &str, keys: &str| format!("[[wall.part]]\nface = \"{face}\"\n{keys}\n");
+    let parts = part("rest", "friction = 0.5") + &part("floor", "temperature = 600.0");
+    let scene = mesh.scene("inside", &(surface("floor") + &parts));
+    assert_eq!(parse(&to_toml(&scene), "again.toml", Path::new("")).unwrap(), scene);
+    let names: Vec<String> = scene.surface_ids().map(|id| scene.surface_name(id)).collect();
+    assert_eq!(names, ["v", "v/rest", "v/floor"]);
+    assert_eq!(scene.surfaces[0].face, Some(scene.walls[0].parts[1].face));
+    let unknown = mesh.scene_file("inside", &part("flor", "temperature = 600.0"));
+    let (code, said, error) = crate::outcome(&["check", unknown.to_str().unwrap()]);
+    assert_ne!(code, 0, "{said}");
+    let told: String = error.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(told.contains("no part is called `flor`; known: `floor`, `rest`"), "{error}");
+}

@@ -82,7 +82,7 @@ fn what_hits_cannot_carry_is_warned_of() {
         plan.warnings.iter().filter(|text| text.contains(part)).count()
     };
     let hot = |scene: &mut Scene| {
-        let heat = scene.walls.iter_mut().find_map(|wall| wall.heat.as_mut()).unwrap();
+        let heat = scene.walls.iter_mut().find_map(|wall| wall.surface.heat.as_mut()).unwrap();
         heat.transfer = crate::scene::HeatTransfer::Coefficient(1e7);
     };
     let [particles, volume] = [Method::ClosestApproach, Method::ControlVolume];
@@ -132,7 +132,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
         let (_, patches) = crate::simulation::model::patches::patches(&model);
         let patches = Patches {
             surfaces: patches.len(),
-            coats: model.coats.coats.len(),
+            surface_models: model.coats.coats.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };
@@ -143,7 +143,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             ("heat capacities that depend on the temperature", features.curves),
             ("inflow", features.orifices),
             ("measured surfaces", features.surfaces),
-            ("walls that are no mirrors", features.coats),
+            ("walls that are no mirrors", features.surface_models),
             ("vents", features.vents),
             ("walls that move", features.moving),
         ];

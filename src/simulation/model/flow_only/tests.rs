@@ -79,6 +79,21 @@ fn a_part_that_would_lack_something_is_none() {
     assert!(part_of(&tank).unwrap_err().contains("probe \"vent jet\" is behind it"));
 }
 
+/// Parts of the box with surfaces of their own stay, that with the hole as well; the outside is behind it.
+#[test]
+fn parts_of_the_box_stay_but_for_its_outside() {
+    let part = |face: &str| format!("[[wall.part]]\nface = \"{face}\"\ntemperature = 300.0\n");
+    let parts = "flow_only = true\n".to_string() + &["outside", "-y", "+x"].map(part).concat();
+    let scene = part_of(&emptying().replace("flow_only = true\n", &parts)).unwrap().scene;
+    let names: Vec<String> = scene.surface_ids().map(|id| scene.surface_name(id)).collect();
+    assert_eq!(names, ["inner", "inner/-y", "inner/+x"]);
+    let again = parse(&to_toml(&scene), "test.toml", std::path::Path::new("")).unwrap();
+    assert_eq!(again.walls, scene.walls);
+    let coats = Model::new(scene).unwrap().coats.coats;
+    assert_eq!(coats.len(), 2);
+    assert!(coats.iter().all(|coat| coat.vents.len() == usize::from(coat.surface.part == Some(1))), "{coats:?}");
+}
+
 /// Where only the flow matters, a hole is modelled if that is cheaper at the accuracy, and resolved if what is left out would be too
 /// much; the reasons say both sides. Without a wish nothing is modelled.
 #[test]

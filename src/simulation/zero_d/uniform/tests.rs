@@ -128,7 +128,14 @@ fn heat_and_gas_that_leave_are_in_the_rows_and_in_the_audit() {
     assert_eq!(audit.heat_to_walls, Some(rows[19].walls[0].heat));
     assert!((audit.energy_start - audit.energy_end - capacity * 300.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-6);
     // The check can fail: walls without that are mirrors.
-    assert!(cube("", "", 600.0).2.heat_to_walls.is_none() && model.scene.walls[0].heat.is_some());
+    assert!(cube("", "", 600.0).2.heat_to_walls.is_none() && model.scene.has_heat());
+    // One face by a part takes its share by a rate of its own, the other faces nothing.
+    let face = format!("[[wall.part]]\nface = \"+y\"\ntemperature = 300.0\nheat_transfer = {:e}", 6.0 * coefficient);
+    let (_, by_part, audit) = cube(&face, "", 600.0);
+    assert!(audit.verdict(&crate::output::AuditLimits::default()).is_empty());
+    let [part, whole] = [&by_part, &rows].map(|rows| rows[19].walls[0]);
+    assert!((part.heat / whole.heat - 1.0).abs() < 1e-9 && by_part[19].walls.len() == 1, "{part:?} {whole:?}");
+    assert!((part.heat_flux / (6.0 * whole.heat_flux) - 1.0).abs() < 1e-9, "{part:?} {whole:?}");
 
     let pores = "[[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = 0.02\nexternal_pressure = 0.0\n";
     let (_, rows, audit) = cube("", pores, 400.0);

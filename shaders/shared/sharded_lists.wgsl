@@ -1,13 +1,13 @@
 //! uses: step.wgsl together.wgsl
-// Lists that many threads append to: of those that choose, and of pairs. A list has one part, or several (the form for GPUs).
+// Lists that many threads append to: of those that choose, and of pairs. A list has one shard, or several (the variant for GPUs).
 
-// A thread over a list has the entry of its own place; its number in its part, and how many the part has. `most` is how many entries the list has
+// A thread over a list has the entry of its own place; its number in its shard, and how many the shard has. `most` is how many entries the list has
 // at most.
-fn number_in_part(thread: u32) -> u32 {
+fn number_in_shard(thread: u32) -> u32 {
     return thread;
 }
 
-fn entries_in_part(thread: u32, list: u32, most: u32) -> u32 {
+fn entries_in_shard(thread: u32, list: u32, most: u32) -> u32 {
     return atomicLoad(&counters[list]);
 }
 
@@ -26,6 +26,6 @@ fn entry_place(number: u32, list: u32, thread: u32, most: u32) -> u32 {
     return number;
 }
 
-// Tells of how many entries a part has, to who asks for those of all parts: once for each, by the thread of its first entry.
+// Tells of how many entries a shard has, to who asks for those of all shards: once for each, by the thread of its first entry.
 fn tell_entries(list: u32, count: u32) {
 }

@@ -1,11 +1,11 @@
-//! What kernels have several forms of is the same in each, to the last bit.
+//! What kernels have several variants of is the same in each, to the last bit.
 
-use corpuscle::gpu::{Device, Form};
-use corpuscle::subdomain::places_in_parts;
+use corpuscle::gpu::{Device, KernelVariant};
+use corpuscle::subdomain::places_in_shards;
 
 use crate::oracle::random::Stream;
 use crate::probe::Probe;
-use crate::rig::{LIST_PARTS, MISPLACED, PART_WORDS, PARTS_OF_LISTS, device, numbers};
+use crate::rig::{LENGTHS_OF_SHARDS, LIST_SHARDS, MISPLACED, SHARD_WORDS, device, numbers};
 
 const ROUNDED: [&str; 2] =
     [include_str!("../../shaders/shared/rounded.wgsl"), include_str!("../../shaders/shared/rounded.software.wgsl")];
@@ -46,8 +46,9 @@ fn whole_numbers_are_the_nearest_in_either_form() {
         let exponent = 90 + stream.word() % 78;
         inputs.push(f32::from_bits((stream.word() & 0x807f_ffff) | (exponent << 23)));
     }
-    let outputs = ROUNDED
-        .map(|form| Probe::new(form.to_owned() + OF_ROUNDED, &[]).run(device(), &inputs, inputs.len(), [256, 1, 1]));
+    let outputs = ROUNDED.map(|variant| {
+        Probe::new(variant.to_owned() + OF_ROUNDED, &[]).run(device(), &inputs, inputs.len(), [256, 1, 1])
+    });
     for (k, &x) in inputs.iter().enumerate() {
         // Beyond the integers it is the last of them that 32 bits of floating point hold.
         let nearest = |x: f32| x.round_ties_even().clamp(-2_147_483_648.0, 2_147_483_520.0) as i32 as u32;
@@ -63,8 +64,8 @@ fn whole_numbers_are_the_nearest_in_either_form() {
 #[test]
 fn every_thread_has_a_number_of_its_own_in_either_form() {
     let groups = [5, 3, 1];
-    let forms = 1 + usize::from(device().adapter().forms().contains(&Form::Software));
-    for lane in &LANES[..forms] {
+    let variants = 1 + usize::from(device().adapter().variants().contains(&KernelVariant::Software));
+    for lane in &LANES[..variants] {
         let text = (*lane).to_owned() + include_str!("../../shaders/shared/thread.wgsl") + OF_LANES;
         for (k, output) in (0..).zip(Probe::new(text, &[]).run(device(), &[0.0f32], 64 * 15, groups)) {
             assert_eq!(output, [k / 64, k % 64, 15, 1]);
@@ -72,36 +73,36 @@ fn every_thread_has_a_number_of_its_own_in_either_form() {
     }
 }
 
-/// A device takes the form that it says, and can be had with any that it can run.
+/// A device takes the variant that it says, and can be had with any that it can run.
 #[test]
 fn a_device_takes_its_form_of_a_kernel() {
-    let text = |form: u32| {
+    let text = |variant: u32| {
         format!(
             "@group(0) @binding(0) var<storage, read> inputs: array<f32>;
             @group(0) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
             @compute @workgroup_size(1)
-            fn probe() {{ outputs[0] = vec4<u32>({form}u, bitcast<u32>(inputs[0]), 0u, 0u); }}"
+            fn probe() {{ outputs[0] = vec4<u32>({variant}u, bitcast<u32>(inputs[0]), 0u, 0u); }}"
         )
     };
-    let form = |device: &Device| {
+    let variant = |device: &Device| {
         let probe = Probe::new(text(1), &[]).or([text(2), text(3)]);
         probe.run(device, &[0.0f32], 1, [1, 1, 1])[0][0]
     };
-    let number = |form| match form {
-        Form::Plain => 1,
-        Form::Software => 2,
-        Form::Gpu => 3,
+    let number = |variant| match variant {
+        KernelVariant::Plain => 1,
+        KernelVariant::Software => 2,
+        KernelVariant::Gpu => 3,
     };
-    let forms = device().adapter().forms();
-    assert_eq!(device().form(), forms[0]);
-    for of in [Form::Plain, Form::Software, Form::Gpu] {
+    let variants = device().adapter().variants();
+    assert_eq!(device().variant(), variants[0]);
+    for of in [KernelVariant::Plain, KernelVariant::Software, KernelVariant::Gpu] {
         match Device::open_in(None, of) {
-            Ok(device) => assert_eq!((form(&device), device.form()), (number(of), of)),
-            Err(error) => assert!(!forms.contains(&of), "{error}"),
+            Ok(device) => assert_eq!((variant(&device), device.variant()), (number(of), of)),
+            Err(error) => assert!(!variants.contains(&of), "{error}"),
         }
     }
-    // Lavapipe can run all: else other tests would compare a form with itself.
-    assert!(forms.len() == 3 || !device().adapter().info.name.contains("llvmpipe"));
+    // Lavapipe can run all: else other tests would compare a variant with itself.
+    assert!(variants.len() == 3 || !device().adapter().info.name.contains("llvmpipe"));
 }
 
 const TOGETHER: [&str; 2] =
@@ -159,15 +160,16 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 /// Threads that count up one word together have each their own part of what they count, and leave nothing out.
 #[test]
 fn what_threads_count_together_is_what_each_counts() {
-    let forms = 1 + usize::from(device().adapter().forms().contains(&Form::Gpu));
+    let variants = 1 + usize::from(device().adapter().variants().contains(&KernelVariant::Gpu));
     let mut stream = Stream::new(43);
     let inputs: Vec<u32> = (0..64 * 40).map(|_| stream.word() % 9).collect();
-    for (form, (kernel, outputs)) in
-        TOGETHER[..forms].iter().flat_map(|form| [(form, (OF_TOGETHER, 1)), (form, (OF_TOGETHER_IN_TURNS, 8))])
+    for (variant, (kernel, outputs)) in TOGETHER[..variants]
+        .iter()
+        .flat_map(|variant| [(variant, (OF_TOGETHER, 1)), (variant, (OF_TOGETHER_IN_TURNS, 8))])
     {
         // The word is one behind the threads' own.
         let word = "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n";
-        let text = word.to_owned() + &numbers() + &form.replace("//!", "//") + kernel;
+        let text = word.to_owned() + &numbers() + &variant.replace("//!", "//") + kernel;
         let (outputs, counters) =
             Probe::new(text, &[]).run_and_count(device(), &inputs, outputs * inputs.len(), [40, 1, 1]);
         assert_eq!(counters[MISPLACED], 0, "threads were parted");
@@ -189,7 +191,7 @@ fn what_threads_count_together_is_what_each_counts() {
     }
 }
 
-const OF_PARTS: &str = "
+const OF_SHARDS: &str = "
 fn cover(list: u32, group: u32) {
     atomicMax(&counters[0], group + 1u);
 }
@@ -201,16 +203,16 @@ fn cover(list: u32, group: u32) {
 fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let most = arrayLength(&inputs);
     // All to one part, which has no room for them.
-    let thread = id.x % WORKGROUP + id.x / WORKGROUP * (WORKGROUP * LIST_PARTS);
+    let thread = id.x % WORKGROUP + id.x / WORKGROUP * (WORKGROUP * LIST_SHARDS);
     let number = entries_from(7u, 1u, thread, most);
-    outputs[id.x] = vec4<u32>(entry_place(number, 7u, thread, most), room_of_part(most), inputs[id.x], 1u);
+    outputs[id.x] = vec4<u32>(entry_place(number, 7u, thread, most), room_of_shard(most), inputs[id.x], 1u);
 }
 ";
 
 /// What a part of a list has no room for goes to others: each entry has a place of its own, within the room of the list.
 #[test]
-fn what_a_part_has_no_room_for_goes_to_others() {
-    if !device().adapter().forms().contains(&Form::Gpu) {
+fn what_a_shard_has_no_room_for_goes_to_others() {
+    if !device().adapter().variants().contains(&KernelVariant::Gpu) {
         return;
     }
     let count = 64 * 40;
@@ -219,15 +221,15 @@ fn what_a_part_has_no_room_for_goes_to_others() {
         "@group(0) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;\n",
         &numbers(),
         include_str!("../../shaders/shared/together.gpu.wgsl"),
-        include_str!("../../shaders/shared/list_parts.gpu.wgsl"),
-        include_str!("../../shaders/shared/parted_lists.gpu.wgsl"),
-        OF_PARTS,
+        include_str!("../../shaders/shared/list_shards.gpu.wgsl"),
+        include_str!("../../shaders/shared/sharded_lists.gpu.wgsl"),
+        OF_SHARDS,
     ];
     let text = text.map(|part| part.replace("//!", "//")).concat();
     let (outputs, counters) =
         Probe::new(text.clone(), &[]).run_and_count(device(), &vec![0u32; count], count, [40, 1, 1]);
     // Each is counted once.
-    let lengths = (0..LIST_PARTS).map(|part| counters[PARTS_OF_LISTS + part * PART_WORDS + 7] as usize);
+    let lengths = (0..LIST_SHARDS).map(|part| counters[LENGTHS_OF_SHARDS + part * SHARD_WORDS + 7] as usize);
     assert_eq!((lengths.sum::<usize>(), counters[MISPLACED]), (count, 0));
     let room = outputs[0][1] as usize;
     let mut places: Vec<usize> = outputs.iter().map(|output| output[0] as usize).collect();
@@ -236,10 +238,10 @@ fn what_a_part_has_no_room_for_goes_to_others() {
     assert_eq!(places.len(), count, "each has a place of its own");
     assert!(places.iter().all(|&place| place / 64 / 16 < room / 64), "within the room of the list");
     // What the host takes for it where it tells a thread for each place.
-    assert_eq!((room * LIST_PARTS) as u64, places_in_parts(count as u64));
+    assert_eq!((room * LIST_SHARDS) as u64, places_in_shards(count as u64));
     // The check can fail: one part has room for few of them.
     assert!(room < count / 4);
     // Those for whom all parts together have no room are told of.
     let (_, counters) = Probe::new(text, &[]).run_and_count(device(), &[0u32; 64], count, [40, 1, 1]);
-    assert_eq!(counters[MISPLACED] as usize, count - 64 * LIST_PARTS);
+    assert_eq!(counters[MISPLACED] as usize, count - 64 * LIST_SHARDS);
 }

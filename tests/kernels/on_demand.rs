@@ -19,7 +19,7 @@ const ALL: u32 = 0;
 const WAIT: u32 = 1;
 const PASS: u32 = 2;
 /// Marks of `layers`.
-const ASKED: u32 = 0x800;
+const REQUESTED: u32 = 0x800;
 const SEARCHED: u32 = 0x1000;
 
 /// Layers 0 to 2, most of them own; other marks must not matter.
@@ -30,8 +30,8 @@ fn layers(stream: &mut Stream) -> Vec<u32> {
 
 fn rig_of(cloud: &Cloud, layers: &[u32]) -> Rig {
     let mut rig = cloud.rig();
-    rig.put("layers", layers);
-    rig.put("asked", &vec![NOBODY; COUNT]);
+    rig.put("marks", layers);
+    rig.put("on_demand", &vec![NOBODY; COUNT]);
     rig.put("choices", &vec![[7u32, 7]; COUNT]);
     rig.put("incomplete", &vec![NOBODY; COUNT]);
     rig
@@ -54,7 +54,7 @@ fn those_that_are_asked_choose_as_if_they_had_not_waited() {
     rig.step(step_of(&cloud, ALL));
     rig.run("choose", COUNT);
     let all: Vec<[u32; 2]> = rig.get("choices", COUNT);
-    assert_eq!(rig.counter(LIST_ASKED), 0, "nobody waits, nobody is asked");
+    assert_eq!(rig.counter(LIST_ON_DEMAND), 0, "nobody waits, nobody is asked");
 
     let mut rig = rig_of(&cloud, &layers);
     // As `neighbours` leaves it.
@@ -67,16 +67,16 @@ fn those_that_are_asked_choose_as_if_they_had_not_waited() {
         .map(|s| all[s][0])
         .filter(|&j| layer(j as usize) == 1)
         .collect();
-    assert_eq!(rig.list("asked", LIST_ASKED), asked.iter().copied().collect::<Vec<_>>());
-    let marks: Vec<u32> = rig.get("layers", COUNT);
+    assert_eq!(rig.list("on_demand", LIST_ON_DEMAND), asked.iter().copied().collect::<Vec<_>>());
+    let marks: Vec<u32> = rig.get("marks", COUNT);
     for s in 0..COUNT {
         assert_eq!(first[s][0], if layer(s) == 1 { NOBODY } else { all[s][0] }, "{s}");
-        assert_eq!(marks[s], layers[s] | if asked.contains(&(s as u32)) { ASKED } else { 0 }, "{s}");
+        assert_eq!(marks[s], layers[s] | if asked.contains(&(s as u32)) { REQUESTED } else { 0 }, "{s}");
     }
     // Asked again in another round they are not listed again.
     rig.step(step_of(&cloud, WAIT));
     rig.run("choose", COUNT);
-    assert_eq!(rig.counter(LIST_ASKED) as usize, asked.len());
+    assert_eq!(rig.counter(LIST_ON_DEMAND) as usize, asked.len());
 
     rig.step(step_of(&cloud, PASS));
     rig.run("choose", COUNT);
@@ -100,29 +100,29 @@ fn those_that_are_asked_get_the_lists_that_they_would_have_had() {
     let layers = layers(&mut stream);
     let cells = cloud.world.cells();
     // In the order of the cells, as the search has them.
-    let mut middles: Vec<[u32; 3]> = cloud.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
-    middles.sort_by_key(|&p| cells.index(cells.cell(p)));
-    let of: Vec<u32> = middles.iter().map(|&p| cells.index(cells.cell(p))).collect();
+    let mut midpoints: Vec<[u32; 3]> =
+        cloud.particles.iter().map(|p| cells.middle(p.position, p.velocity, DT)).collect();
+    midpoints.sort_by_key(|&p| cells.index(cells.cell(p)));
+    let of: Vec<u32> = midpoints.iter().map(|&p| cells.index(cells.cell(p))).collect();
     let start: Vec<u32> = (0..=cells.count() as u32).map(|c| of.partition_point(|&own| own < c) as u32).collect();
     let near_wall = |c: u32| u32::from(cloud.world.class(c) != CLEAR) << 31;
-    let packed: Vec<u32> = middles.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | near_wall(c)).collect();
+    let packed: Vec<u32> = midpoints.iter().zip(&of).map(|(&p, &c)| cells.packed(p) | near_wall(c)).collect();
     let run = |ghosts: u32, before: &[u32], asked: &[u32]| {
         let mut rig = rig_of(&cloud, before);
         rig.put("cell_start", &start);
-        rig.put("middles", &packed);
+        rig.put("midpoints", &packed);
         rig.put("cells", &of);
         // The first search adds to lists, the pass over those that were asked writes its own.
         rig.put("neighbour_count", &vec![if ghosts == PASS { 3u32 } else { 0 }; COUNT]);
         put_room(&mut rig, COUNT, TAILS);
-        rig.put("asked", asked);
-        rig.set_counter(LIST_ASKED, asked.len() as u32);
+        rig.put("on_demand", asked);
+        rig.set_counter(LIST_ON_DEMAND, asked.len() as u32);
         rig.step(step_of(&cloud, ghosts));
-        rig.run(if ghosts == PASS { "neighbours_asked" } else { "neighbours" }, COUNT);
+        rig.run(if ghosts == PASS { "neighbours_on_demand" } else { "neighbours" }, COUNT);
         // Who may choose in the first round is not at issue.
-        let marks =
-            || -> Vec<u32> { rig.get::<u32>("layers", COUNT).iter().map(|mark| mark & (CHOOSES - 1)).collect() };
+        let marks = || -> Vec<u32> { rig.get::<u32>("marks", COUNT).iter().map(|mark| mark & (CHOOSES - 1)).collect() };
         let incomplete = marks();
-        let list = if ghosts == PASS { LIST_ASKED } else { LIST_INCOMPLETE };
+        let list = if ghosts == PASS { LIST_ON_DEMAND } else { LIST_INCOMPLETE };
         complete_lists(&rig, list);
         // What was done is not done again.
         complete_lists(&rig, list);
@@ -178,7 +178,7 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
     let lists = |rig: &Rig| lists(rig, COUNT, tails_of(cloud.lists.iter().map(Vec::len)));
     let mut rig = rig_of(&cloud, &layers);
     put_to_complete(&mut rig, COUNT, &screened);
-    rig.put("middles", &near_walls);
+    rig.put("midpoints", &near_walls);
     rig.step(step_of(&cloud, ALL));
     rig.run("complete_lists", COUNT);
     let early = lists(&rig);
@@ -195,13 +195,13 @@ fn those_that_are_asked_late_are_screened_where_the_step_began() {
         rig.put("sorted", &changed);
         put_flights(&mut rig, &flights);
         put_to_complete(&mut rig, COUNT, &[]);
-        rig.put("middles", &near_walls);
+        rig.put("midpoints", &near_walls);
         rig.put("firsts", from);
-        rig.put("asked", &screened[..COUNT - 1]);
-        rig.set_counter(LIST_ASKED, COUNT as u32 - 1);
+        rig.put("on_demand", &screened[..COUNT - 1]);
+        rig.set_counter(LIST_ON_DEMAND, COUNT as u32 - 1);
         rig.step(step_of(&cloud, PASS));
         rig.run("complete_lists", COUNT);
-        assert_eq!(rig.get::<u32>("layers", COUNT)[..COUNT - 1], vec![1; COUNT - 1], "screened once");
+        assert_eq!(rig.get::<u32>("marks", COUNT)[..COUNT - 1], vec![1; COUNT - 1], "screened once");
         lists(&rig)
     };
     let found = late(&cloud.particles);

@@ -1,6 +1,6 @@
-//! `bounce` at walls that are no mirrors, against the distributions and sums that its coats stand for.
+//! `bounce` at walls that are no mirrors, against the distributions and sums that its surface_models stand for.
 
-use corpuscle::subdomain::{GpuCoat, GpuFlight, GpuGas, GpuParticle, GpuStep, GpuVent};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuParticle, GpuStep, GpuSurfaceModel, GpuVent};
 
 use crate::neighbour_lists::put_flights;
 use crate::oracle::random::Stream;
@@ -18,11 +18,11 @@ const GASES: [GpuGas; 4] = [
 const THERMAL: f32 = 9e4;
 const ENERGY_SCALE: f64 = 0.1;
 
-/// A world whose walls all have coat 0.
-fn coated() -> World {
+/// A world whose walls all have surface_model 0.
+fn not_a_mirror() -> World {
     let mut world = World::plain();
     for triangle in &mut world.walls.triangles {
-        triangle.coat = 0;
+        triangle.surface_model = 0;
     }
     world
 }
@@ -42,15 +42,21 @@ fn towards_a_wall(world: &World, count: usize) -> Vec<GpuParticle> {
     particles
 }
 
-fn bounce(world: &World, particles: &[GpuParticle], coat: GpuCoat, vents: &[GpuVent], tallies_left: u32) -> Rig {
+fn bounce(
+    world: &World,
+    particles: &[GpuParticle],
+    surface_model: GpuSurfaceModel,
+    vents: &[GpuVent],
+    tallies_left: u32,
+) -> Rig {
     let flights: Vec<GpuFlight> = free_flights(particles.len());
     let mut rig = Rig::new(world);
     let constants = [
-        ("COATS", 1.0),
+        ("SURFACE_MODELS", 1.0),
         ("VENTS", f64::from(u8::from(!vents.is_empty()))),
         ("SURFACES", 0.0),
-        ("COATS_AT", SURFACE_WORDS as f64),
-        ("VENTS_AT", (SURFACE_WORDS + COAT_WORDS) as f64),
+        ("SURFACE_MODELS_AT", SURFACE_WORDS as f64),
+        ("VENTS_AT", (SURFACE_WORDS + SURFACE_MODEL_WORDS) as f64),
         ("ENERGY_SCALE", ENERGY_SCALE),
         ("SEED_LOW", 5.0),
     ];
@@ -61,19 +67,19 @@ fn bounce(world: &World, particles: &[GpuParticle], coat: GpuCoat, vents: &[GpuV
     rig.put("sorted", particles);
     put_flights(&mut rig, &flights);
     rig.put("bouncing", &(0..particles.len() as u32).collect::<Vec<_>>());
-    rig.put("coats", &[coat]);
+    rig.put("surface_models", &[surface_model]);
     if !vents.is_empty() {
         rig.put("vents", vents);
     }
-    rig.put("surface_sums", &vec![0u32; SURFACE_WORDS + COAT_WORDS + VENT_WORDS * vents.len().max(1)]);
+    rig.put("surface_sums", &vec![0u32; SURFACE_WORDS + SURFACE_MODEL_WORDS + VENT_WORDS * vents.len().max(1)]);
     rig.set_counter(LIST_BOUNCE, particles.len() as u32);
     rig.step(GpuStep { count: particles.len() as u32, dt: DT, index: 3, tallies_left, ..GpuStep::default() });
     rig.run("bounce", particles.len());
     rig
 }
 
-fn full() -> GpuCoat {
-    GpuCoat { thermal: THERMAL, accommodation: 1.0, friction: 0.0, first_vent: 0, end_vent: 1 }
+fn full() -> GpuSurfaceModel {
+    GpuSurfaceModel { thermal: THERMAL, accommodation: 1.0, friction: 0.0, first_vent: 0, end_vent: 1 }
 }
 
 fn sum_at(words: &[u32], slot: usize) -> f64 {
@@ -108,10 +114,10 @@ fn normal_cumulative(x: f64) -> f64 {
 }
 
 /// What leaves an accommodating wall has P(v_n < v) = 1 - exp(-m v^2 / 2kT), normal components across, and a spin
-/// of mean zeta/2 kT and variance zeta/2 (kT)^2; what it brought more than that is in the coat's tally.
+/// of mean zeta/2 kT and variance zeta/2 (kT)^2; what it brought more than that is in the surface_model's tally.
 #[test]
 fn an_accommodating_wall_emits_a_maxwell_flux_of_its_temperature() {
-    let world = coated();
+    let world = not_a_mirror();
     let particles = towards_a_wall(&world, 8000);
     let rig = bounce(&world, &particles, full(), &[], 3);
     assert_eq!(rig.counter(BOUNCES), 8000, "each hits once");
@@ -146,7 +152,7 @@ fn an_accommodating_wall_emits_a_maxwell_flux_of_its_temperature() {
         assert!((variance - shape).abs() < 4.5 * error, "{variance} {shape}");
     }
     let taken: f64 = particles.iter().map(energy).sum::<f64>() - after.iter().map(energy).sum::<f64>();
-    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + SURFACE_MODEL_WORDS);
     let tally = sum_at(&words, SURFACE_WORDS) / ENERGY_SCALE;
     let scale: f64 = particles.iter().map(energy).sum();
     // Half a unit a hit at most, and f32's rounding of each.
@@ -159,16 +165,16 @@ fn an_accommodating_wall_emits_a_maxwell_flux_of_its_temperature() {
 /// A share of the hits takes the temperature of the wall; the others are mirrored.
 #[test]
 fn a_share_of_the_hits_is_accommodated() {
-    let world = coated();
+    let world = not_a_mirror();
     let particles = towards_a_wall(&world, 8000);
-    let rig = bounce(&world, &particles, GpuCoat { accommodation: 0.3, ..full() }, &[], 0);
+    let rig = bounce(&world, &particles, GpuSurfaceModel { accommodation: 0.3, ..full() }, &[], 0);
     let after: Vec<GpuParticle> = rig.get("particles", particles.len());
     let mirrored = |(old, new): &(&GpuParticle, &GpuParticle)| (new.velocity[0] + old.velocity[0]).abs() < 1e-3;
     let share = 1.0 - particles.iter().zip(&after).filter(mirrored).count() as f64 / 8000.0;
     // Binomial: .3 +- .0051.
     assert!((share - 0.3).abs() < 4.5 * (0.21f64 / 8000.0).sqrt(), "{share}");
     // Without tallies to come, nothing is weighted with them.
-    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + SURFACE_MODEL_WORDS);
     assert_eq!(sum_at(&words, SURFACE_WORDS + 2), 0.0);
     assert!(sum_at(&words, SURFACE_WORDS) != 0.0);
 }
@@ -176,7 +182,7 @@ fn a_share_of_the_hits_is_accommodated() {
 /// Through a vent passes a share beta m |v_n| of what hits its place; it is gone, and its number and energy are tallied.
 #[test]
 fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
-    let world = coated();
+    let world = not_a_mirror();
     let particles = towards_a_wall(&world, 8000);
     let beta = 1e-3;
     // Half the particles hit within the disc.
@@ -184,7 +190,7 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     let middle = 0.5 * (world.low[1] + world.high[1]);
     let center = [world.low[0], middle - 0.0175, 0.5 * (world.low[2] + world.high[2])];
     let vent = GpuVent { center: world.fixed(center), radius2: 0.02f32 * 0.02, beta, index: 0, ..GpuVent::default() };
-    let mirror = GpuCoat { thermal: 0.0, accommodation: 0.0, friction: 0.0, first_vent: 0, end_vent: 1 };
+    let mirror = GpuSurfaceModel { thermal: 0.0, accommodation: 0.0, friction: 0.0, first_vent: 0, end_vent: 1 };
     let rig = bounce(&world, &particles, mirror, &[vent], 2);
     let after: Vec<GpuParticle> = rig.get("particles", particles.len());
     let gone = |k: usize| after[k].tag == NOBODY;
@@ -215,8 +221,8 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     // The check can fail: a fifth more would be seen.
     assert!(0.2 * expected > 4.5 * f64::sqrt(variance));
     assert!(inside > 2000.0 && inside < 7000.0, "{inside}");
-    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
-    let at = SURFACE_WORDS + COAT_WORDS;
+    let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + SURFACE_MODEL_WORDS + VENT_WORDS);
+    let at = SURFACE_WORDS + SURFACE_MODEL_WORDS;
     assert!((sum_at(&words, at + 4) - inside).abs() < 3.0);
     assert_eq!(sum_at(&words, at + 6), 0.0, "no probability above one");
     for (word, left) in words[at + 8..].iter().zip(left) {
@@ -227,7 +233,7 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     assert_eq!(sum_at(&words, at + 2), 2.0 * sum_at(&words, at));
     // A beta ten times as large is clipped for the heaviest gas.
     let clipped = bounce(&world, &particles, mirror, &[GpuVent { beta: 10.0 * beta, ..vent }], 0);
-    let words: Vec<u32> = clipped.get("surface_sums", SURFACE_WORDS + COAT_WORDS + VENT_WORDS);
+    let words: Vec<u32> = clipped.get("surface_sums", SURFACE_WORDS + SURFACE_MODEL_WORDS + VENT_WORDS);
     assert!(sum_at(&words, at + 6) > 500.0);
 }
 
@@ -235,14 +241,14 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
 /// spin that they had; the others are mirrored. It takes no heat.
 #[test]
 fn a_rough_wall_scatters_by_the_cosine_law_and_keeps_the_speed() {
-    let world = coated();
+    let world = not_a_mirror();
     let particles = towards_a_wall(&world, 8000);
     let speed = |p: &GpuParticle| p.velocity.map(|v| f64::from(v).powi(2)).iter().sum::<f64>().sqrt();
     for friction in [1.0f32, 0.4] {
-        let rough = GpuCoat { accommodation: 0.0, friction, ..full() };
+        let rough = GpuSurfaceModel { accommodation: 0.0, friction, ..full() };
         let rig = bounce(&world, &particles, rough, &[], 3);
         let after: Vec<GpuParticle> = rig.get("particles", particles.len());
-        let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + COAT_WORDS);
+        let words: Vec<u32> = rig.get("surface_sums", SURFACE_WORDS + SURFACE_MODEL_WORDS);
         assert_eq!(sum_at(&words, SURFACE_WORDS), 0.0, "no heat");
         for (old, new) in particles.iter().zip(&after) {
             assert!((speed(new) / speed(old) - 1.0).abs() < 8.0 * U);
@@ -268,7 +274,7 @@ fn a_rough_wall_scatters_by_the_cosine_law_and_keeps_the_speed() {
         }
     }
     // Beside accommodation it is a share of what is left.
-    let both = GpuCoat { accommodation: 0.5, friction: 0.5, ..full() };
+    let both = GpuSurfaceModel { accommodation: 0.5, friction: 0.5, ..full() };
     let rig = bounce(&world, &particles, both, &[], 0);
     let after: Vec<GpuParticle> = rig.get("particles", particles.len());
     let kept = |(old, new): &(&GpuParticle, &GpuParticle)| (speed(new) / speed(old) - 1.0).abs() < 1e-6;

@@ -4,23 +4,23 @@
 //
 // Pairs that a wall parts do not collide (where the gas of a part is not convex; the volumes allow for it).
 //
-// Reads `parted`, `cell_start`, `cell_volume`, `cell_parts`, `newborns`, the part of each particle in `layers` (arrange_crowded.wgsl) and the
-// walls; reads and writes `sorted`, and of its own cell `order_by_id`. One thread per entry of `parted`; each works on its own cell.
+// Reads `divided`, `cell_start`, `cell_volume`, `cell_parts`, `newborns`, the part of each particle in `marks` (arrange_crowded.wgsl) and the
+// walls; reads and writes `sorted`, and of its own cell `order_by_id`. One thread per entry of `divided`; each works on its own cell.
 
-var<storage, read> parted: array<u32>;
+var<storage, read> divided: array<u32>;
 var<storage, read> cell_parts: array<Part>;
 
 fn hidden(s: u32, t: u32) -> bool {
-    return blocked(sorted[s].place.xyz, sorted[t].place.xyz, 0.0);
+    return blocked(sorted[s].position_tag.xyz, sorted[t].position_tag.xyz, 0.0);
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn collide_parted(thread: Thread) {
+fn collide_divided(thread: Thread) {
     let place_in_list = linear(thread);
-    if (place_in_list >= atomicLoad(&counters[LIST_PARTED])) {
+    if (place_in_list >= atomicLoad(&counters[LIST_DIVIDED])) {
         return;
     }
-    let bin = parted[place_in_list];
+    let bin = divided[place_in_list];
     let cell = index_of(bin);
     let entry = cell_volume[cell];
     let parts = parts_of(entry);

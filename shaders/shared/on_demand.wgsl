@@ -2,11 +2,11 @@
 //
 // The choice of a ghost in the outermost layer that chooses at all matters only if a particle farther in has
 // chosen it. So such ghosts may wait until they are asked: when the others have chosen, a second pass
-// searches (neighbours_asked.wgsl, of integers) and screens the neighbours of those asked for the first time, and has all that were
+// searches (neighbours_on_demand.wgsl, of integers) and screens the neighbours of those asked for the first time, and has all that were
 // ever asked in this step choose (both by the same pipelines, so that no driver rounds otherwise). A choice is a function of the state, so
 // it does not matter when, or whether, it is made.
 
-var<storage, read_write> asked: array<u32>;
+var<storage, read_write> on_demand: array<u32>;
 
 // Whether a particle of this layer waits until it is asked.
 fn waits(layer: u32) -> bool {
@@ -26,9 +26,9 @@ fn notes_at(layer: u32) -> bool {
 }
 
 // The particle of a thread in the pass over those that were asked, or NOBODY.
-fn asked_of(thread: u32) -> u32 {
-    if (thread >= atomicLoad(&counters[LIST_ASKED])) {
+fn on_demand_chooser(thread: u32) -> u32 {
+    if (thread >= atomicLoad(&counters[LIST_ON_DEMAND])) {
         return NOBODY;
     }
-    return asked[thread];
+    return on_demand[thread];
 }

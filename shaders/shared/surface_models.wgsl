@@ -1,6 +1,6 @@
 // What walls that are no mirrors do: by wall and chamber, for the length of an interval.
 
-struct Coat {
+struct SurfaceModel {
     // R T_w over the molar mass of the reference gas, (m/s)^2.
     thermal: f32,
     // Share of the hits that leave with the temperature of the wall.
@@ -26,7 +26,7 @@ struct Vent {
     pad2: u32,
 }
 
-var<storage, read> coats: array<Coat>;
+var<storage, read> surface_models: array<SurfaceModel>;
 var<storage, read> vents: array<Vent>;
 
 // Key of the draws at walls: as SEED_HIGH, with their purpose.
@@ -40,9 +40,9 @@ fn wall_draw(tag: u32, hit: u32, block: u32) -> vec4<u32> {
     return philox(counter, vec2<u32>(SEED_LOW, WALL_SEED_HIGH));
 }
 
-// The vent of a coat that a place lies in, or NOBODY; of several the first.
-fn vent_at(coat: Coat, place: vec3<u32>) -> u32 {
-    for (var v = coat.first_vent; v < coat.end_vent; v++) {
+// The vent of a surface model that a place lies in, or NOBODY; of several the first.
+fn vent_at(surface_model: SurfaceModel, place: vec3<u32>) -> u32 {
+    for (var v = surface_model.first_vent; v < surface_model.end_vent; v++) {
         let away = between(vents[v].center, place);
         if (vents[v].radius2 < 0.0 || dot(away, away) <= vents[v].radius2) {
             return v;

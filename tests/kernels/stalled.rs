@@ -1,4 +1,4 @@
-//! A device that is held, as its neighbour lists had too little room: what is left as it is, and `recall`.
+//! A device that is stalled, as its neighbour lists had too little room: what is left as it is, and `recall`.
 
 use corpuscle::subdomain::{GpuGas, GpuNewborn, GpuParticle, GpuStep, GpuZone};
 
@@ -32,9 +32,9 @@ fn recall_puts_back_all_but_those_that_entered() {
     assert!(rig.get::<GpuParticle>("particles", COUNT + 20) == expected);
 }
 
-/// What comes after the search of a step that was held changes nothing, and what does so otherwise can be told.
+/// What comes after the search of a step that was stalled changes nothing, and what does so otherwise can be told.
 #[test]
-fn a_device_that_is_held_changes_nothing() {
+fn a_stalled_device_changes_nothing() {
     let world = World::plain();
     let mut stream = Stream::new(92);
     let sorted = world.particles(&mut stream, COUNT, 300.0);
@@ -57,20 +57,20 @@ fn a_device_that_is_held_changes_nothing() {
     let nothing = vec![0u32; COUNT];
     rig.put("sorted", &sorted);
     rig.put("particles", &sorted);
-    rig.set_held(PRESENT, COUNT as u32);
+    rig.set_step_state(PRESENT, COUNT as u32);
     rig.put("choices", &partners);
     rig.put("rechoose", &chosen);
     rig.put("pairs", &nothing);
     rig.put("bouncing", &nothing);
-    rig.put("layers", &vec![CHOOSES; COUNT]);
+    rig.put("marks", &vec![CHOOSES; COUNT]);
     rig.put("zones", &[GpuZone::default()]);
     rig.step(GpuStep { count: COUNT as u32, dt: 1e-6, ..GpuStep::default() });
     rig.set_choosers(0, COUNT);
     // What each of them leaves: particles, pairs, sums and counters.
-    let mut left_by = |kernel: &str, held: u32| {
+    let mut left_by = |kernel: &str, stalled: u32| {
         rig.put("zone_sums", &[0u32; 2 * ZONE_WORDS]);
         rig.put("block_sums", &[0u32; BLOCK_WORDS + LEVELS]);
-        rig.set_held(HELD, held);
+        rig.set_stalled(STALLED, stalled);
         if kernel == "advect" {
             put_flights(&mut rig, &free_flights(COUNT));
         }
@@ -78,7 +78,7 @@ fn a_device_that_is_held_changes_nothing() {
             "tally" => rig.run_groups("tally", [1, 1, 1]),
             _ => rig.run(kernel, COUNT),
         }
-        rig.set_held(HELD, 0);
+        rig.set_stalled(STALLED, 0);
         let mut left: Vec<u32> = rig.get("zone_sums", 2 * ZONE_WORDS);
         left.extend(rig.get::<u32>("block_sums", BLOCK_WORDS + LEVELS));
         left.extend(rig.get::<u32>("particles", 8 * COUNT));
@@ -88,14 +88,14 @@ fn a_device_that_is_held_changes_nothing() {
     };
     for kernel in ["match_pairs", "tally", "blocks", "advect"] {
         let before = left_by(kernel, 5);
-        assert!(left_by(kernel, 1) == before, "{kernel} of a device that is held");
+        assert!(left_by(kernel, 1) == before, "{kernel} of a device that is stalled");
         assert!(left_by(kernel, 0) != before, "{kernel} does nothing at all");
     }
 }
 
 /// In the steps that follow nobody is in any cell, and nobody enters.
 #[test]
-fn the_steps_of_a_device_that_is_held_have_nobody() {
+fn the_steps_of_a_stalled_device_have_nobody() {
     let world = World::plain();
     let particles = world.particles(&mut Stream::new(93), COUNT, 300.0);
     let born = vec![GpuNewborn { particle: particles[1], ..GpuNewborn::default() }; 40];
@@ -103,16 +103,16 @@ fn the_steps_of_a_device_that_is_held_have_nobody() {
     rig.put("newborns", &born);
     let (count, newborns, capacity) = (COUNT as u32 - 40, 40, COUNT as u32);
     rig.step(GpuStep { count, newborns, capacity, ..GpuStep::default() });
-    for held in [0, 1] {
+    for stalled in [0, 1] {
         rig.put("particles", &particles);
         rig.put("bins", &[[7u32; 2]; COUNT]);
         rig.put("cell_counts", &vec![0u32; world.grid.cell_count()]);
-        rig.set_held(HELD, held);
+        rig.set_stalled(STALLED, stalled);
         rig.run("bin", COUNT);
         let counted: u32 = rig.get::<u32>("cell_counts", world.grid.cell_count()).iter().sum();
-        assert_eq!(counted, if held == 1 { 0 } else { COUNT as u32 });
+        assert_eq!(counted, if stalled == 1 { 0 } else { COUNT as u32 });
         let bins: Vec<[u32; 2]> = rig.get("bins", COUNT);
-        assert!(bins.iter().all(|bin| (bin[0] == NOBODY) == (held == 1)));
-        assert_eq!(rig.get::<GpuParticle>("particles", COUNT) == particles, held == 1);
+        assert!(bins.iter().all(|bin| (bin[0] == NOBODY) == (stalled == 1)));
+        assert_eq!(rig.get::<GpuParticle>("particles", COUNT) == particles, stalled == 1);
     }
 }

@@ -1,0 +1,60 @@
+//! Limits that a choice keeps: those on which particles, occupancy and step decide, which are the plan's own.
+//!
+//! What a passage or thin gas would take (Knudsen numbers, narrow gaps, fronts into near vacuum) follows from the scene and may be any
+//! number of particles. The flow through holes is part of the forecast, so the wish itself says how well they are resolved; of the
+//! others the plan warns.
+
+use super::{Amounts, Measured, Method, Quantity, ROOM, Resolution, Scene};
+use crate::plan::ChamberPlan;
+use crate::plan::warnings::{Decided, warnings};
+
+const KEPT: [Quantity; 7] = [
+    Quantity::Particles,
+    Quantity::Occupancy,
+    Quantity::ProbeParticles,
+    Quantity::CellParticles,
+    Quantity::WallHits,
+    Quantity::Flight,
+    Quantity::Step,
+];
+
+pub struct Wanted<'a> {
+    pub scene: &'a Scene,
+    pub measured: &'a Measured,
+    pub amounts: &'a Amounts,
+    pub method: Method,
+    /// At the end.
+    pub particles: f64,
+    /// In local mean spacings.
+    pub cap: Option<f64>,
+}
+
+/// The limits that a plan of these choices would warn of.
+pub fn beyond(wanted: &Wanted<'_>, resolution: &Resolution) -> Vec<Quantity> {
+    let Wanted { scene, measured, amounts, method, particles, cap } = *wanted;
+    let per_mole = particles / amounts.total();
+    let chambers: Vec<ChamberPlan> = scene
+        .chambers
+        .iter()
+        .zip(amounts.initial.iter().zip(&measured.chamber_volumes))
+        .map(|(chamber, (moles, &volume))| ChamberPlan {
+            name: chamber.name.clone(),
+            volume,
+            particles: moles.iter().map(|moles| (moles * per_mole) as u64).collect(),
+        })
+        .collect();
+    let decided = Decided {
+        method,
+        particles: particles as u64,
+        // The plan's own numbers differ a little.
+        number_density: ROOM * particles / measured.gas_volume,
+        resolution,
+        diameter_cap: cap,
+        chambers: &chambers,
+        openings: &[],
+    };
+    let found = warnings(scene, measured, &decided).into_iter().map(|warning| warning.quantity);
+    let mut found: Vec<Quantity> = found.filter(|quantity| KEPT.contains(quantity)).collect();
+    found.dedup();
+    found
+}

@@ -1,0 +1,102 @@
+//! Times that do not belong together: curves that end long after the run or long before, runs of very many steps or of very many
+//! transits of sound.
+
+use super::units::as_written;
+use super::{Kind, Measured, range_of};
+use crate::plan::text::{grouped, significant};
+use crate::scene::{Course, Curve, Dimension, GAS_CONSTANT, Method, Scene, VentFlow};
+
+/// How many times the length of a run a curve may go on.
+const FAR_BEYOND: f64 = 100.0;
+/// How many times as long as a mass flow a run may be: a thousand is a unit, a spark of 10 us in 1 ms a hundred.
+const LONG_AFTER: f64 = 500.0;
+/// Transits of sound from which on a run of particles is long: pressures are uniform after some tens.
+const MANY_TRANSITS: f64 = 1000.0;
+
+fn shown(scene: &Scene, time: f64) -> String {
+    format!("{} {}", as_written(time / scene.units.factor(Dimension::Time)), scene.units.symbol(Dimension::Time))
+}
+
+fn last(curve: &Curve) -> f64 {
+    curve.points.last().map_or(0.0, |point| point[0])
+}
+
+/// Of the curves of a scene.
+pub fn doubts(scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    for orifice in &scene.orifices {
+        let subject = format!("orifice `{}`", orifice.name);
+        found.extend(late(scene, &subject, "mass flow", last(&orifice.mass_flow)));
+        found.extend(late(scene, &subject, "temperature", last(&orifice.temperature)));
+        found.extend(early(scene, &subject, last(&orifice.mass_flow)));
+    }
+    for vent in &scene.vents {
+        if let VentFlow::Discharge(curve) = &vent.flow {
+            found.extend(late(scene, &format!("vent `{}`", vent.name), "discharge", last(curve)));
+        }
+    }
+    for motion in &scene.motions {
+        let (Course::Velocity(curve) | Course::Displacement(curve)) = &motion.course;
+        let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
+        found.extend(late(scene, &subject, "curve", last(curve)));
+    }
+    found
+}
+
+fn late(scene: &Scene, subject: &str, what: &str, ends: f64) -> Option<String> {
+    (ends > FAR_BEYOND * scene.end_time).then(|| {
+        format!(
+            "{subject}: its {what} goes on until {}, {} times `end_time` {}: are its times, or is `end_time`, in another unit?",
+            shown(scene, ends),
+            significant(ends / scene.end_time),
+            shown(scene, scene.end_time)
+        )
+    })
+}
+
+fn early(scene: &Scene, subject: &str, ends: f64) -> Option<String> {
+    (ends > 0.0 && LONG_AFTER * ends < scene.end_time).then(|| {
+        format!(
+            "{subject}: its mass flow is over at {}, and `end_time` {} is {} times that: are its times, or is `end_time`, in another unit?",
+            shown(scene, ends),
+            shown(scene, scene.end_time),
+            significant(scene.end_time / ends)
+        )
+    })
+}
+
+/// What is odd about the number of steps of a run of particles.
+pub fn many_steps(scene: &Scene, steps: f64) -> Option<String> {
+    let range = range_of(Kind::Steps);
+    let step = scene.model.time_step.map_or(String::new(), |step| format!(" or `time_step` {}", shown(scene, step)));
+    (!range.holds(steps)).then(|| {
+        format!(
+            "the run: {} steps, usual is {}: is `end_time` {}{step} in another unit?",
+            grouped(steps as u64),
+            range.words(scene.units),
+            shown(scene, scene.end_time)
+        )
+    })
+}
+
+/// A run of particles that is long beside the time that sound takes through the gas of the first chamber (of gamma 1.4). Free flight
+/// has no sound, and what switches to a control volume is not as long.
+pub fn long_run(scene: &Scene, measured: &Measured, method: Method) -> Option<String> {
+    let first = scene.chambers.first()?;
+    if method == Method::None || scene.model.switch.is_some() || !range_of(Kind::EndTime).holds(scene.end_time) {
+        return None;
+    }
+    let sound = libm::sqrt(1.4 * GAS_CONSTANT * first.temperature / first.mixture.molar_mass(&scene.gases));
+    let transit = libm::cbrt(measured.gas_volume) / sound;
+    let times = scene.end_time / transit;
+    (times > MANY_TRANSITS).then(|| {
+        format!(
+            "the run: end_time {} is {} times the {} {} that sound takes through the gas: is it in another unit? If it is meant, a \
+             `switch` goes on as a control volume once all is uniform",
+            shown(scene, scene.end_time),
+            grouped(times as u64),
+            significant(transit / scene.units.factor(Dimension::Time)),
+            scene.units.symbol(Dimension::Time)
+        )
+    })
+}

@@ -1,0 +1,121 @@
+//! The keys of a wall's surface, and those of parts that have their own.
+
+use super::errors::{Problem, quote};
+use super::numbers::{bounded, not_negative, positive};
+use super::parts::Parts;
+use super::raw::{RawWall, RawWallPart};
+use super::raw_values::At;
+use super::surface_model::{HeatTransfer, SurfaceModel, WallHeat, WallPart};
+use super::types::UnitSystem;
+use super::units::Quantity;
+
+struct Keys<'a> {
+    /// Whose they are, in words.
+    owner: &'static str,
+    temperature: Option<&'a At<f64>>,
+    accommodation: Option<&'a At<f64>>,
+    heat_transfer: Option<&'a At<f64>>,
+    friction: Option<&'a At<f64>>,
+}
+
+impl<'a> Keys<'a> {
+    fn of_wall(raw: &'a RawWall) -> Keys<'a> {
+        Keys {
+            owner: "wall",
+            temperature: raw.temperature.as_ref(),
+            accommodation: raw.accommodation.as_ref(),
+            heat_transfer: raw.heat_transfer.as_ref(),
+            friction: raw.friction.as_ref(),
+        }
+    }
+
+    fn of_part(raw: &'a RawWallPart) -> Keys<'a> {
+        Keys {
+            owner: "part of a wall",
+            temperature: raw.temperature.as_ref(),
+            accommodation: raw.accommodation.as_ref(),
+            heat_transfer: raw.heat_transfer.as_ref(),
+            friction: raw.friction.as_ref(),
+        }
+    }
+
+    fn are_none(&self) -> bool {
+        [self.temperature, self.accommodation, self.heat_transfer, self.friction].iter().all(Option::is_none)
+    }
+
+    /// What is not given is the wall's; `accommodation` and `heat_transfer` are two ways to say one thing.
+    fn or(self, wall: Keys<'a>) -> Keys<'a> {
+        let own_transfer = self.accommodation.is_some() || self.heat_transfer.is_some();
+        let transfer = if own_transfer { &self } else { &wall };
+        Keys {
+            owner: self.owner,
+            temperature: self.temperature.or(wall.temperature),
+            accommodation: transfer.accommodation,
+            heat_transfer: transfer.heat_transfer,
+            friction: self.friction.or(wall.friction),
+        }
+    }
+
+    fn model(&self, units: UnitSystem) -> Result<SurfaceModel, Problem> {
+        Ok(SurfaceModel { heat: self.heat(units)?, friction: self.friction.map_or(Ok(0.0), |at| share(at, units))? })
+    }
+
+    fn heat(&self, units: UnitSystem) -> Result<Option<WallHeat>, Problem> {
+        let Some(temperature) = self.temperature else {
+            let given = [("accommodation", self.accommodation), ("heat_transfer", self.heat_transfer)];
+            return match given.into_iter().find_map(|(key, at)| at.map(|at| (key, at))) {
+                None => Ok(None),
+                Some((key, at)) => Err(Problem::value(
+                    &at.span,
+                    format!("`{key}` of a {} without `temperature`", self.owner),
+                    format!("`{key}` together with `temperature`"),
+                )),
+            };
+        };
+        let transfer = match (self.accommodation, self.heat_transfer) {
+            (Some(_), Some(at)) => {
+                return Err(Problem::value(
+                    &at.span,
+                    "both `accommodation` and `heat_transfer`",
+                    "at most one of them: each follows from the other and the state of the gas",
+                ));
+            }
+            (None, None) => HeatTransfer::Accommodation(1.0),
+            (Some(at), None) => HeatTransfer::Accommodation(share(at, units)?),
+            (None, Some(at)) => HeatTransfer::Coefficient(not_negative(at, Quantity::HeatTransfer, units)?),
+        };
+        Ok(Some(WallHeat { temperature: positive(temperature, Quantity::Temperature, units)?, transfer }))
+    }
+}
+
+fn share(at: &At<f64>, units: UnitSystem) -> Result<f64, Problem> {
+    bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
+}
+
+/// Of all that is in none of the wall's parts.
+pub(super) fn of_wall(raw: &RawWall, units: UnitSystem) -> Result<SurfaceModel, Problem> {
+    Keys::of_wall(raw).model(units)
+}
+
+/// The parts of the wall of this index in the scene.
+pub(super) fn of_parts(raw: &RawWall, wall: usize, names: &Parts, units: UnitSystem) -> Result<Vec<WallPart>, Problem> {
+    const WHOLE: &str = "the keys of a whole wall stand in its [[wall]], without a [[wall.part]]";
+    let mut parts: Vec<WallPart> = Vec::new();
+    for at in &raw.part {
+        let name = &at.value.face;
+        let face = names.find_or(name, wall, WHOLE)?;
+        if let Some(first) = parts.iter().position(|part| part.face == face) {
+            let found = format!("{} for the second time", quote(&name.value));
+            return Err(
+                Problem::value(&name.span, found, "each part of a wall once").clash(&raw.part[first].value.face.span)
+            );
+        }
+        let own = Keys::of_part(&at.value);
+        if own.are_none() {
+            let keys = "at least one of `temperature`, `accommodation`, `heat_transfer`, `friction`";
+            return Err(Problem::value(&at.span, "a part without a key of its surface", keys));
+        }
+        parts.push(WallPart { face, surface: own.or(Keys::of_wall(raw)).model(units)? });
+    }
+    Ok(parts)
+}
