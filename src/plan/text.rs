@@ -45,6 +45,15 @@ pub fn significant(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
+/// Up to six digits, without trailing zeros.
+pub fn as_written(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exact = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+    if (1e-4..1e7).contains(&exact.abs()) { format!("{exact}") } else { format!("{exact:e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,9 +18,10 @@ mod raw_values;
 mod settings;
 mod structure;
 mod surface_model;
+mod surfaces;
 #[cfg(test)]
 mod tests;
-mod types;
+pub(super) mod types;
 mod units;
 mod validate;
 mod vents;

@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use super::surface_model::{SurfaceModel, WallPart};
+use super::surface_model::SurfaceModel;
 
 /// The universal gas constant, J/(mol K) (CODATA 2018, exact).
 pub const GAS_CONSTANT: f64 = 8.314462618;
@@ -79,6 +79,14 @@ impl Mixture {
     pub fn molar_mass(&self, gases: &[Gas]) -> f64 {
         self.0.iter().map(|&(gas, fraction)| fraction * gases[gas].molar_mass).sum()
     }
+}
+
+/// A named part of a wall whose surface differs from the rest of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallPart {
+    pub face: Face,
+    /// With the wall's where the scene gives none.
+    pub surface: SurfaceModel,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use super::numbers::{bounded, not_negative, positive};
 use super::parts::Parts;
 use super::raw::{RawWall, RawWallPart};
 use super::raw_values::At;
-use super::surface_model::{HeatTransfer, SurfaceModel, WallHeat, WallPart};
-use super::types::UnitSystem;
+use super::surface_model::{HeatTransfer, SurfaceModel, WallHeat};
+use super::types::{UnitSystem, WallPart};
 use super::units::Quantity;
 
 struct Keys<'a> {

@@ -5,7 +5,7 @@
 //! only the pressure is left. So it says what each takes, and what the vent would be; where the scene says that only the flow
 //! matters (`flow_only`), both are planned and the better one is taken (`simulation::flow_only`).
 
-use super::Possible;
+use super::possible::Possible;
 use crate::gas::continuum_coefficient;
 use crate::plan::amounts::Amounts;
 use crate::plan::forecast::{Cause, DISCHARGE_UNKNOWN, Modelled, Outlook, pressures};

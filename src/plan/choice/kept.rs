@@ -4,9 +4,12 @@
 //! number of particles. The flow through holes is part of the forecast, so the wish itself says how well they are resolved; of the
 //! others the plan warns.
 
-use super::{Amounts, Measured, Method, Quantity, ROOM, Resolution, Scene};
+use super::{Amounts, Measured, Method, Quantity, Resolution, Scene};
 use crate::plan::ChamberPlan;
 use crate::plan::warnings::{Decided, warnings};
+
+/// Counts of particles differ from what was asked by the rounding of chambers and gases.
+pub(super) const ROOM: f64 = 0.999;
 
 const KEPT: [Quantity; 7] = [
     Quantity::Particles,

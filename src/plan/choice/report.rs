@@ -1,7 +1,9 @@
 //! The choice in words: what was chosen, what it is worth and costs, what the next plans would be, and why.
 
+use super::chooser::{AIM, Chooser, Limits, NEXT};
 use super::holes::Holes;
-use super::{AIM, Chooser, Limits, NEXT, Possible};
+use super::possible::Possible;
+use super::words::{duration, percent, words};
 use crate::plan::forecast::{Alternative, Cause, ColumnForecast, Forecast, worst};
 use crate::plan::text::{grouped, significant};
 use crate::plan::{Plan, Quantity, Reason};
@@ -103,35 +105,6 @@ impl Choice {
 
 fn reason(quantity: &str, value: String, why: String) -> Reason {
     Reason { quantity: quantity.into(), value, why }
-}
-
-fn percent(error: f64) -> String {
-    format!("{} %", significant(100.0 * error))
-}
-
-/// A time for people.
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{} s", significant((100.0 * s).round() / 100.0)),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-/// A plan in a few words.
-pub fn words(plan: &Possible) -> String {
-    match plan.candidate.method {
-        Method::ControlVolume => "control-volume".into(),
-        method => format!("{} with {} particles", method.name(), grouped(plan.candidate.particles as u64)),
-    }
-}
-
-/// What keeps the best plan from being better.
-pub fn shortfall(plan: &Possible) -> String {
-    let column = worst(&plan.columns);
-    let cause = column.and_then(ColumnForecast::main_cause).map_or("nothing", Cause::name);
-    let name = column.map_or("", |column| column.name.as_str());
-    format!("{}, is {} off in {name} ({cause})", words(plan), significant(plan.error))
 }
 
 fn hole_reason(method: Method, name: &str, knudsen: f64, columns: &[ColumnForecast]) -> Reason {

@@ -1,7 +1,9 @@
+use super::chooser::AIM;
 use super::*;
 use crate::plan::forecast::{SeenProbe, SeenSurface};
 use crate::plan::tests::tank;
 use crate::plan::{Plan, plan};
+use crate::scene::types::ModelRequest;
 use crate::scene::{DiameterCap, Face, Probe, Region, Surface, Switch};
 
 /// The published tank with a wall that is measured and a probe before the hole.

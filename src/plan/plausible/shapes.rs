@@ -1,7 +1,7 @@
 //! Radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
 //! radius, a vent through exactly four times the disc that it is given.
 
-use super::units::as_written;
+use crate::plan::text::as_written;
 use crate::scene::{Dimension, GasSide, Region, Scene, Shape, Vent};
 
 /// How near to 1 the ratio of two lengths is that were meant to be the same number.

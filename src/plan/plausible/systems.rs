@@ -1,6 +1,6 @@
 //! Numbers that are those of another unit system than the one that the scene says.
 
-use super::{Kind, Range, most, range_of};
+use super::range::{Kind, Range, most, range_of};
 use crate::scene::{GAS_CONSTANT, HeatCapacity, JetSpeed, Scene, Shape, UnitSystem};
 
 const SYSTEMS: [(UnitSystem, &str); 3] =

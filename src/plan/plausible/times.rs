@@ -1,9 +1,9 @@
 //! Times that do not belong together: curves that end long after the run or long before, runs of very many steps or of very many
 //! transits of sound.
 
-use super::units::as_written;
-use super::{Kind, Measured, range_of};
-use crate::plan::text::{grouped, significant};
+use super::range::{Kind, range_of};
+use crate::plan::measured::Measured;
+use crate::plan::text::{as_written, grouped, significant};
 use crate::scene::{Course, Curve, Dimension, GAS_CONSTANT, Method, Scene, VentFlow};
 
 /// How many times the length of a run a curve may go on.

@@ -1,6 +1,6 @@
 //! In which unit a number is likely meant, and how numbers are written so that their author knows them again.
 
-use super::Range;
+use super::range::Range;
 use crate::scene::{Dimension, UnitSystem};
 
 /// Name and SI units in it. Of several names of one size the first of the list is told.
@@ -75,13 +75,4 @@ pub fn atmosphere_in(written: f64, units: UnitSystem) -> Option<&'static str> {
     let is_one = |factor: f64| libm::fabs(written * factor / ATMOSPHERE - 1.0) < ROUNDED;
     let pressures = UNITS.iter().filter(|(dimension, ..)| *dimension == Dimension::Pressure);
     pressures.filter(|(_, _, factor)| is_one(*factor) && !is_one(own)).map(|known| known.1).next()
-}
-
-/// Up to six digits, without trailing zeros.
-pub fn as_written(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let exact = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
-    if (1e-4..1e7).contains(&exact.abs()) { format!("{exact}") } else { format!("{exact:e}") }
 }

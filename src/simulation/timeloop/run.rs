@@ -9,7 +9,6 @@ use super::observer::{Moment, Observer, Outcome};
 use super::simulation::Simulation;
 use super::submit::Machine;
 use crate::gpu::Recording;
-use crate::ranks::Communicator;
 use crate::simulation::accounting::audit::count_outside;
 use crate::simulation::control::interval::{Deal, Interval, Span};
 use crate::simulation::error::SimulationError;

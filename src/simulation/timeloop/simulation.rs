@@ -1,7 +1,7 @@
 //! What a rank of a run has, from its start or from a state.
 
 use super::interrupt::Request;
-use super::observer::{Observer, Options};
+use super::observer::Options;
 use super::setup::Setup;
 use super::submit::InFlight;
 use crate::gas::Inflow;
