@@ -1,11 +1,10 @@
 //! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl entering.wgsl flown.wgsl
-//! binds: cell_counts as cell_start
 //! phase: bin
 // Puts the newborns behind the particles, counts the particles of each cell, by their mid-step position (by that at the start of the step, where collisions
 // are then), and finds those that other devices need.
 //
 // Reads `particles` and `newborns`; writes `particles[count ..]`, `bins` (bin and slot within the cell, or NOBODY for a particle that neither is
-// owned here nor lies in the halo) and the counts (`cell_start`, the buffer in which `scan_cells` finds them, zero before), and appends the
+// owned here nor lies in the halo) and `cell_counts` (zero before), and appends the
 // earlier particles in cells that others own or have in their halo to `border` (slot, cell). One thread per slot. The slot
 // within the cell depends on the order of the threads; where an order matters it is replaced by the rank of the id (arrange_crowded.wgsl). On a device that is stalled
 // (STALLED) nobody is in any cell, and nobody enters.
@@ -16,7 +15,7 @@ var<uniform> step: Step;
 var<storage, read> stalled: array<u32>;
 var<storage, read_write> particles: array<Packed>;
 var<storage, read_write> bins: array<vec2<u32>>;
-var<storage, read_write> cell_start: array<atomic<u32>>;
+var<storage, read_write> cell_counts: array<atomic<u32>>;
 var<storage, read_write> border: array<vec2<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -32,9 +31,10 @@ fn bin(thread: Thread) {
     let place = particles[i].position_tag;
     let cell = flown_cell(place.xyz, particles[i].motion.xyz);
     let there = place.w != NOBODY;
+    // bench: binned
     if (there && has_bin(cell)) {
         let index = local_index(cell);
-        bins[i] = vec2<u32>(index, atomicAdd(&cell_start[index], 1u));
+        bins[i] = vec2<u32>(index, atomicAdd(&cell_counts[index], 1u));
     } else {
         bins[i] = vec2<u32>(NOBODY, 0u);
         atomicAdd(&counters[COUNT_DROPPED], 1u);

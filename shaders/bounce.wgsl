@@ -11,7 +11,7 @@ var<storage, read> bouncing: array<u32>;
 @compute @workgroup_size(WORKGROUP)
 fn bounce(thread: Thread) {
     let entry = linear(thread);
-    if (entry >= atomicLoad(&counters[bounces_of(step.slot)])) {
+    if (entry >= atomicLoad(&counters[LIST_BOUNCE])) {
         return;
     }
     bounce_off(bouncing[entry], entry);

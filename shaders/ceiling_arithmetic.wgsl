@@ -20,6 +20,7 @@ fn ceiling_arithmetic(thread: Thread) {
     var b = a + term;
     var c = b + term;
     var d = c + term;
+    // bench: arithmetic
     for (var i = 0u; i < LOOPS; i++) {
         a = fma(a, factor, term);
         b = fma(b, factor, term);

@@ -1,11 +1,10 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl on_demand.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl stretches.wgsl emptying.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl on_demand.wgsl chooser.wgsl cap.wgsl neighbour_list.wgsl listed.wgsl
 //! binds: on_demand_dispatches as dispatches
 //! phase: choose lost
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
 // or at once if they overlap and approach (specification, section 2).
 //
-// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time), in the first round of a
-// device alone also `cell_start`, which it empties, if need be by more threads than choose.
+// Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time).
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that
 // collided, or whose neighbour did, otherwise than before. Ghosts that wait until they are asked (on_demand.wgsl)
 // choose nobody, and are appended to `on_demand` when they are; a second pass is over those. The choice is the minimum over (time, partner id), so it does not depend on
@@ -23,21 +22,8 @@ var<storage, read_write> choices: array<vec2<u32>>;
 
 var<storage, read_write> marks: array<atomic<u32>>;
 
-var<storage, read_write> cell_start: array<vec4<u32>>;
-
-// The share of a thread of so many: after the search nobody on a device alone asks where the cells start.
-fn empty_cells(thread: u32, threads: u32) {
-    let fours = (step.bins / CHUNK + 1u) * (CHUNK / 4u);
-    for (var four = thread; four < fours; four += threads) {
-        cell_start[four] = vec4<u32>(0u);
-    }
-}
-
 @compute @workgroup_size(WORKGROUP)
 fn choose(thread: Thread) {
-    if (step.peers == 0u && step.round == 0u && choose_empties()) {
-        empty_cells(linear(thread), groups_of(thread) * WORKGROUP);
-    }
     let s = chooser(linear(thread));
     if (s == NOBODY) {
         return;
@@ -59,6 +45,7 @@ fn choose(thread: Thread) {
     let own_latest = min(step.dt, own_flight.wall);
     var direct = direct_of(s);
     let tail = direct.w;
+    // bench: entry
     for (var k = 0u; k < listed; k++) {
         var j = direct.x;
         direct = direct.yzww;
@@ -74,11 +61,13 @@ fn choose(thread: Thread) {
         }
         var time = -dot(r, g) / g2;
         // Most candidates pass too far away, or not in this step: so much can be told without the other's flight.
+        // bench: in time
         if (!RIGID && !(time >= own_flight.start && time < own_latest)) {
             continue;
         }
         let miss = r + g * time;
         let miss2 = dot(miss, miss);
+        // bench: near
         if (miss2 >= DIAMETER * DIAMETER) {
             continue;
         }

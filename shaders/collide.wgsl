@@ -156,6 +156,7 @@ fn collide(thread: Thread) {
     let begin = cell_start[bin];
     let bin_end = cell_start[bin + 1u];
     var candidates = 0u;
+    // bench: shared
     if (bin_end > begin + 1u) {
         let here = nearest_cell(sorted[begin].position_tag.xyz);
         let cell = cell_index(here);
@@ -166,11 +167,13 @@ fn collide(thread: Thread) {
         } else if ((entry & DIVIDED) != 0u) {
             divided[append(LIST_DIVIDED)] = bin;
         } else {
+            // bench: in order
             if (count <= MEMBERS) {
                 put_in_order(begin, count);
                 while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].position_tag.w))) {
                     count--;
                 }
+                // bench: colliding
                 if (count > 1u) {
                     let bulk = bulk_of_few(begin, count);
                     let done = collide_members(begin, count, bulk, bitcast<f32>(entry), cell, 0u);

@@ -56,6 +56,7 @@ fn exchange(rows: ptr<function, array<Row, ROWS>>, low: u32, high: u32) {
 // The stages of a bitonic network (Batcher, 1968) that works on four columns at a time. Of each stretch of 2 `half` rows the first with the
 // last, and so on.
 fn mirror(rows: ptr<function, array<Row, ROWS>>, half: u32) {
+    // bench: half of the rows
     for (var k = 0u; k < ROWS / 2u; k++) {
         let first = 2u * (k - k % half);
         exchange(rows, first + k % half, first + 2u * half - 1u - k % half);
@@ -64,6 +65,7 @@ fn mirror(rows: ptr<function, array<Row, ROWS>>, half: u32) {
 
 // Each row of the first half with that of the second.
 fn halve(rows: ptr<function, array<Row, ROWS>>, half: u32) {
+    // bench: half of the rows
     for (var k = 0u; k < ROWS / 2u; k++) {
         let first = 2u * k - k % half;
         exchange(rows, first, first + half);
@@ -98,6 +100,7 @@ fn exchange_columns(rows: ptr<function, array<Row, ROWS>>, low: u32, high: u32) 
 
 // Two columns, each in order, as `mirror`: the first row of the one with the last of the other, and so on.
 fn mirror_pairs(rows: ptr<function, array<Row, ROWS>>) {
+    // bench: row
     for (var k = 0u; k < ROWS; k++) {
         exchange_columns(rows, k, ROWS - 1u - k);
     }
@@ -105,6 +108,7 @@ fn mirror_pairs(rows: ptr<function, array<Row, ROWS>>) {
 
 // The same of the first two columns, in order one after the other, and the last two.
 fn mirror_all(rows: ptr<function, array<Row, ROWS>>) {
+    // bench: row
     for (var k = 0u; k < ROWS; k++) {
         let a = (*rows)[k];
         let b = (*rows)[ROWS - 1u - k];
@@ -123,6 +127,7 @@ fn mirror_all(rows: ptr<function, array<Row, ROWS>>) {
 
 // Each row of the first column with that of the second, of the third with that of the fourth.
 fn halve_pairs(rows: ptr<function, array<Row, ROWS>>) {
+    // bench: row
     for (var k = 0u; k < ROWS; k++) {
         exchange_columns(rows, k, k);
     }
@@ -136,6 +141,7 @@ fn put(place: u32, end: u32, slot: u32) {
 
 fn put_in_order(begin: u32, end: u32) {
     var rows: array<Row, ROWS>;
+    // bench: row
     for (var k = 0u; k < ROWS; k++) {
         rows[k] = row_of(begin, end, k);
     }
@@ -154,6 +160,7 @@ fn put_in_order(begin: u32, end: u32) {
     mirror_all(&rows);
     halve_pairs(&rows);
     halve_all(&rows);
+    // bench: row
     for (var k = 0u; k < ROWS; k++) {
         put(begin + k, end, rows[k].slots.x);
         put(begin + ROWS + k, end, rows[k].slots.y);
@@ -172,6 +179,7 @@ fn collide_crowded(thread: Thread) {
     let cell = index_of(bin);
     let begin = cell_start[bin];
     let end = cell_start[bin + 1u];
+    // bench: fits
     if (fits_a_thread(begin, end)) {
         put_in_order(begin, end);
     } else if (NETWORKS) {
@@ -185,6 +193,7 @@ fn collide_crowded(thread: Thread) {
     while (count > 0u && is_newborn(id_of(sorted[member(begin, count - 1u, 0u)].position_tag.w))) {
         count--;
     }
+    // bench: colliding
     if (count > 1u) {
         let bulk = bulk_of(begin, count, 0u);
         let done = collide_members(begin, count, bulk, bitcast<f32>(cell_volume[cell]), cell, 0u);

@@ -97,6 +97,7 @@ fn complete_lists(thread: Thread) {
         return;
     }
     // (Ghosts that are asked may have collided since; when they meet a wall they knew before.)
+    // bench: near a wall
     if (step.ghosts != GHOSTS_ON_DEMAND && (marks[s] & NEAR) != 0u) {
         atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         let start = bitcast<f32>(neighbours[2u * s].x);

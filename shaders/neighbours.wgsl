@@ -75,6 +75,7 @@ fn take_found(s: u32, velocity: vec3<f32>, own: Listed, midpoint: u32, found_par
         own_place = atomicAdd(&neighbour_count[s], found);
     }
     var p = 0u;
+    // bench: found
     for (; p < found; p++) {
         let j = partners.x;
         let other = places.x;
@@ -161,6 +162,7 @@ fn neighbours_of(thread: Thread) {
         var partners = vec4<u32>(0u);
         var places = vec4<u32>(0u);
         // One loop over all rows: threads that run together wait for the one with the most candidates, not for the fullest row of each.
+        // bench: candidate
         for (; k < turns && found < KEPT; k++) {
             var base = r0;
             base = select(base, r1.x - e0, k >= e0);

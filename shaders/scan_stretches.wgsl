@@ -22,6 +22,7 @@ fn scan_stretches(@builtin(local_invocation_index) thread: u32) {
     let begin = min(thread * share, count);
     let end = min(begin + share, count);
     var sum = 0u;
+    // bench: stretches
     for (var k = begin; k < end; k += 4u) {
         let four = four_from(k, end);
         sum += four.x + four.y + four.z + four.w;
@@ -29,6 +30,7 @@ fn scan_stretches(@builtin(local_invocation_index) thread: u32) {
     workgroup_sums[thread] = sum;
     workgroupBarrier();
     var before = sums_before(thread);
+    // bench: stretches
     for (var k = begin; k < end; k += 4u) {
         let four = four_from(k, end);
         for (var j = 0u; j < min(4u, end - k); j++) {

@@ -84,6 +84,7 @@ fn contains(zone: Zone, p: vec3<u32>) -> bool {
         }
         return all(p >= zone.low) && all(p < zone.high);
     }
+    // bench: everywhere
     if (zone.kind == EVERYWHERE) {
         return true;
     }
@@ -166,6 +167,7 @@ fn tally(
     let count = select(step.total, 0u, stalled[STALLED] > 0u);
     var sums_of_first = Sums();
     var sums_of_second = Sums();
+    // bench: particle
     for (var k = 0u; k < CHUNK_LOOPS; k++) {
         let i = (group.y * CHUNK_LOOPS + k) * WORKGROUP + thread;
         if (i >= count) {
@@ -180,6 +182,7 @@ fn tally(
             continue;
         }
         let position = place.xyz;
+        // bench: inside
         if (!contains(here, position) || taken(zone, position)) {
             continue;
         }

@@ -1,33 +1,11 @@
-//! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl stretches.wgsl entering.wgsl walls.wgsl flying.wgsl binned.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl lists.wgsl entering.wgsl walls.wgsl flying.wgsl binned.wgsl
 // The flight of a particle to the end of the step. (Those that meet walls, or may, are left to `meet_walls` of what uses this.)
 
 var<storage, read_write> marks: array<u32>;
-var<storage, read_write> stretch_sums: array<u32>;
-
-// The list that the step before has filled.
-fn empty_bounces() {
-    let list = bounces_of(step.slot + 1u);
-    atomicStore(&counters[list], 0u);
-    atomicStore(&dispatches[3u * list], 0u);
-    atomicStore(&dispatches[3u * list + 1u], 1u);
-}
-
-fn empty_sums(thread: u32) {
-    if (thread < arrayLength(&stretch_sums)) {
-        stretch_sums[thread] = 0u;
-    }
-}
 
 // By thread s.
 fn advect_slot(s: u32) {
-    if (s == 0u) {
-        empty_bounces();
-        atomicStore(&counters[COUNT_DROPPED], 0u);
-    }
     let alone = step_state[INTERVAL_STEPS] > 0u;
-    if (COLLISIONS && alone) {
-        empty_sums(s);
-    }
     let stalled_here = ROUNDS_OF_PAIRS && stalled[STALLED] > 0u;
     if (bins_next() && s < step.total + step.next_newborns && (stalled_here || s >= step.total)) {
         // Those who enter in the step that follows; on a device that is stalled nobody.

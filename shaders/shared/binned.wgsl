@@ -4,7 +4,7 @@
 override COLLISIONS: bool = true;
 
 var<storage, read_write> bins: array<vec2<u32>>;
-// Zero before the first of a step: emptied by the first of `choose` or a clear, or where they lie apart from the starts by `scan_cells`.
+// Zero before the first of a step: cleared when the starts that the scan puts there are done with (clear_cells.wgsl).
 var<storage, read_write> cell_counts: array<atomic<u32>>;
 
 fn bins_next() -> bool {

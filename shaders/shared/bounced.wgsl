@@ -116,9 +116,11 @@ fn bounce_off(s: u32, entry: u32) {
     var carried = vec3<f32>(0.0);
     var overshoot = 0.0;
     var ended = false;
+    // bench: hit
     loop {
         let hit = first_hit(particle.position, particle.velocity, time, step.dt);
         overshoot = max(overshoot, hit.overshoot);
+        // bench: last
         if (hit.triangle == NOBODY) {
             ended = true;
             break;

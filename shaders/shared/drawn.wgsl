@@ -31,7 +31,9 @@ fn drawn_list(motion: Motion, cells: DrawnCells, y: i32, z: i32) -> vec2<u32> {
 
 // Whether any of the cells has a triangle.
 fn any_drawn(motion: Motion, cells: DrawnCells) -> bool {
+    // bench: plane of cells
     for (var z = cells.low.z; z <= cells.high.z; z++) {
+        // bench: row of cells
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let list = drawn_list(motion, cells, y, z);
             if (list.x < list.y) {

@@ -50,11 +50,13 @@ struct Bulk {
 
 fn bulk_of(begin: u32, count: u32, part: u32) -> Bulk {
     var bulk = Bulk(vec3<f32>(0.0), 0.0);
+    // bench: member
     for (var k = 0u; k < count; k++) {
         bulk.mean += sorted[member(begin, k, part)].motion.xyz;
     }
     bulk.mean /= f32(count);
     var k = 0u;
+    // bench: member
     for (; k < count; k++) {
         let away = sorted[member(begin, k, part)].motion.xyz - bulk.mean;
         bulk.farthest2 = max(bulk.farthest2, dot(away, away));
@@ -78,6 +80,7 @@ fn collide_members(begin: u32, count: u32, bulk: Bulk, volume: f32, cell: u32, p
     let first = philox(vec4<u32>(step.index, cell, 0u, part), key);
     var candidates = at_most(pairs * (CROSS_SECTION * bound * step.dt / volume) + unit_interval(first.x));
     var done = Collided(0u, 0u);
+    // bench: candidate pair
     while (done.candidates < candidates) {
         done.candidates++;
         let draw = philox(vec4<u32>(step.index, cell, 4u * done.candidates, part), key);

@@ -3,11 +3,6 @@
 // every thread.) The order of a list depends on the order of the threads; entries are independent.
 // Their numbers are in src/subdomain/registry.rs.
 
-// Of the steps at even places in their interval, and of those at odd ones: `advect` empties the one that it does not fill.
-fn bounces_of(slot: u32) -> u32 {
-    return select(LIST_BOUNCE, LIST_BOUNCE_ODD, slot % 2u == 1u);
-}
-
 // Workgroups per dimension of an indirect dispatch.
 const GROUP_LIMIT: u32 = 65535;
 

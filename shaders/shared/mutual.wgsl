@@ -24,6 +24,7 @@ fn mutual(s: u32) -> Mutual {
     let other_tag = tag_of(other);
     // Of those who have not chosen in this step the choice says nothing, but of ghosts.
     let has_chosen = (other_mark & ((CHOOSES << (step.round + 1u)) - CHOOSES)) != 0u || (among_others() && (other_mark & LAYER) != 0u);
+    // bench: mutual
     if (!has_chosen || other_choice != s) {
         return none;
     }

@@ -5,7 +5,7 @@
 // Each thread's four behind those of the threads before it; how many particles are before the next fours.
 fn write_fours(four: u32, counts: vec4<u32>, before: u32) -> u32 {
     let all = counts.x + counts.y + counts.z + counts.w;
-    put_starts(four, starts_of(counts, before + subgroupExclusiveAdd(all)).starts);
+    cell_start[four] = starts_of(counts, before + subgroupExclusiveAdd(all)).starts;
     return before + subgroupAdd(all);
 }
 
@@ -21,10 +21,10 @@ fn write_starts(thread: Thread, chunk: u32, before_chunk: u32, own: u32) {
     for (var turn = 0u; turn < CHUNK / 4u; turn += 4u) {
         // (All are read before any is written.)
         let four = first * (CHUNK / 4u) + turn * threads + lane;
-        let counts0 = counts_of(four);
-        let counts1 = counts_of(four + threads);
-        let counts2 = counts_of(four + 2u * threads);
-        let counts3 = counts_of(four + 3u * threads);
+        let counts0 = cell_start[four];
+        let counts1 = cell_start[four + threads];
+        let counts2 = cell_start[four + 2u * threads];
+        let counts3 = cell_start[four + 3u * threads];
         before = write_fours(four, counts0, before);
         before = write_fours(four + threads, counts1, before);
         before = write_fours(four + 2u * threads, counts2, before);

@@ -5,23 +5,6 @@ struct Starts {
     next: u32,
 }
 
-// The counts lie where the starts will be, or apart, where they are emptied for the step that follows.
-override COUNTS_APART: bool = false;
-
-fn counts_of(four: u32) -> vec4<u32> {
-    if (COUNTS_APART) {
-        return cell_counts[four];
-    }
-    return cell_start[four];
-}
-
-fn put_starts(four: u32, starts: vec4<u32>) {
-    cell_start[four] = starts;
-    if (COUNTS_APART) {
-        cell_counts[four] = vec4<u32>(0u);
-    }
-}
-
 fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
     let two = counts.x + counts.y;
     let three = two + counts.z;
@@ -32,19 +15,20 @@ fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
 fn write_starts_of_fours(begin: u32, end: u32, before_first: u32) {
     var before = before_first;
     // Four fours are read before any is written: a read would wait for what was written before it.
+    // bench: started
     for (var four = begin; four < end; four += 4u) {
-        let counts0 = counts_of(four);
-        let counts1 = counts_of(four + 1u);
-        let counts2 = counts_of(four + 2u);
-        let counts3 = counts_of(four + 3u);
+        let counts0 = cell_start[four];
+        let counts1 = cell_start[four + 1u];
+        let counts2 = cell_start[four + 2u];
+        let counts3 = cell_start[four + 3u];
         let starts0 = starts_of(counts0, before);
         let starts1 = starts_of(counts1, starts0.next);
         let starts2 = starts_of(counts2, starts1.next);
         let starts3 = starts_of(counts3, starts2.next);
-        put_starts(four, starts0.starts);
-        put_starts(four + 1u, starts1.starts);
-        put_starts(four + 2u, starts2.starts);
-        put_starts(four + 3u, starts3.starts);
+        cell_start[four] = starts0.starts;
+        cell_start[four + 1u] = starts1.starts;
+        cell_start[four + 2u] = starts2.starts;
+        cell_start[four + 3u] = starts3.starts;
         before = starts3.next;
     }
 }
@@ -54,6 +38,7 @@ fn write_starts_of_chunk(chunk: u32, before: u32, own: u32) {
     let begin = chunk * (CHUNK / 4u);
     let end = begin + CHUNK / 4u;
     if (own == 0u) {
+        // bench: empty
         for (var four = begin; four < end; four++) {
             cell_start[four] = vec4<u32>(before);
         }

@@ -2,7 +2,7 @@
 
 // Cells of a chunk, a multiple of 32.
 override CHUNK: u32;
-// So few are summed by each chunk (scan_cells.wgsl), and their cells emptied by `choose` (of more on a GPU, too: emptying.gpu.wgsl).
+// So few are summed by each chunk (scan_cells.wgsl).
 override FEW_STRETCHES: u32;
 
 fn few_stretches() -> bool {

@@ -31,6 +31,7 @@ fn touch_neighbours(listed_s: u32, direct_s: vec4<u32>, listed_t: u32, direct_t:
     let most = max(listed_s, listed_t);
     let turns = select(1u, 1u + most / 4u, most > DIRECT);
     var turn = 0u;
+    // bench: touched
     for (; turn < turns; turn++) {
         let read_s = read_of(listed_s, turn);
         let read_t = read_of(listed_t, turn);

@@ -172,6 +172,7 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
     // (What is left out early is not read.)
     let normal = triangles[index].normal;
     let approach = -dot(v, normal);
+    // bench: side
     if (approach <= 0.0) {
         return;
     }
@@ -203,10 +204,13 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     let from_point = shifted(x0, v, start);
     let to_point = shifted(x0, v, end);
     let cells = cells_of(from_point, to_point);
+    // bench: plane of cells
     for (var z = cells.low.z; z <= cells.high.z; z++) {
+        // bench: row of cells
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let list = row_list(cells, y, z);
             var k = list.x;
+            // bench: triangle
             for (; k < list.y; k++) {
                 meet(&hit, wall_list[k], from_point, v, start, end);
             }
@@ -219,10 +223,13 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             if (touches(cells, motion)) {
                 let from_frame = in_frame(from_point, motion, start);
                 let drawn = drawn_cells(motion, from_frame, in_frame(to_point, motion, end));
+                // bench: plane of cells
                 for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+                    // bench: row of cells
                     for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                         let list = drawn_list(motion, drawn, y, z);
                         var k = list.x;
+                        // bench: triangle
                         for (; k < list.y; k++) {
                             meet(&hit, wall_list[k], from_frame, v - motion.velocity, start, end);
                         }
@@ -241,12 +248,14 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
     let from_point = shifted(x0, v, start);
     let c = nearest_cell(from_point);
     let reach = max(max(abs(v.x), abs(v.y)), abs(v.z)) * (dt - start) * QUANTA;
+    // bench: far
     if (reach >= f32(1u << CELL_BITS)) {
         return true;
     }
     let cell = cell_index(c);
     let classes = cell_class[cell >> 4u];
     let around = class_among(classes, cell);
+    // bench: around
     if (around == CLASS_SOLID
         || (around != CLASS_CLEAR && !before_walls(c, near_among(classes, cell), from_point, shifted(x0, v, dt)))) {
         return true;
@@ -297,10 +306,13 @@ fn lies_between(triangle: Triangle, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>
 // Whether a moving wall lies between two points of its frame.
 fn blocked_by(motion: Motion, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
     let drawn = drawn_cells(motion, p, q);
+    // bench: plane of cells
     for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+        // bench: row of cells
         for (var y = drawn.low.y; y <= drawn.high.y; y++) {
             let list = drawn_list(motion, drawn, y, z);
             var k = list.x;
+            // bench: triangle
             for (; k < list.y; k++) {
                 if (parts(wall_list[k], p, q, along)) {
                     return true;
@@ -316,10 +328,13 @@ fn blocked_by(motion: Motion, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> b
 fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     let cells = cells_of(p, q);
     let along = between(p, q);
+    // bench: plane of cells
     for (var z = cells.low.z; z <= cells.high.z; z++) {
+        // bench: row of cells
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             let list = row_list(cells, y, z);
             var k = list.x;
+            // bench: triangle
             for (; k < list.y; k++) {
                 if (parts(wall_list[k], p, q, along)) {
                     return true;

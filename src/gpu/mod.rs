@@ -12,7 +12,7 @@ mod timer;
 pub use buffer::Readback;
 pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
 pub use kernel::{BoundKernel, Kernel, Pass, fold};
-pub use operations::{Operations, Stretch};
+pub use operations::{MARK, Operations, Stretch};
 pub use runtime_constants::RuntimeConstants;
 pub use source::{Access, Binding, Constants, KernelSource, KernelVariant};
 pub use timer::{PhaseTimer, Recording};

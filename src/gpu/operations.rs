@@ -18,7 +18,7 @@ use super::GpuError;
 use super::source::{Constants, KernelSource};
 use walk::WholeKernel;
 
-pub use stretch::{Operations, Stretch};
+pub use stretch::{MARK, Operations, Stretch};
 
 impl Stretch {
     /// Counts a kernel for these constants.

@@ -1,6 +1,6 @@
 //! The buffers of a subdomain, named as the shaders name them.
 
-use crate::gpu::{Device, GpuError, KernelVariant};
+use crate::gpu::{Device, GpuError};
 
 use super::cell_table::CellTable;
 use super::constants::Features;
@@ -19,10 +19,6 @@ pub fn few_stretches(bins: u64) -> bool {
     bins / STRETCH < FEW_STRETCHES
 }
 
-/// Whether on a device alone the first of `choose` empties the cells for the next step (`shaders/shared/emptying.wgsl`).
-pub fn choose_empties(variant: KernelVariant, bins: u64) -> bool {
-    variant == KernelVariant::Gpu || few_stretches(bins)
-}
 /// Words of a particle's record, its flight and the first entries of its neighbour list (`shaders/shared/neighbour_list.wgsl`): the room
 /// of a particle.
 pub const RECORD: u64 = 8;
@@ -179,10 +175,9 @@ pub fn step_stride(device: &Device) -> u64 {
     (size_of::<GpuStep>() as u64).next_multiple_of(alignment.max(1))
 }
 
-/// Bytes of these buffers for each bin, with the counts apart from the starts or in their place.
-pub fn bytes_per_bin(apart: bool) -> f64 {
-    let words = if apart { 2.0 } else { 1.0 };
-    4.0 * (words + 1.0 / CHUNK as f64 + 1.0 / STRETCH as f64)
+/// Bytes of these buffers for each bin.
+pub fn bytes_per_bin() -> f64 {
+    4.0 * (1.0 + 1.0 / CHUNK as f64 + 1.0 / STRETCH as f64)
 }
 
 /// What grows with the number of cells that have bins.
@@ -191,40 +186,24 @@ pub struct CellBuffers {
     pub chunk_sums: wgpu::Buffer,
     /// Of stretches of STRETCH cells.
     pub stretch_sums: wgpu::Buffer,
-    /// First the counts of a step's cells, then where their particles start.
-    pub cell_start: wgpu::Buffer,
-    /// Of the method `cell` the counts, apart from the starts; zero between scan and flight.
+    /// How many particles each cell has, and from the scan on where they start (`cell_start`).
     pub cell_counts: wgpu::Buffer,
-    apart: bool,
 }
 
 impl CellBuffers {
-    pub fn new(device: &Device, bins: u64, apart: bool) -> Result<CellBuffers, GpuError> {
+    pub fn new(device: &Device, bins: u64) -> Result<CellBuffers, GpuError> {
+        // Starts of the cells and of the end, which kernels write by chunks.
+        let chunked = CHUNK * (bins / CHUNK + 1);
         Ok(CellBuffers {
             capacity: bins,
             chunk_sums: device.storage::<u32>("chunk_sums", (bins / STRETCH + 1) * (STRETCH / CHUNK))?,
             stretch_sums: device.storage::<u32>("stretch_sums", bins / STRETCH + 1)?,
-            cell_start: device.storage::<u32>("cell_start", CellBuffers::start_bytes(bins) / 4)?,
-            cell_counts: device
-                .storage::<u32>("cell_counts", if apart { CellBuffers::start_bytes(bins) / 4 } else { 4 })?,
-            apart,
+            cell_counts: device.storage::<u32>("cell_counts", chunked)?,
         })
-    }
-}
-
-impl CellBuffers {
-    /// Of the starts of so many bins and of the end, which kernels write by chunks.
-    pub fn start_bytes(bins: u64) -> u64 {
-        4 * CHUNK * (bins / CHUNK + 1)
-    }
-
-    /// Where the counts are.
-    pub fn counts(&self) -> &wgpu::Buffer {
-        if self.apart { &self.cell_counts } else { &self.cell_start }
     }
 
     pub fn bytes(&self) -> u64 {
-        self.chunk_sums.size() + self.stretch_sums.size() + self.cell_start.size() + self.cell_counts.size()
+        self.chunk_sums.size() + self.stretch_sums.size() + self.cell_counts.size()
     }
 }
 
@@ -435,9 +414,7 @@ impl<'a> Buffers<'a> {
             "still_gas" => &domain.still_gas,
             "chunk_sums" => &cell.chunk_sums,
             "stretch_sums" => &cell.stretch_sums,
-            "cell_counts" => cell.counts(),
-            "counts_apart" => &cell.cell_counts,
-            "cell_start" => &cell.cell_start,
+            "cell_counts" => &cell.cell_counts,
             "particles" => &particle.particles,
             "newborns" => &particle.newborns,
             "bins" => &particle.bins,
@@ -482,10 +459,8 @@ mod tests {
             let found = bytes(features, 6400) - bytes(features, 3200);
             assert_eq!(found as f64, 3200.0 * bytes_per_particle(collisions, rounds), "{collisions} {rounds}");
         }
-        for apart in [false, true] {
-            let bins = |bins: u64| CellBuffers::new(&device, bins, apart).expect("room").bytes();
-            let some = 4 * STRETCH;
-            assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * bytes_per_bin(apart));
-        }
+        let bins = |bins: u64| CellBuffers::new(&device, bins).expect("room").bytes();
+        let some = 4 * STRETCH;
+        assert_eq!((bins(2 * some) - bins(some)) as f64, some as f64 * bytes_per_bin());
     }
 }

@@ -217,7 +217,6 @@ pub fn constants(
         ("FLOWN", if features.collisions && !features.rounds { 0.0 } else { 0.5 }),
         ("WALL_SEED_HIGH", seed_high(PURPOSE_WALL)),
         ("COLLISIONS", flag(features.collisions)),
-        ("COUNTS_APART", flag(features.has_cells())),
         ("ROUNDS_OF_PAIRS", flag(features.rounds)),
         ("SPIN", flag(features.spin)),
         ("CURVES", flag(features.curves)),

@@ -30,8 +30,6 @@ pub struct Subdomain {
     pub(super) count: u32,
     pub(super) staging: Vec<wgpu::Buffer>,
     pub(super) spare_staging: Vec<wgpu::Buffer>,
-    /// The last step that was encoded leaves lists and cells empty for the next.
-    pub(super) emptied: bool,
     /// Lists with so few places have a thread for each.
     pub(super) short_lists: u64,
     /// A copy of the flights of each step, with their lists, before particles take their room.
@@ -71,7 +69,7 @@ impl Subdomain {
         let particle = ParticleBuffers::new(device, capacity, 1024, capacity / FIRST_TAILS, features)?;
         // Without collisions nothing is binned.
         let bins = if features.collisions { bins_of(&place, &domain) } else { 4 };
-        let cell = CellBuffers::new(device, bins, domain.features.has_cells())?;
+        let cell = CellBuffers::new(device, bins)?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
         let buffers =
@@ -91,7 +89,6 @@ impl Subdomain {
             count: particles.len() as u32,
             staging: Vec::new(),
             spare_staging: Vec::new(),
-            emptied: false,
             short_lists: if domain.variant == KernelVariant::Gpu { SHORT_LIST } else { 0 },
             watched: None,
             domain,
@@ -139,11 +136,10 @@ impl Subdomain {
     /// If the cells are over the device's limits.
     pub fn move_to(&mut self, device: &Device, place: Place) -> Result<(), GpuError> {
         self.place = place;
-        self.emptied = false;
         let peers = self.gpu_peers();
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
             let bins = bins_of(&self.place, &self.domain);
-            self.cell = CellBuffers::new(device, bins + bins / 8, self.domain.features.has_cells())?;
+            self.cell = CellBuffers::new(device, bins + bins / 8)?;
             self.rebind(device)?;
         }
         if peers.len() as u64 > self.exchange_room.peers {

@@ -2,39 +2,25 @@
 
 use crate::gpu::{BoundKernel, Device, KernelVariant, Pass, Recording};
 
-use super::buffers::{CellBuffers, RECORD, choose_empties, few_stretches};
+use super::buffers::{RECORD, few_stretches};
 use super::counters;
 use super::device_gas::Subdomain;
 use super::dispatch::{all, threads};
 use super::kernels::Flights;
-use super::registry::{
-    LIST_BOUNCE, LIST_BOUNCE_ODD, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED,
-};
-use super::sizes::{CHUNK, EMPTIED_CELLS, MEMBERS, STRETCH, WORKGROUP};
+use super::registry::{LIST_BOUNCE, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED, LISTS};
+use super::sizes::{CHUNK, CLEARED_CELLS, MEMBERS, STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
-
-/// Those that meet walls, of steps at even and at odd places in their interval.
-const BOUNCES: [u32; 2] = [LIST_BOUNCE, LIST_BOUNCE_ODD];
 
 /// The most cells that one workgroup scans, where kernels are merged.
 const FEW_CELLS: u64 = 1 << 16;
 
 impl Subdomain {
-    /// Empties lists and cells, where the step before has not (`shaders/scan_sums.wgsl`, `shaders/choose.wgsl`, `shaders/scan_cells.wgsl`, `shaders/advect.wgsl`); of many cells by clears of buffers, each of
-    /// which a small step would wait for.
+    /// Empties the lists of the step before (`shaders/reset.wgsl`).
     pub fn reset(&self, rec: &mut Recording<'_>) {
-        let bins = if self.kernels.sort.is_some() { self.bins() } else { 0 };
-        let mut cells = CellBuffers::start_bytes(bins) / 4;
-        if !few_stretches(bins) && !self.emptied {
-            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(4 * cells));
-            rec.encoder().clear_buffer(&self.cell.stretch_sums, 0, None);
-            cells = 1;
-        }
-        if !self.emptied {
-            let groups = threads(rec.device(), cells.div_ceil(EMPTIED_CELLS));
-            let phase = if self.kernels.sort.is_some() { "bin" } else { "advect" };
-            self.kernels.reset.dispatch(&mut rec.phase(phase), 0, groups);
-        }
+        let sorts = self.kernels.sort.is_some();
+        let stretches = if sorts { self.cell.capacity / STRETCH + 1 } else { 0 };
+        let groups = threads(rec.device(), stretches.max(LISTS.into()));
+        self.kernels.reset.dispatch(&mut rec.phase(if sorts { "bin" } else { "advect" }), 0, groups);
     }
 
     /// The particles that are here, and the newborns, which it puts behind them; those that come from other devices are binned as they arrive.
@@ -150,32 +136,35 @@ impl Subdomain {
         if self.domain.variant == KernelVariant::Gpu { counters::places_in_shards(most) } else { most }
     }
 
+    /// Clears the cells for the step that follows (`shaders/clear_cells.wgsl`).
+    pub fn clear_cells(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        if let Some(kernels) = &self.kernels.sort {
+            let device = rec.device();
+            let groups = threads(device, self.bins() / CLEARED_CELLS + 1);
+            kernels.clear_cells.dispatch(&mut rec.phase("advect"), self.offset(device, step, 0), groups);
+        }
+    }
+
     /// Afterwards the slots of `particles` in use are those of `sorted`, dead ones where the ghosts were.
     pub fn advect(&mut self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(watched) = &self.watched {
             let bytes = 4 * RECORD * u64::from(step.total);
             rec.encoder().copy_buffer_to_buffer(&self.particle.particles, 0, watched, 0, bytes);
         }
-        let empties = self.kernels.cells.is_some() || choose_empties(self.domain.variant, self.bins());
-        if self.kernels.sort.is_some() && self.place.is_alone() && !empties {
-            rec.encoder().clear_buffer(self.cell.counts(), 0, Some(CellBuffers::start_bytes(self.bins())));
-        }
         let device = rec.device();
         let offset = self.offset(device, step, 0);
         let entering = u64::from(step.next.unwrap_or(0));
-        let stretches = if self.kernels.sort.is_some() { self.bins() / STRETCH + 1 } else { 0 };
-        let groups = threads(device, (u64::from(step.total) + entering).max(stretches));
+        let groups = threads(device, u64::from(step.total) + entering);
         let pass = &mut rec.phase("advect");
         match &self.kernels.flights {
             Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
             Flights::Split { advect, bounce } => {
                 advect.dispatch(pass, offset, groups);
-                let arguments = (&self.fixed.dispatches, BOUNCES[step.slot as usize % 2]);
+                let arguments = (&self.fixed.dispatches, LIST_BOUNCE);
                 self.over_list(bounce, (device, pass), offset, arguments, step.total.into());
             }
         }
-        self.emptied = self.place.is_alone();
-        if !self.emptied {
+        if !self.place.is_alone() {
             self.count = step.total;
         }
     }

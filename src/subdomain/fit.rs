@@ -36,8 +36,8 @@ impl Subdomain {
         self.scan(&mut rec, &slot);
         self.sort(&mut rec, &slot);
         self.neighbours(&mut rec, &slot);
+        self.clear_cells(&mut rec, &slot);
         rec.submit();
-        self.emptied = false;
         let words: Vec<u32> = device.read(&self.fixed.counters, counters::WORDS)?;
         let nobody = Newborns { of_step: &[0], list: &[], first_id: 0, stride: 1 };
         if let Backup::Stall = before.backup {

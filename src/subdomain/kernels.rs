@@ -24,6 +24,7 @@ pub struct SortKernels<K> {
     pub scan_sums: K,
     pub scan_stretches: K,
     pub scan_cells: K,
+    pub clear_cells: K,
     /// In place of these three where few cells are scanned.
     pub scan_merged: Option<K>,
 }
@@ -95,6 +96,7 @@ impl<K> Kernels<K> {
                 scan_sums: make("scan_sums")?,
                 scan_stretches: make("scan_stretches")?,
                 scan_cells: make("scan_cells")?,
+                clear_cells: make("clear_cells")?,
                 scan_merged: if features.merged { Some(make("scan_merged")?) } else { None },
             })
         } else {

@@ -31,7 +31,7 @@ impl Memory {
         }
         let collisions = plan.method != Method::None;
         let per_particle = bytes_per_particle(collisions, plan.method.has_rounds());
-        let sort = if collisions { bytes_per_bin(plan.method == Method::Cell) } else { 0.0 };
+        let sort = if collisions { bytes_per_bin() } else { 0.0 };
         let volume = match plan.method {
             Method::Cell if moving => 4.0 + MOVED_OF_A_CELL,
             Method::Cell => 4.0,

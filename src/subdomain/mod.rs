@@ -34,7 +34,7 @@ mod step_slot;
 mod tallies;
 mod walls;
 
-pub use buffers::{choose_empties, few_stretches, most_particles};
+pub use buffers::{few_stretches, most_particles};
 pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, block_counts, constants, merges, runtime_constants};
 pub use counters::{Counters, places_in_shards};
@@ -50,7 +50,7 @@ pub use place::{Cells, Ghosts, GridCells, Place};
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
-pub use sizes::{CHUNK, CROWD, EMPTIED_CELLS, MEMBERS, MOTION_ENTRIES, WORKGROUP};
+pub use sizes::{CHUNK, CROWD, MEMBERS, MOTION_ENTRIES, WORKGROUP};
 pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};

@@ -30,7 +30,6 @@ impl Subdomain {
         tables: &Tables,
     ) -> Result<Vec<StepSlot>, GpuError> {
         let Steps { first, done, dt, tallied } = *steps;
-        self.emptied = false;
         // Work that was submitted before has seen the tables of its own interval.
         device.write(&self.fixed.surface_models, 0, &tables.surface_models);
         device.write(&self.fixed.vents, 0, &tables.vents);

@@ -29,7 +29,7 @@ registry! {
         /// The particles that may meet a wall in the step: their number alone, they are in other lists.
         LIST_NEAR_WALLS = 9,
         LIST_INCOMPLETE = 10,
-        /// Particles that meet a wall, of steps at even places in their interval.
+        /// Particles that meet a wall.
         LIST_BOUNCE = 11,
         /// The particles that other devices may need, and those of them that a round has changed.
         LIST_BORDER = 12,
@@ -42,8 +42,6 @@ registry! {
         RECHOOSE_LISTS = 10,
         /// The ghosts that were asked for their choice.
         LIST_ON_DEMAND = 26,
-        /// Particles that meet a wall, of steps at odd places.
-        LIST_BOUNCE_ODD = 27,
         /// The entries of the tails of neighbour lists.
         LIST_TAILS = 29,
         /// Slots that hold no particle of this device or its halo.
@@ -205,7 +203,6 @@ pub const BUFFERS: &[&str] = &[
     "chunk_sums",
     "stretch_sums",
     "cell_counts",
-    "counts_apart",
     "cell_start",
     "particles",
     "flights",
@@ -291,6 +288,11 @@ pub struct Use {
 ///
 /// In a phase in which one use ends another may begin; else no two of them share a phase in one run.
 pub const REUSED: &[&[Use]] = &[
+    // How many particles a cell has, and then where they start.
+    &[
+        Use { names: &["cell_counts"], runs: Runs::All, from: "advect", to: "scan", idle: &[] },
+        Use { names: &["cell_start"], runs: Runs::All, from: "scan", to: "advect", idle: &[] },
+    ],
     // A particle's record: all that it is, while it lies in `sorted` its flight and the beginning of its neighbour list.
     &[
         Use { names: &["particles"], runs: Runs::All, from: "advect", to: "sort", idle: &[] },

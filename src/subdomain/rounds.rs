@@ -5,7 +5,6 @@ use crate::gpu::{BoundKernel, Recording};
 use super::device_gas::Subdomain;
 use super::kernels::{CollisionKernels, Settle};
 use super::registry::{LIST_ON_DEMAND, LIST_PAIRS, LIST_RECHOOSE};
-use super::sizes::{STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
 
 impl Subdomain {
@@ -71,9 +70,7 @@ impl Subdomain {
         round: u32,
     ) {
         let (device, offset) = (rec.device(), self.offset(rec.device(), step, round));
-        // At least as many as the first of `choose` has cells to empty for (`shaders/scan_sums.wgsl`).
-        let emptying = if round == 0 { u64::from(WORKGROUP) * (self.bins() / STRETCH + 1) } else { 0 };
-        let places = self.places(step.total.into()).max(emptying);
+        let places = self.places(step.total.into());
         let arguments = (&self.fixed.rechoose_dispatches, LIST_RECHOOSE + round);
         self.over_list(kernel, (device, &mut rec.phase(phase)), offset, arguments, places);
     }

@@ -15,8 +15,8 @@ pub const STRETCH: u64 = CHUNK * WORKGROUP as u64;
 /// Stretches that each chunk adds up by itself (`shaders/scan_cells.wgsl`): of so few that takes less than a kernel between.
 pub const FEW_STRETCHES: u64 = 64;
 
-/// Cells that a thread empties, at most (`shaders/reset.wgsl`).
-pub const EMPTIED_CELLS: u64 = 16;
+/// Cells that a thread clears (`shaders/clear_cells.wgsl`).
+pub const CLEARED_CELLS: u64 = 16;
 /// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
 pub const SURFACE_COPIES: usize = 16;
 /// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).

@@ -1,7 +1,7 @@
-//! What a step leaves for the one that follows: particles counted in their cells where they fly, and cells emptied before.
+//! What a step leaves for the one that follows: particles counted in their cells where they fly.
 
 use corpuscle::gpu::KernelVariant;
-use corpuscle::subdomain::{GpuFlight, GpuGas, GpuNewborn, GpuParticle, GpuStep};
+use corpuscle::subdomain::{GpuFlight, GpuGas, GpuNewborn, GpuStep};
 
 use crate::fly::DT;
 use crate::neighbour_lists::put_flights;
@@ -113,32 +113,4 @@ fn nobody_is_counted_on_a_stalled_device() {
     assert!(rig.get::<[u32; 2]>("bins", SLOTS).iter().all(|bin| bin[0] == NOBODY));
     assert_eq!(rig.get::<u32>("cell_counts", world.grid.cell_count()), vec![0; world.grid.cell_count()]);
     assert!(rig.get::<u32>("particles", 8 * SLOTS) == before);
-}
-
-/// On a device alone the first of `choose` empties the cells, where they are few or the device is a GPU, whoever chooses; else they are left.
-#[test]
-fn the_first_choices_empty_the_cells() {
-    // Cells of two stretches, and of the chunk behind.
-    let bins = 5000u32;
-    let all = bins as usize / 64 * 64 + 64;
-    let cases = [(2, 0, 0, 0), (2, 0, 0, 50), (2, 1, 0, 50), (1, 0, 0, 50), (2, 0, 1, 50)];
-    for (variant, (few, peers, round, choosers)) in
-        variants().into_iter().flat_map(|variant| cases.map(|case| (variant, case)))
-    {
-        let mut rig = Rig::new(&World::plain());
-        rig.variant = variant;
-        rig.constant("FEW_STRETCHES", f64::from(few));
-        rig.put("rechoose", &[0u32; 100 + 64 * LIST_SHARDS]);
-        rig.put("choices", &[[0u32; 2]; 100]);
-        rig.put("sorted", &[GpuParticle::default(); 100]);
-        rig.put("cell_start", &vec![9u32; all + 8]);
-        rig.step(GpuStep { count: 100, dt: DT, bins, size: [10, 10, 50], peers, round, ..GpuStep::default() });
-        rig.set_choosers(round as usize, choosers);
-        rig.run("choose", 100);
-        let emptied = (few == 2 || variant == KernelVariant::Gpu) && peers == 0 && round == 0;
-        let cells: Vec<u32> = rig.get("cell_start", all + 8);
-        let expected = if emptied { 0 } else { 9 };
-        assert!(cells[..all].iter().all(|&cell| cell == expected), "{variant:?} {few} {peers} {round} {choosers}");
-        assert_eq!(cells[all..], [9; 8]);
-    }
 }

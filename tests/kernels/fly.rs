@@ -298,34 +298,3 @@ fn places_behind_the_last_particle_are_dead() {
         assert_eq!(found[s].tag, if s < last { particles[s].tag } else { NOBODY }, "{s}");
     }
 }
-
-/// On a device alone the sums of stretches, and the list of those that the step before has left to `bounce`, are empty afterwards; among
-/// others the sums are left. So it is on a device that is stalled, whose particles do not fly.
-#[test]
-fn sums_and_bounces_are_emptied_for_the_next_step() {
-    let world = World::plain();
-    let mut particles = world.particles(&mut Stream::new(59), 100, 0.0);
-    particles.iter_mut().for_each(|particle| particle.velocity = [9e9; 3]);
-    let cases = [(0, 6, 0), (0, 7, 0), (1, 6, 0), (0, 6, 1)];
-    for (peers, slot, stalled) in cases {
-        let mut rig = Rig::new(&world);
-        rig.constant("ROUNDS_OF_PAIRS", f64::from(stalled));
-        rig.set_stalled(STALLED, stalled);
-        rig.put("sorted", &particles);
-        rig.put("particles", &particles);
-        rig.put("bouncing", &vec![0u32; 100]);
-        rig.put("stretch_sums", &[9u32; 4]);
-        let (own, other) = if slot % 2 == 0 { (LIST_BOUNCE, LIST_BOUNCE_ODD) } else { (LIST_BOUNCE_ODD, LIST_BOUNCE) };
-        rig.set_step_state(PRESENT, 100);
-        rig.set_counter(COUNT_DROPPED, 3);
-        rig.set_counter(other, 77);
-        rig.put("dispatches", &[[0u32, 9, 5]; LISTS]);
-        rig.step(GpuStep { count: 100, dt: DT, peers, slot, ..GpuStep::default() });
-        rig.run("advect", 100);
-        assert_eq!(rig.get::<u32>("stretch_sums", 4), [if peers == 0 { 0 } else { 9 }; 4]);
-        let flown = if stalled == 1 { 0 } else { 100 };
-        assert_eq!([rig.counter(own), rig.counter(other), rig.counter(COUNT_DROPPED)], [flown, 0, 0]);
-        let sizes: Vec<[u32; 3]> = rig.get("dispatches", LISTS);
-        assert_eq!([sizes[own], sizes[other]], [[flown.div_ceil(64), 9, 5], [0, 1, 5]]);
-    }
-}

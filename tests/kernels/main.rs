@@ -53,6 +53,7 @@ fn every_kernel_has_its_test() {
         "ceiling_flights",
         "ceiling_loads",
         "choose",
+        "clear_cells",
         "collide",
         "collide_crowded",
         "collide_divided",

@@ -23,7 +23,7 @@ macro_rules! places {
 
 places! {
     LISTS, LIST_CROWDED, LIST_CROWDS, LIST_NEAR_WALLS, LIST_INCOMPLETE, LIST_BOUNCE, LIST_BORDER, LIST_CHANGED,
-    LIST_OUTBOX, LIST_UPDATES, LIST_RECHOOSE, LIST_ON_DEMAND, LIST_BOUNCE_ODD, LIST_TAILS, COUNT_DROPPED,
+    LIST_OUTBOX, LIST_UPDATES, LIST_RECHOOSE, LIST_ON_DEMAND, LIST_TAILS, COUNT_DROPPED,
     COUNTER_WORDS, COLLISIONS_LOW, LOST, SAMPLED, TAILS_WANTED, OUTSIDE, OVERSHOOT, TRUNCATED, TALLY_OVERFLOW,
     CAPACITY_FAILED, BOUNCES, BLOCKED, FOREIGN, STRAYS, MISSING, CANDIDATES, GHOST_CANDIDATES, GHOST_WALLS, MOVED,
     FAST_PAIRS, CUT_SHORT, MISPLACED, CELL_COLLISIONS, LIST_SHARDS, SHARD_WORDS, LENGTHS_OF_SHARDS,
@@ -293,16 +293,7 @@ impl Rig {
         rig.put("cross_section_shares", &[0u32; 4]);
         rig.put("firsts", &[0u32; 8]);
         rig.put_records(|records, _| records.resize(1, [NOBODY; RECORD]));
-        for buffer in [
-            "cell_start",
-            "cell_counts",
-            "counts_apart",
-            "bins",
-            "stretch_sums",
-            "cells",
-            "midpoints",
-            "neighbour_count",
-        ] {
+        for buffer in ["cell_start", "cell_counts", "bins", "stretch_sums", "cells", "midpoints", "neighbour_count"] {
             rig.put(buffer, &[0u32; 4]);
         }
         rig

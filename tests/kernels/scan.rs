@@ -1,6 +1,4 @@
-//! `scan_sums`, `scan_stretches` and `scan_cells`: the parts of an exclusive prefix sum, exactly.
-
-use corpuscle::gpu::KernelVariant;
+//! `scan_sums`, `scan_stretches` and `scan_cells`: the parts of an exclusive prefix sum, exactly; and `clear_cells`.
 
 use crate::oracle::random::Stream;
 use crate::rig::*;
@@ -67,88 +65,24 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
     }
 }
 
-/// On a device alone the lists of the step before are emptied, but for those that `bin` and `advect` have to do with; among others none is.
-#[test]
-fn scan_sums_empties_the_lists_of_the_step_before() {
-    let mut stream = Stream::new(3);
-    let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
-    let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
-    // Fewer chunks than there are lists, and more.
-    let cases = [(4, 0, 0), (90_001, 0, 0), (90_001, 0, 64), (90_001, 1, 64)];
-    for (variant, (cells, peers, few)) in variants().into_iter().flat_map(|variant| cases.map(|case| (variant, case))) {
-        let mut rig = rig(cells);
-        rig.variant = variant;
-        rig.constant("FEW_STRETCHES", f64::from(few));
-        rig.put("cell_counts", &with_end(&vec![0; cells]));
-        rig.put("chunk_sums", &vec![7u32; cells / CHUNK + 1]);
-        rig.put("stretch_sums", &vec![0u32; cells / STRETCH + 1]);
-        for buffer in ["counters", "dispatches", "rechoose_dispatches"] {
-            rig.put(buffer, &noise);
-        }
-        rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, peers, ..Default::default() });
-        rig.run("scan_sums", cells / CHUNK + 1);
-        let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
-        for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
-            let emptied = is_of_shard(variant, word) || word < LISTS && !kept.contains(&word);
-            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{variant:?} {word}");
-        }
-        for buffer in ["dispatches", "rechoose_dispatches"] {
-            let sizes: Vec<[u32; 3]> = rig.get(buffer, LISTS);
-            for (list, (size, before)) in sizes.iter().zip(noise.as_chunks().0).enumerate() {
-                // On a GPU, and where cells are few, the first of `choose` has them to empty.
-                let emptying = buffer == "rechoose_dispatches"
-                    && list == LIST_RECHOOSE
-                    && (variant == KernelVariant::Gpu || few > 0);
-                let emptied = [if emptying { (cells / STRETCH + 1) as u32 } else { 0 }, 1, 1];
-                assert_eq!(size, if peers == 0 && !kept.contains(&list) { &emptied } else { before }, "{list}");
-            }
-        }
-    }
-}
-
-/// All in one, with counts in the place of the starts and apart from them: starts, PRESENT, and on a device alone the lists of the step before.
+/// All in one: starts in place of the counts, and PRESENT.
 #[test]
 fn scan_merged_does_all_of_the_scan() {
     let mut stream = Stream::new(8);
-    let noise: Vec<u32> = (0..COUNTER_WORDS).map(|_| stream.word() | 1).collect();
-    let kept = [LIST_BOUNCE, LIST_BOUNCE_ODD, COUNT_DROPPED];
-    let cases: Vec<(usize, bool)> = CELLS.into_iter().flat_map(|cells| [(cells, false), (cells, true)]).collect();
-    for (variant, (cells, apart)) in
-        variants().into_iter().flat_map(|variant| cases.iter().map(move |&case| (variant, case)))
-    {
-        let peers = u32::from(cells == 63);
+    for (variant, cells) in variants().into_iter().flat_map(|variant| CELLS.map(|cells| (variant, cells))) {
         let mut rig = rig(cells);
         rig.variant = variant;
-        rig.constant("COUNTS_APART", f64::from(u8::from(apart)));
         let mut counts = counts(&mut stream, cells);
         counts[cells - 1] = 3;
         let all = with_end(&counts);
-        let (name, noise_of_cells) = (if apart { "counts_apart" } else { "cell_start" }, vec![9u32; all.len() + 4]);
-        rig.put("cell_start", &noise_of_cells);
-        rig.put(name, &[&all[..], &[9; 4]].concat());
-        rig.put("counters", &noise);
-        for buffer in ["dispatches", "rechoose_dispatches"] {
-            rig.put(buffer, &[7u32; 3 * LISTS]);
-        }
-        rig.step(corpuscle::subdomain::GpuStep { bins: cells as u32, peers, ..Default::default() });
+        rig.put("cell_start", &[&all[..], &[9; 4]].concat());
         rig.run_groups("scan_merged", [1, 1, 1]);
         let starts = prefix(&counts);
         let found: Vec<u32> = rig.get("cell_start", all.len() + 4);
-        assert_eq!(found[..=cells], starts, "{variant:?} {cells} {apart}");
+        assert_eq!(found[..=cells], starts, "{variant:?} {cells}");
         assert!(found[cells..all.len()].iter().all(|&start| start == starts[cells]));
         assert_eq!(found[all.len()..], [9; 4], "nothing behind them");
         assert_eq!(rig.step_state(PRESENT), starts[cells]);
-        if apart {
-            assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
-        }
-        let counters: Vec<u32> = rig.get("counters", COUNTER_WORDS);
-        for (word, (&found, &before)) in counters.iter().zip(&noise).enumerate() {
-            let emptied = is_of_shard(variant, word) || word < LISTS && !kept.contains(&word);
-            assert_eq!(found, if emptied && peers == 0 { 0 } else { before }, "{variant:?} {word}");
-        }
-        for (list, size) in rig.get::<[u32; 3]>("dispatches", LISTS).iter().enumerate() {
-            assert_eq!(*size, if peers == 0 && !kept.contains(&list) { [0, 1, 1] } else { [7; 3] }, "{list}");
-        }
         // The check can fail: the last count matters.
         assert_ne!(starts[cells], starts[cells - 1]);
     }
@@ -205,9 +139,9 @@ fn scan_cells_puts_starts_in_place_of_counts() {
     }
 }
 
-/// Counts that lie apart from the starts are emptied as they are read, for the step that follows.
+/// In every variant; chunks without particles are among others and at the end.
 #[test]
-fn scan_cells_empties_counts_that_lie_apart() {
+fn scan_cells_is_the_same_in_every_variant() {
     let mut stream = Stream::new(7);
     for (variant, cells) in variants().into_iter().flat_map(|variant| CELLS.map(|cells| (variant, cells))) {
         let mut rig = rig(cells);
@@ -217,13 +151,22 @@ fn scan_cells_empties_counts_that_lie_apart() {
         let all = with_end(&counts);
         let mut of_chunks = sums(&all, CHUNK);
         of_chunks.resize(64 * (cells / STRETCH + 1), 7);
-        rig.constant("COUNTS_APART", 1.0);
         rig.put("chunk_sums", &of_chunks);
         rig.put("stretch_sums", &prefix(&sums(&all, STRETCH))[..cells / STRETCH + 1]);
-        rig.put("counts_apart", &all);
-        rig.put("cell_start", &vec![9u32; all.len()]);
+        rig.put("cell_start", &all);
         rig.run("scan_cells", cells / CHUNK + 1);
         assert_eq!(rig.get::<u32>("cell_start", cells + 1), prefix(&counts), "{variant:?}");
-        assert_eq!(rig.get::<u32>("counts_apart", all.len()), vec![0; all.len()]);
+    }
+}
+
+/// `clear_cells` clears what the scan has written, with as many threads as it is given, and nothing behind it.
+#[test]
+fn all_cells_of_the_step_are_cleared() {
+    for (cells, groups) in CELLS.into_iter().flat_map(|cells| [[1, 1, 1], [3, 2, 1]].map(|groups| (cells, groups))) {
+        let mut rig = rig(cells);
+        let all = CHUNK * (cells / CHUNK + 1);
+        rig.put("cell_start", &vec![9u32; all + 8]);
+        rig.run_groups("clear_cells", groups);
+        assert_eq!(rig.get::<u32>("cell_start", all + 8), [vec![0; all], vec![9; 8]].concat(), "{cells}");
     }
 }

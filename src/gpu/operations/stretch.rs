@@ -44,6 +44,9 @@ impl Mul<f64> for Operations {
     }
 }
 
+/// Begins the line before a branch or a loop that has a name.
+pub const MARK: &str = "// bench: ";
+
 /// What runs from its beginning to its end, with the branches and loops in it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stretch(pub(super) Vec<Item>);
@@ -51,7 +54,7 @@ pub struct Stretch(pub(super) Vec<Item>);
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Item {
     Counted(Operations),
-    /// A branch or a loop, by its source.
+    /// A branch or a loop, by its name, if it has one.
     Inner(String, Stretch),
 }
 
@@ -61,27 +64,27 @@ impl Stretch {
         Stretch::sum(&self.0)
     }
 
-    /// The first branch or loop in it, at any depth, that begins with `text`.
-    pub fn inner(&self, text: &str) -> Option<&Stretch> {
-        self.found(text).into_iter().next()
+    /// The first branch or loop in it, at any depth, of this name ([`MARK`]).
+    pub fn inner(&self, name: &str) -> Option<&Stretch> {
+        self.found(name).into_iter().next()
     }
 
     /// What runs in a turn of each of them, summed.
-    pub fn every(&self, text: &str) -> Operations {
-        self.found(text).into_iter().map(Stretch::straight).sum()
+    pub fn every(&self, name: &str) -> Operations {
+        self.found(name).into_iter().map(Stretch::straight).sum()
     }
 
-    /// What runs before a branch or a loop that begins with `text`, and after it.
-    pub fn around(&self, text: &str) -> Option<[Operations; 2]> {
-        let at = self.0.iter().position(|item| matches!(item, Item::Inner(own, _) if own.starts_with(text)))?;
+    /// What runs before a branch or a loop of this name, and after it.
+    pub fn around(&self, name: &str) -> Option<[Operations; 2]> {
+        let at = self.0.iter().position(|item| matches!(item, Item::Inner(own, _) if own == name))?;
         Some([&self.0[..at], &self.0[at..]].map(Stretch::sum))
     }
 
     fn found(&self, wanted: &str) -> Vec<&Stretch> {
         let mut found = Vec::new();
         for item in &self.0 {
-            if let Item::Inner(text, inner) = item {
-                if text.starts_with(wanted) {
+            if let Item::Inner(name, inner) = item {
+                if name == wanted {
                     found.push(inner);
                 }
                 found.extend(inner.found(wanted));

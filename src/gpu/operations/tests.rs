@@ -14,6 +14,7 @@ return FAST;
 @compute @workgroup_size(1)
 fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 let k = id.x + 1u;
+// bench: behind the last
 if (k > 7u) {
     return;
 }
@@ -22,7 +23,9 @@ var sum = 0.0;
 for (var i = 0u; i < 4u; i++) {
     sum += v.x;
 }
+// bench: turn
 for (var i = 0u; i < k; i++) {
+    // bench: far
     if (v.y > sum) {
         continue;
     }
@@ -46,13 +49,13 @@ fn operations_are_those_of_the_source() {
     // Three components, their length and quotients, a conversion and three products.
     let slow = Stretch::of_kernel(&PROBE, &[("FAST", 0.0)]).unwrap();
     assert_eq!(slow.straight(), Operations { floating: 3.0 + 4.0 + 9.0 + 1.0 + 3.0, integer });
-    let turn = fast.inner("for (var i = 0u; i < k").unwrap();
+    let turn = fast.inner("turn").unwrap();
     assert_eq!(turn.straight(), Operations { floating: 1.0 + 5.0 + 1.0, integer: 2.0 });
-    let [before, after] = turn.around("if (v.y > sum)").unwrap();
+    let [before, after] = turn.around("far").unwrap();
     assert_eq!(before, Operations { floating: 1.0, integer: 1.0 });
     assert_eq!(before + after, turn.straight());
-    assert_eq!(fast.around("if (k > 7u)").unwrap()[0], Operations { floating: 0.0, integer: 2.0 });
-    assert!(fast.inner("while").is_none() && fast.around("while").is_none());
+    assert_eq!(fast.around("behind the last").unwrap()[0], Operations { floating: 0.0, integer: 2.0 });
+    assert!(fast.inner("side").is_none() && fast.around("side").is_none());
 }
 
 #[test]

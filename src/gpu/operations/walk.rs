@@ -9,7 +9,7 @@ use wgpu::naga::{
     Override, ScalarKind, Statement, TypeInner, UnaryOperator, VectorSize,
 };
 
-use super::stretch::{Item, Operations, Stretch};
+use super::stretch::{Item, MARK, Operations, Stretch};
 use crate::gpu::source::Constants;
 
 /// A kernel with all of its functions.
@@ -110,14 +110,15 @@ impl Walk<'_> {
                     // Both sides of `&&` and `||`.
                     let logical = !text.starts_with("if")
                         && self.stored(accept).is_some_and(|own| self.stored(reject) == Some(own));
-                    for (name, arm) in [(text, accept), ("else".to_owned(), reject)] {
+                    let mark = self.mark(span.to_range());
+                    for (mark, arm) in [(mark, accept), (String::new(), reject)] {
                         let before = self.known.clone();
                         let (inner, _) = self.block(arm);
                         self.known = before;
                         if logical {
                             all.append(inner);
                         } else if !arm.is_empty() {
-                            all.0.push(Item::Inner(name, inner));
+                            all.0.push(Item::Inner(mark, inner));
                         }
                     }
                     self.forget(accept);
@@ -134,14 +135,14 @@ impl Walk<'_> {
                             all.count(turn.straight() * turns);
                             all.0.extend(turn.0.into_iter().filter(|item| matches!(item, Item::Inner(..))));
                         }
-                        None => all.0.push(Item::Inner(self.text(span.to_range()), turn)),
+                        None => all.0.push(Item::Inner(self.mark(span.to_range()), turn)),
                     }
                 }
                 Statement::Switch { cases, .. } => {
                     for case in cases {
                         let (inner, _) = self.block(&case.body);
                         self.forget(&case.body);
-                        all.0.push(Item::Inner("case".into(), inner));
+                        all.0.push(Item::Inner(String::new(), inner));
                     }
                 }
                 Statement::Call { function, result, .. } => {
@@ -176,6 +177,13 @@ impl Walk<'_> {
     fn text(&self, range: Option<Range<usize>>) -> String {
         let rest = range.and_then(|range| self.whole.source.get(range.start..)).unwrap_or_default();
         rest.lines().next().unwrap_or_default().to_owned()
+    }
+
+    /// What the line before the statement calls it, as `// bench: NAME`.
+    fn mark(&self, range: Option<Range<usize>>) -> String {
+        let before = range.and_then(|range| self.whole.source.get(..range.start)).unwrap_or_default();
+        let line_before = before.lines().rev().nth(usize::from(!before.ends_with('\n')));
+        line_before.and_then(|line| line.trim().strip_prefix(MARK)).unwrap_or_default().to_owned()
     }
 
     /// How often a loop runs that counts from a known number to a literal one.

@@ -41,6 +41,7 @@ pub fn step(
         exchange.updates(subdomain, rec, slot, rounds)?;
         subdomain.count_lost(rec, slot);
     }
+    subdomain.clear_cells(rec, slot);
     subdomain.advect(rec, slot);
     if sampling.tally {
         subdomain.tally(rec, slot);

@@ -25,7 +25,7 @@ use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count, and
 /// `arrange_crowded` where it has all of the crowded cells.
-const COUNTED: [&str; 21] = [
+const COUNTED: [&str; 22] = [
     "bin",
     "arrange",
     "arrange_crowded",
@@ -40,6 +40,7 @@ const COUNTED: [&str; 21] = [
     "collide",
     "collide_crowded",
     "choose",
+    "clear_cells",
     "match_pairs",
     "settle",
     "lost",
@@ -52,20 +53,8 @@ const COUNTED: [&str; 21] = [
 /// The turns that each search takes at least, as in `shaders/neighbours.wgsl`.
 const FEWEST_TURNS: f64 = 4.0;
 
-// Beginnings of lines of the kernels, by which their branches and loops are found.
-const IN_TIME: &str = "if (!RIGID && !(time >= own_flight.start";
-const MEETING_WALLS: &str = "if (step.ghosts != GHOSTS_ON_DEMAND && (marks";
-const MUTUAL: &str = "if (!has_chosen";
-const LISTED: &str = "for (var k = 0u; k < listed";
-const IN_ORDER: &str = "if (count <= MEMBERS)";
-const FITTING: &str = "if (fits_a_thread(";
 /// Loops over the rows of four slots of a crowded cell, and over half of them.
-const ROWS: [(&str, u32); 2] =
-    [("for (var k = 0u; k < ROWS;", CROWD / 4), ("for (var k = 0u; k < ROWS / 2u", CROWD / 8)];
-const LOWER_IDS: &str = "for (var k = begin >> 2u";
-const COLLIDING: &str = "if (count > 1u)";
-const FAR: &str = "if (reach >= f32(1u << CELL_BITS))";
-const MAY_HIT: &str = "if (around == CLASS_SOLID";
+const ROWS: [(&str, u32); 2] = [("row", CROWD / 4), ("half of the rows", CROWD / 8)];
 
 /// The kernels of a scene, counted.
 pub struct Counted(Vec<(&'static str, Stretch)>);
@@ -88,22 +77,22 @@ impl Counted {
     }
 
     /// A turn of a loop.
-    fn turn(&self, kernel: &str, text: &str) -> Option<Operations> {
-        Some(self.of(kernel)?.inner(text)?.straight())
+    fn turn(&self, kernel: &str, name: &str) -> Option<Operations> {
+        Some(self.of(kernel)?.inner(name)?.straight())
     }
 
     /// The flight's way along the walls of one cell, up to which side the first shows.
     fn walls(stretch: &Stretch) -> Option<Operations> {
-        let rows = ["for (var z = ", "for (var y = "];
-        let rows = rows.iter().map(|text| Some(stretch.inner(text)?.straight())).sum::<Option<Operations>>()?;
-        Some(rows + stretch.inner("for (; k < list.y")?.around("if (approach <= 0.0)")?[0])
+        let rows = ["plane of cells", "row of cells"];
+        let rows = rows.iter().map(|name| Some(stretch.inner(name)?.straight())).sum::<Option<Operations>>()?;
+        Some(rows + stretch.inner("triangle")?.around("side")?[0])
     }
 
     /// An entry of the list of one that chooses, up to the first test that most fail, and the rest.
     fn entry(&self) -> Option<[Operations; 2]> {
-        let entry = self.of("choose")?.inner(LISTED)?;
+        let entry = self.of("choose")?.inner("entry")?;
         // Rigid spheres are not asked for the time first.
-        entry.around(IN_TIME).or_else(|| entry.around("if (miss2 >="))
+        entry.around("in time").or_else(|| entry.around("near"))
     }
 
     /// Those that choose: themselves, and so many entries of their lists.
@@ -114,7 +103,7 @@ impl Counted {
     /// Of particles that may meet a wall: but for those near walls, who are few, all up to the class of their cell.
     fn away_from_walls(&self, kernel: &str) -> Option<Operations> {
         let kernel = self.of(kernel)?;
-        Some(kernel.around(FAR)?[0] + kernel.around(MAY_HIT)?[1])
+        Some(kernel.around("far")?[0] + kernel.around("around")?[1])
     }
 }
 
@@ -126,28 +115,26 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let entries = candidates / n.max(1.0);
     Some(match phase {
         "scan" if work.merged => {
-            let turn =
-                |step| counted.turn("scan_merged", &format!("for (var four = begin; four < end; four += {step}u"));
-            turn(8)? * (cells / 32.0) + turn(4)? * (cells / 16.0)
+            let turn = |name| counted.turn("scan_merged", name);
+            turn("counted")? * (cells / 32.0) + turn("started")? * (cells / 16.0)
         }
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
             let own = counted.straight("scan_sums")? + counted.straight("scan_cells")?;
             // Of the others of a stretch half come before, in the mean.
-            let before =
-                counted.turn("scan_cells", "for (var four = stretch * (WORKGROUP")? * (0.5 * CHUNK as f64 / 16.0);
+            let before = counted.turn("scan_cells", "chunks before")? * (0.5 * CHUNK as f64 / 16.0);
             // Few stretches are summed by each chunk: half of them, by fours, in the mean.
             let sum = if work.few_stretches {
                 let stretches = cells / work.steps.max(1.0) / (CHUNK * CHUNK) as f64;
-                counted.turn("scan_cells", "for (var four = 0u; four < stretch")? * (stretches / 8.0)
+                counted.turn("scan_cells", "stretches before")? * (stretches / 8.0)
             } else {
-                counted.turn("scan_stretches", "for (var k = begin")? * (0.5 / CHUNK as f64)
+                counted.turn("scan_stretches", "stretches")? * (0.5 / CHUNK as f64)
             };
             (own + before + sum) * chunks
-                + counted.turn("scan_sums", "for (")? * (fours / 8.0)
-                + counted.turn("scan_cells", "for (var four = begin; four < end; four += 4u")? * (0.25 * filled)
-                + counted.turn("scan_cells", "for (var four = begin; four < end; four++")? * (fours - filled).max(0.0)
+                + counted.turn("scan_sums", "counted")? * (fours / 8.0)
+                + counted.turn("scan_cells", "started")? * (0.25 * filled)
+                + counted.turn("scan_cells", "empty")? * (fours - filled).max(0.0)
         }
         "sort" if rounds => {
             let order = counted.away_from_walls("order")?;
@@ -156,51 +143,48 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
         "sort" => {
             // Each looks at all of its cell, by fours.
             let fours = work.crowded / (work.shared - work.few).max(1.0) / 4.0;
-            let crowd = counted.straight("arrange_crowded")? + counted.turn("arrange_crowded", LOWER_IDS)? * fours;
+            let crowd = counted.straight("arrange_crowded")? + counted.turn("arrange_crowded", "lower ids")? * fours;
             counted.straight("arrange")? * n + crowd * if work.by_threads { work.crowded } else { 0.0 }
         }
         "neighbours" => {
             let turns = (FEWEST_TURNS * n).max(0.5 * candidates);
-            let meeting = counted.of("complete_lists")?.inner(MEETING_WALLS)?;
+            let meeting = counted.of("complete_lists")?.inner("near a wall")?;
             let walls = counted.straight("complete_lists")? + meeting.straight() + Counted::walls(meeting)?;
             counted.straight("neighbours")? * n
                 + walls * work.near_walls
-                + counted.turn("neighbours", "for (; k < turns")? * turns
-                + counted.turn("neighbours", "for (; p < found")? * (0.5 * candidates)
+                + counted.turn("neighbours", "candidate")? * turns
+                + counted.turn("neighbours", "found")? * (0.5 * candidates)
         }
-        "choose" => {
-            let emptied = counted.turn("choose", "for (var four = thread")? * (work.emptied / 4.0);
-            counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions) + emptied
-        }
+        "choose" => counted.choices(choosers, entries)? + counted.entry()?[1] * (2.0 * collisions),
         "settle" => {
-            let [alone, mutual] = counted.of("match_pairs")?.around(MUTUAL)?;
+            let [alone, mutual] = counted.of("match_pairs")?.around("mutual")?;
             // Most lists are of one turn.
-            let touched = counted.turn("settle", "for (; turn < turns")?;
+            let touched = counted.turn("settle", "touched")?;
             alone * choosers + (mutual + counted.straight("settle")? + touched) * collisions
         }
         "lost" => {
-            let alone = counted.of("match_pairs")?.around(MUTUAL)?[0];
+            let alone = counted.of("match_pairs")?.around("mutual")?[0];
             counted.choices(work.lost_choosers, entries)? + alone * work.lost_choosers
         }
         "collide" => {
-            let few = counted.turn("collide", IN_ORDER)? + counted.turn("collide", COLLIDING)?;
+            let few = counted.turn("collide", "in order")? + counted.turn("collide", "colliding")?;
             let crowds = counted.of("collide_crowded")?;
-            let network = ROWS.iter().map(|&(text, turns)| crowds.every(text) * f64::from(turns)).sum::<Operations>();
-            let order = crowds.inner(FITTING)?.straight() + network;
+            let network = ROWS.iter().map(|&(name, turns)| crowds.every(name) * f64::from(turns)).sum::<Operations>();
+            let order = crowds.inner("fits")?.straight() + network;
             let order = if work.by_threads { Operations::default() } else { order };
-            let crowd = crowds.straight() + order + counted.turn("collide_crowded", COLLIDING)?;
+            let crowd = crowds.straight() + order + counted.turn("collide_crowded", "colliding")?;
             counted.straight("collide")? * cells
-                + counted.turn("collide", "if (bin_end > begin + 1u)")? * work.shared
+                + counted.turn("collide", "shared")? * work.shared
                 + few * work.few
                 + crowd * (work.shared - work.few)
-                + (crowds.every("for (var k = 0u; k < count") + crowds.every("for (; k < count")) * work.crowded
-                + counted.turn("collide", "while (done.candidates < candidates)")? * collisions
+                + crowds.every("member") * work.crowded
+                + counted.turn("collide", "candidate pair")? * collisions
         }
         "advect" => {
             let flight = if rounds { counted.straight("advect")? } else { counted.away_from_walls("advect")? };
             // Each hit as one of a flight of its own: the way to the wall and the way from it.
-            let turn = counted.of("bounce")?.inner("loop {")?;
-            let last = turn.around("if (hit.triangle == NOBODY)")?[0];
+            let turn = counted.of("bounce")?.inner("hit")?;
+            let last = turn.around("last")?[0];
             let hit =
                 counted.straight("bounce")? + turn.straight() + last + Counted::walls(counted.of("bounce")?)? * 2.0;
             let flights = flight * n + hit * work.bounces;
@@ -208,13 +192,13 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 return Some(flights);
             }
             // The step that follows finds them in their cells.
-            flights + (counted.straight("bin")? + counted.turn("bin", "if (there && has_bin(")?) * n
+            let cleared = counted.turn("clear_cells", "cleared")? * (cells / 4.0);
+            flights + cleared + (counted.straight("bin")? + counted.turn("bin", "binned")?) * n
         }
         "tally" => {
-            let particle = counted.of("tally")?.inner("for (var k = 0u; k < CHUNK_LOOPS")?;
-            let seen =
-                particle.around("if (zone.kind == EVERYWHERE)").or_else(|| particle.around("if (!contains("))?[0];
-            let added = particle.around("if (!contains(")?[1];
+            let particle = counted.of("tally")?.inner("particle")?;
+            let seen = particle.around("everywhere").or_else(|| particle.around("inside"))?[0];
+            let added = particle.around("inside")?[1];
             (seen * (work.zones * work.gas_pairs) + added) * (present * work.tallies)
         }
         "blocks" => counted.straight("blocks")? * (present * work.intervals),
@@ -225,6 +209,7 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::MARK;
 
     /// As a scene of one gas between mirrors at rest has it.
     fn lean(method: Method) -> Counted {
@@ -251,7 +236,7 @@ mod tests {
 
     const METHODS: [Method; 4] = [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
 
-    /// Every line by which a kernel's loops are found is there, and every phase of a step is counted.
+    /// Every branch and loop that is asked for by its name is there, and every phase of a step is counted.
     #[test]
     fn every_phase_is_counted() {
         let work = Work {
@@ -275,10 +260,28 @@ mod tests {
             }
             assert_eq!(operations("exchange", method, &work, &counted), None);
             // One kernel adds each count up once, where several come back to sums.
+            let full = Work { cell_steps: 64.0, chunks: 1.0, ..work };
             let scan = |work: &Work| operations("scan", method, work, &counted).unwrap().all();
-            let merged = scan(&Work { merged: true, ..work });
-            assert!(merged > 0.0 && merged < scan(&work), "{method:?}: {merged}");
+            let merged = scan(&Work { merged: true, ..full });
+            assert!(merged > 0.0 && merged < scan(&full), "{method:?}: {merged}");
         }
+    }
+
+    /// A name in a shader stands before a branch or a loop, and this file asks for it: one that does not is of no use, or misspelt.
+    #[test]
+    fn every_name_in_a_shader_is_asked_for() {
+        let code = include_str!("operations.rs").split("mod tests").next().unwrap();
+        let mut names = 0;
+        for kernel in KERNELS.iter().filter(|kernel| COUNTED.contains(&kernel.name)) {
+            let lines: Vec<&str> = kernel.source.lines().map(str::trim).collect();
+            for pair in lines.windows(2) {
+                let Some(name) = pair[0].strip_prefix(MARK) else { continue };
+                let begins = ["if (", "for (", "while (", "loop {"].iter().any(|begin| pair[1].starts_with(begin));
+                assert!(begins && code.contains(&format!("\"{name}\"")), "{}: {name}, before {}", kernel.name, pair[1]);
+                names += 1;
+            }
+        }
+        assert!(names > 50, "{names}");
     }
 
     /// A crowded cell is put in order once: where it collides, or by a thread for each of its particles before.
@@ -297,7 +300,7 @@ mod tests {
     #[test]
     fn amounts_cost_where_they_are_dealt_with() {
         let work = Work { steps: 4.0, particle_steps: 400.0, cell_steps: 640.0, chunks: 2.0, ..Work::default() };
-        let more: [(&str, Work, &[&str]); 8] = [
+        let more: [(&str, Work, &[&str]); 7] = [
             ("choosers", Work { choosers: 9.0, ..work }, &["choose", "settle"]),
             ("lost", Work { lost_choosers: 9.0, ..work }, &["lost"]),
             ("pairs", Work { candidates: 90.0, ..work }, &["neighbours"]),
@@ -305,7 +308,6 @@ mod tests {
             ("hits", Work { bounces: 9.0, ..work }, &["advect"]),
             ("collisions", Work { collisions: 9.0, ..work }, &["choose", "settle"]),
             ("chunks", Work { chunks: 3.0, ..work }, &["scan"]),
-            ("cells", Work { emptied: 640.0, ..work }, &["choose"]),
         ];
         let method = Method::ClosestApproach;
         let counted = lean(method);

@@ -29,10 +29,10 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let matched = 3.0 * WORD;
     let entered = work.newborns * NEWBORN;
     Some(match phase {
-        // Counters in, and the starts out in their place, or elsewhere and none in their place; sums of stretches of cells out.
+        // Counts in, and the starts out in their place; sums of stretches of cells out.
         "scan" => {
             let sums = if work.merged { 0.0 } else { 1.0 / CHUNK as f64 };
-            cells * (if rounds { 2.0 } else { 3.0 } + sums) * WORD
+            cells * (2.0 + sums) * WORD
         }
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells, and
         // where threads put these in order their entries.
@@ -54,8 +54,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + candidates * WORD
                 + work.first_choosers * 3.0 * WORD
         }
-        // The cells that are emptied out.
-        "choose" => work.choosers * choice + work.emptied * WORD,
+        "choose" => work.choosers * choice,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
             let pairs = if work.merged { 0.0 } else { 2.0 * WORD };
@@ -72,10 +71,10 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + ordered * work.crowded * WORD
                 + (2.0 * collisions).min(work.gathered) * PARTICLE
         }
-        // State in and out; with rounds the marks, and the flights of those that may meet a wall; newborns from where they waited. With collisions cell and
-        // place in it out, and the cells' counters in and out, for the step that follows.
+        // State in and out; with rounds the marks, and the flights of those that may meet a wall; newborns from where they waited. With collisions the cells
+        // cleared, cell and place in it out, and the cells' counters in and out, for the step that follows.
         "advect" => {
-            let binned = if method == Method::None { 0.0 } else { (n + filled) * 2.0 * WORD };
+            let binned = if method == Method::None { 0.0 } else { (n + filled) * 2.0 * WORD + cells * WORD };
             n * (2.0 * PARTICLE + if rounds { WORD } else { 0.0 })
                 + if rounds { work.near_walls * FLIGHT } else { 0.0 }
                 + binned
@@ -144,9 +143,9 @@ mod tests {
         assert_eq!(["tally", "blocks"].map(|phase| floor(phase, cell)), [32.0, 32.0]);
         let cells = Work { cell_steps: 64.0, ..Work::default() };
         let found = [rounds, cell].map(|method| bytes("scan", method, &cells));
-        assert_eq!(found, [64.0 * 8.0 + 4.0, 64.0 * 12.0 + 4.0].map(Some));
-        let emptied = Work { emptied: 64.0, ..Work::default() };
-        assert_eq!(bytes("choose", rounds, &emptied), Some(64.0 * 4.0));
+        assert_eq!(found, [64.0 * 8.0 + 4.0; 2].map(Some));
+        let cleared = [rounds, cell].map(|method| bytes("advect", method, &cells));
+        assert_eq!(cleared, [Some(64.0 * 4.0); 2]);
         let entered = Work { newborns: 2.0, ..Work::default() };
         let moved = [rounds, cell, Method::None];
         assert_eq!(moved.map(|method| bytes("advect", method, &entered)), [Some(96.0); 3]);

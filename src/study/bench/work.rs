@@ -3,7 +3,7 @@
 use crate::geometry::Grid;
 use crate::gpu::KernelVariant;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS, choose_empties, few_stretches, merges};
+use crate::subdomain::{GpuParticle, MEMBERS, few_stretches, merges};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -15,8 +15,6 @@ pub struct Work {
     pub particle_steps: f64,
     /// Cells times steps, and of these the ones that hold a particle, and two or more.
     pub cell_steps: f64,
-    /// Of them those that the first choices empty: of many, on a software device, the buffer is cleared, outside of the phases.
-    pub emptied: f64,
     /// The cells are few to the scan.
     pub few_stretches: bool,
     pub filled: f64,
@@ -78,7 +76,6 @@ impl Work {
             steps,
             particle_steps,
             cell_steps: cells * steps,
-            emptied: if has_rounds && choose_empties(variant, cells as u64) { cells * steps } else { 0.0 },
             few_stretches: few_stretches(cells as u64),
             filled: filled * steps,
             shared: shared * steps,
