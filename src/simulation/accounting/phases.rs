@@ -1,25 +1,10 @@
 //! The phases of a step: names as those of the shaders, the timers, the phase table at the end of a run and the docs.
 
+use crate::subdomain::registry::PHASES;
+
 /// The phases whose time goes with the entries of neighbour lists. (That of `collide`, which has none, goes with cells and particles
 /// as well as with the pairs that are tried.)
 pub const PAIR_PHASES: [&str; 3] = ["neighbours", "choose", "settle"];
-
-/// In the order of a step; `lost` and `blocks` are once an interval.
-const PHASES: [&str; 13] = [
-    "bin",
-    "exchange",
-    "scan",
-    "sort",
-    "neighbours",
-    "collide",
-    "update",
-    "choose",
-    "settle",
-    LOST,
-    "advect",
-    TALLY,
-    BLOCKS,
-];
 
 /// In the first step of an interval.
 pub const LOST: &str = "lost";
