@@ -3,7 +3,7 @@
 //! Each `shaders/NAME.wgsl` is a kernel. Its leading `//!` lines may hold `//! uses: a.wgsl b.wgsl`, naming files
 //! of `shaders/shared/` that go before it (each once, and before it what it uses in turn). `a.software.wgsl` takes the place of `a.wgsl` in
 //! another source of each kernel that uses it, for software devices, and `a.gpu.wgsl` in one for GPUs. The result is
-//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/gpu/kernel.rs) in order of name: all sources,
+//! `$OUT_DIR/shaders.rs`: `pub static KERNELS: &[KernelSource]` (src/subdomain/shaders.rs) in order of name: all sources,
 //! entry point, phases, and the bindings and override constants that the entry point uses.
 //!
 //! Each kernel begins with the numbers of `src/subdomain/registry.rs`. A declaration `var<storage, ..> NAME` or `var<uniform> NAME`
@@ -41,7 +41,7 @@ const REGISTRY_PATH: &str = "src/subdomain/registry.rs";
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
-/// The variants that a shared file may have beside its own, in the order of `KernelVariant` (src/gpu/kernel.rs), and what the sources made of them may ask.
+/// The variants that a shared file may have beside its own, in the order of `KernelVariant` (src/gpu/source.rs), and what the sources made of them may ask.
 pub const VARIANTS: [&str; 2] = ["software", "gpu"];
 const CAPABILITIES_OF_VARIANTS: Capabilities = Capabilities::SUBGROUP;
 

@@ -3,9 +3,10 @@
 use crate::gpu::{Device, GpuError, KernelVariant};
 use crate::plan::Plan;
 
-use super::buffers::{DomainBuffers, TallyWords};
+use super::buffers::TallyWords;
 use super::cell_table::CellTable;
 use super::constants::{Features, Patches, block_counts, constants, merges, runtime_constants_of, tally_loops};
+use super::domain_buffers::DomainBuffers;
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};

@@ -11,6 +11,7 @@ mod counters;
 mod device_gas;
 mod dispatch;
 mod domain;
+mod domain_buffers;
 mod encode;
 mod exchange;
 mod fit;
