@@ -89,6 +89,7 @@ fn room_made_between_recorded_steps_loses_none() {
                     subdomain.choose(&mut rec, slot, round);
                     subdomain.settle(&mut rec, slot, round);
                 }
+                subdomain.clear_cells(&mut rec, slot);
                 subdomain.advect(&mut rec, slot);
                 if room_after == Some(k) {
                     subdomain.make_room(&mut rec, 3 * particles.len() as u64, 0, 0).expect("more room");
