@@ -2,20 +2,19 @@
 
 use super::amounts::{Amounts, highest_temperature};
 use super::cap::diameter_cap;
-use super::control_volume;
 use super::error::{MOST_CELLS, MOST_GASES};
-use super::facets;
 use super::heat::species;
 use super::longest::{Basis, possible_step};
-use super::motion;
 use super::population::{Population, openings, silent_orifices, wanted};
 use super::resolution::{
     Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY, default_occupancy,
 };
 use super::text::significant;
-use super::vents;
 use super::warnings::{Decided, warnings};
-use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, plausible};
+use super::{
+    ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, control_volume, facets, motion,
+    plausible, vents,
+};
 use crate::gas::{Species, jet_mach, kinetics};
 use crate::geometry::Grid;
 use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
@@ -191,7 +190,7 @@ fn jets(scene: &Scene, species: &[Species]) -> Result<(), PlanError> {
 /// the number).
 fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, capped: bool) -> Vec<&'static str> {
     let present = || gases.iter().filter(|gas| gas.particles > 0);
-    let coated = !scene.vents.is_empty() || !scene.has_mirrors_only();
+    let modelled = !scene.vents.is_empty() || !scene.has_mirrors_only();
     let has = [
         ("collisions", method != Method::None),
         ("a diameter that follows the local density", capped || method != Method::ClosestApproach),
@@ -200,7 +199,7 @@ fn left_out(scene: &Scene, method: Method, gases: &[GasPlan], injected: u64, cap
         ("a second gas", gases.len() > 1),
         ("inflow", injected > 0),
         ("measured surfaces", !scene.surfaces.is_empty()),
-        ("walls that are no mirrors", coated),
+        ("walls that are no mirrors", modelled),
         ("vents", !scene.vents.is_empty()),
         ("walls that move", !scene.motions.is_empty()),
     ];

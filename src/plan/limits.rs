@@ -4,10 +4,11 @@
 //! A limit is of a quantity and of one method, or of all that have no limit of their own. What is not in the table was
 //! not found to break anything.
 
+use serde::{Deserialize, Serialize};
+
 use super::text::significant;
 use crate::gas::vent::UNCLIPPED;
 use crate::scene::Method;
-use serde::{Deserialize, Serialize};
 
 /// What a limit is of. Checkpoints have its number: new ones come last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

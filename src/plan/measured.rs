@@ -26,7 +26,7 @@ pub struct Measured {
     /// Of each vent of the scene.
     pub vents: Vec<MeasuredVent>,
     /// Each surface that is no mirror or has vents, with the index of a chamber that it borders on.
-    pub coated: Vec<(SurfaceId, usize)>,
+    pub modelled_surfaces: Vec<(SurfaceId, usize)>,
     /// Where walls move.
     pub motion: Option<MeasuredMotion>,
     /// Box, area and volume of each wall of the scene.

@@ -1,12 +1,13 @@
 //! A plan, as it is printed and kept.
 
+use serde::Serialize;
+
 use super::forecast::Forecast;
 use super::inventory::Inventory;
 use super::reason::Reason;
 use crate::gas::Species;
 use crate::geometry::Grid;
 use crate::scene::Method;
-use serde::Serialize;
 
 /// What will be modelled; all SI.
 #[derive(Debug, Clone, PartialEq, Serialize)]

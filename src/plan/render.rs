@@ -1,10 +1,11 @@
 //! The plan as text: the table of `corpuscle plan`, and TOML.
 
+use std::fmt::Write;
+
 use super::planned::{ChamberPlan, Plan};
 use super::reason::Reason;
 use super::text::{grouped, row_of, significant, table};
 use crate::scene::Method;
-use std::fmt::Write;
 
 impl Plan {
     /// Aligned tables: each decision with its reason, then chambers, gases, openings, warnings.

@@ -53,7 +53,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         wall_area: 1.0,
         probe_volumes: vec![],
         vents: vec![],
-        coated: vec![],
+        modelled_surfaces: vec![],
         motion: None,
         walls: vec![],
         open_to_empty: false,

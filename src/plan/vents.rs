@@ -82,7 +82,8 @@ pub fn heat(scene: &Scene, species: &[Species], method: Method, measured: &Measu
         Warning::by_table(Quantity::Heat, method, &subject, share, "a smaller `heat_transfer`, or `accommodation`")
     };
     // A place on a wall can stand there beside its rest.
-    let mut found: Vec<String> = measured.coated.iter().filter_map(of_wall).map(|warning| warning.text).collect();
+    let mut found: Vec<String> =
+        measured.modelled_surfaces.iter().filter_map(of_wall).map(|warning| warning.text).collect();
     let mut told = std::collections::HashSet::new();
     found.retain(|text| told.insert(text.clone()));
     found

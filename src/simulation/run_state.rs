@@ -3,6 +3,10 @@
 //! Taken between intervals, when no interval is under way. Nothing in it depends on the number of ranks. What the scene
 //! and the plan say is not in it: a run is set up from them anew and then put where it was.
 
+use serde::{Deserialize, Serialize};
+
+use crate::gas::InflowState;
+use crate::output::{Checkpoint, CheckpointError};
 use crate::simulation::accounting::audit::AccountState;
 use crate::simulation::accounting::averages::AveragesState;
 use crate::simulation::accounting::guards::GuardState;
@@ -11,10 +15,6 @@ use crate::simulation::control::clock::ClockState;
 use crate::simulation::control::ladder::{Demand, LadderState};
 use crate::simulation::control::surface_states::{SeenGas, SurfaceMemory};
 use crate::simulation::zero_d::switch::SwitchState;
-use serde::{Deserialize, Serialize};
-
-use crate::gas::InflowState;
-use crate::output::{Checkpoint, CheckpointError};
 use crate::subdomain::GpuParticle;
 
 /// All particles of a checkpoint, by id.
@@ -38,8 +38,8 @@ pub struct RunState {
     pub account: AccountState,
     pub inflow: InflowState,
     /// What states read so far ask and no interval has followed yet, oldest first.
-    pub asked: Vec<Feedback>,
-    pub conditions: SurfaceMemory,
+    pub feedback: Vec<Feedback>,
+    pub surfaces: SurfaceMemory,
     pub guards: GuardState,
     pub switch: SwitchState,
     /// What was seen of each vent of the scene.
@@ -89,7 +89,7 @@ mod tests {
     }
 
     const PATCHES: usize = 2;
-    const COATS: usize = 2;
+    const SURFACE_MODELS: usize = 2;
     const VENTS: usize = 1;
     const MOTIONS: usize = 1;
 
@@ -99,7 +99,7 @@ mod tests {
             chambers: 2,
             surfaces: vec![(vec![0], 0.1), (vec![0, 1], 0.3)],
             walls: vec![(vec![0, 1], 0.2)],
-            coats: COATS,
+            surface_models: SURFACE_MODELS,
             vents: VENTS,
             motions: MOTIONS,
         };
@@ -123,7 +123,7 @@ mod tests {
             counters: crate::subdomain::Counters::default(),
             zones: zones.collect(),
             surfaces: surfaces.collect(),
-            surface_models: vec![SurfaceModelSum { energy: 1 << 50, tallied: -interval }; COATS],
+            surface_models: vec![SurfaceModelSum { energy: 1 << 50, tallied: -interval }; SURFACE_MODELS],
             vents: vec![VentSum { energy: interval, left: [3; 16], ..VentSum::default() }; VENTS],
             works: vec![SurfaceModelSum { energy: 3 - interval, tallied: 0 }; MOTIONS],
             blocks: Vec::new(),
@@ -205,7 +205,7 @@ mod tests {
             averages: averages(&plan).state(),
             account: account.state().clone(),
             inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
-            asked: vec![Feedback {
+            feedback: vec![Feedback {
                 demand: Demand { collision: 0.1 + 0.2, fast_level: 3, hot: true, shares: vec![1, 32768] },
                 seen: SeenGas::default(),
                 left: 7,
@@ -216,7 +216,7 @@ mod tests {
                 decided: Some(Decided { window: [0.1, 0.3], noise: 1.0 / 3.0 }),
             },
             vents: vec![VentWatch { opened: Some([0.1 + 0.2, 1e5]), ..VentWatch::default() }],
-            conditions: SurfaceMemory::default(),
+            surfaces: SurfaceMemory::default(),
             guards: GuardState::default(),
             submitted: 5,
             next_row: 1.0 / 3.0,

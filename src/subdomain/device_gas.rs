@@ -12,12 +12,12 @@ use super::domain::Domain;
 use super::guess::Guess;
 use super::kernels::Kernels;
 use super::layout::{GpuParticle, GpuPeer};
-use super::place::{Cells, GridCells, Place};
+use super::place::{Cells, GridCells, SubdomainBox};
 use super::step_slot::uniforms;
 
 pub struct Subdomain {
     pub(super) domain: Arc<Domain>,
-    pub(super) place: Place,
+    pub(super) place: SubdomainBox,
     pub(super) kernels: Kernels<BoundKernel>,
     pub(super) fixed: FixedBuffers,
     pub(super) cell: CellBuffers,
@@ -47,7 +47,7 @@ impl Subdomain {
     pub fn new(
         device: &Device,
         domain: Arc<Domain>,
-        place: Place,
+        place: SubdomainBox,
         particles: &[GpuParticle],
     ) -> Result<Subdomain, GpuError> {
         let (plan, features) = (&domain.plan, domain.features);
@@ -106,7 +106,7 @@ impl Subdomain {
         self.domain.features
     }
 
-    pub fn place(&self) -> &Place {
+    pub fn place(&self) -> &SubdomainBox {
         &self.place
     }
 
@@ -134,7 +134,7 @@ impl Subdomain {
     ///
     /// # Errors
     /// If the cells are over the device's limits.
-    pub fn move_to(&mut self, device: &Device, place: Place) -> Result<(), GpuError> {
+    pub fn move_to(&mut self, device: &Device, place: SubdomainBox) -> Result<(), GpuError> {
         self.place = place;
         let peers = self.gpu_peers();
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
@@ -183,7 +183,7 @@ impl Subdomain {
 }
 
 /// Cells with bins.
-fn bins_of(place: &Place, domain: &Domain) -> u64 {
+fn bins_of(place: &SubdomainBox, domain: &Domain) -> u64 {
     let (_, size) = place.bins(domain.plan.grid.cells);
     size.iter().map(|&n| u64::from(n)).product()
 }

@@ -47,7 +47,7 @@ pub use layout::{
     GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
-pub use place::{Cells, Ghosts, GridCells, Place};
+pub use place::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};

@@ -36,7 +36,7 @@ pub enum Ghosts {
 
 /// The cells of a subdomain, its halo, and the others.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct SubdomainBox {
     /// The cells whose particles it owns.
     pub own: Cells,
     /// Layers of cells around them in which its ghosts are (`shaders/shared/halo.wgsl`): twice the rounds between two exchanges, none
@@ -54,10 +54,10 @@ pub struct Place {
     pub scattered: bool,
 }
 
-impl Place {
+impl SubdomainBox {
     /// A subdomain that owns all cells.
-    pub fn alone(plan: &Plan) -> Place {
-        Place {
+    pub fn alone(plan: &Plan) -> SubdomainBox {
+        SubdomainBox {
             own: Cells::inside(plan),
             depth: 0,
             ghosts: Ghosts::All,
@@ -128,9 +128,9 @@ impl Place {
 mod tests {
     use super::*;
 
-    fn place(depth: u32) -> Place {
+    fn place(depth: u32) -> SubdomainBox {
         let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
-        Place { own, depth, ghosts: Ghosts::OnDemand, peers: Vec::new(), near: 0, flight: 0, scattered: false }
+        SubdomainBox { own, depth, ghosts: Ghosts::OnDemand, peers: Vec::new(), near: 0, flight: 0, scattered: false }
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.
@@ -139,7 +139,7 @@ mod tests {
         let grid = [10, 40, 40];
         assert_eq!(place(4).bins(grid), ([0, 5, 0], [10, 20, 13]));
         assert_eq!(place(4).inner(grid), Cells { low: [1, 14, 8], high: [9, 16, 8] });
-        assert_eq!(Place { scattered: true, ..place(4) }.inner(grid).high, [0; 3]);
+        assert_eq!(SubdomainBox { scattered: true, ..place(4) }.inner(grid).high, [0; 3]);
     }
 
     /// The last round before an exchange settles only pairs with an own particle.

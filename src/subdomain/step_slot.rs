@@ -8,7 +8,7 @@ use super::layout::{GpuMotion, GpuNewborn, GpuSurfaceModel, GpuVent};
 /// One step of an interval, as its dispatches see it.
 #[derive(Debug, Clone, Copy)]
 pub struct StepSlot {
-    /// Place in the interval.
+    /// SubdomainBox in the interval.
     pub(super) slot: u32,
     pub(super) index: u32,
     pub(super) dt: f32,

@@ -5,7 +5,7 @@ use corpuscle::output::AuditLimits;
 use corpuscle::ranks::Solo;
 use corpuscle::scene::{DiameterCap, Method, Scene};
 use corpuscle::simulation::{Model, Options, Setup, Shuffle, Simulation, initial_particles};
-use corpuscle::subdomain::{GpuParticle, Newborns, Place, Steps, Subdomain, Tables};
+use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox, Tables};
 
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
@@ -69,7 +69,7 @@ fn room_made_between_recorded_steps_loses_none() {
         let setup = Setup::new(&model, &device, 1, None).expect("a set-up");
         let particles = initial_particles(&model).expect("particles");
         let after_two_steps = |room_after: Option<usize>| {
-            let place = Place::alone(&model.plan);
+            let place = SubdomainBox::alone(&model.plan);
             let mut subdomain = Subdomain::new(&device, setup.domain.clone(), place, &particles).expect("a subdomain");
             let first_id = particles.len() as u32;
             let newborns = Newborns { of_step: &[0, 0], list: &[], first_id, stride: 1 };

@@ -6,8 +6,8 @@ use corpuscle::gpu::{AdapterDescription, Device, KernelVariant};
 use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{
-    BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model, Options, Outcome, Setup, Shuffle, Simulation,
-    SimulationError, Stock, initial_particles,
+    BalanceMode, BalanceOptions, Ghosts, HaloOptions, InitialParticles, Model, Options, Outcome, Setup, Shuffle,
+    Simulation, SimulationError, initial_particles,
 };
 
 use crate::bits::{Bits, assert_same};
@@ -199,7 +199,7 @@ impl<'a> World<'a> {
         if let Some(order) = way.order {
             let mut particles = initial_particles(self.model).expect("the gas of the start");
             order(&mut particles);
-            setup.particles = Stock::Listed(Arc::new(particles));
+            setup.particles = InitialParticles::Listed(Arc::new(particles));
         }
         let of_rank = |comm: &dyn Communicator| -> Result<(Witness, Outcome), SimulationError> {
             let wrapped = wrap.map(|wrap| wrap(comm));

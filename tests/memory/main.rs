@@ -17,7 +17,7 @@ use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment, Origin, OutputState,
 };
 use corpuscle::ranks::{Communicator, Pace, in_process};
-use corpuscle::simulation::{Initial, Model, Stock};
+use corpuscle::simulation::{Initial, InitialParticles, Model};
 use corpuscle::subdomain::GpuParticle;
 
 const RANKS: usize = 8;
@@ -70,7 +70,7 @@ fn gas_box() -> Model {
 }
 
 /// Each rank takes its share of the stock, and hands the others what is theirs; the peak of the one with the highest.
-fn deal(stock: &Stock, model: &Model) -> isize {
+fn deal(stock: &InitialParticles, model: &Model) -> isize {
     let dealt = in_process(RANKS, Pace::Together, |comm: &dyn Communicator| {
         let mut number = 0;
         let peak = peak(|| {
@@ -107,7 +107,7 @@ fn saved(parent: &Path, number: u32) -> Checkpoint {
 #[test]
 fn at_the_start_no_rank_has_all_particles() {
     let model = gas_box();
-    let found = deal(&Stock::Initial(Initial::default()), &model);
+    let found = deal(&InitialParticles::Sampled(Initial::default()), &model);
     assert!(found < MOST, "{} of {MOST} bytes", found);
 }
 
@@ -116,7 +116,7 @@ fn from_a_checkpoint_no_rank_has_all_particles() {
     let model = gas_box();
     let folder = tempfile::tempdir().unwrap();
     let checkpoint = saved(folder.path(), model.plan.initial_particles as u32);
-    let found = deal(&Stock::Saved(Arc::new(checkpoint.clone())), &model);
+    let found = deal(&InitialParticles::Saved(Arc::new(checkpoint.clone())), &model);
     assert!(found < MOST, "{} of {MOST} bytes", found);
     // Its checks hold a bit of each particle.
     let found = peak(|| drop(Checkpoint::open(checkpoint.path()).unwrap()));

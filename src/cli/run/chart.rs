@@ -3,10 +3,9 @@
 
 use std::path::Path;
 
+use super::table::{Owners, pressure_columns, time_column};
 use crate::output::{History, OutputError, PALETTE, Series, line_chart};
 use crate::scene::Scene;
-
-use super::table::{Owners, pressure_columns, time_column};
 
 pub fn draw(path: &Path, scene: &Scene, history: &History) -> Result<(), OutputError> {
     let series: Vec<Series> = Owners::of(scene)

@@ -4,7 +4,6 @@
 //! checkpoint its name; then it tells all how that went, so that an error of any rank ends all with its message, and no
 //! rank computes on before the checkpoint stands.
 
-use crate::simulation::RowObserver;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -14,7 +13,9 @@ use serde::de::DeserializeOwned;
 
 use crate::output::{self, CheckpointError, CheckpointWriter, FileRecord, Origin, OutputError, OutputState};
 use crate::ranks::RankError;
-use crate::simulation::{CheckpointEvery, Interrupt, Moment, Observer, Request, Schedule, SimulationError, WallTime};
+use crate::simulation::{
+    CheckpointEvery, Interrupt, Moment, Observer, Request, RowObserver, Schedule, SimulationError, WallTime,
+};
 use crate::subdomain::GpuParticle;
 
 /// What the user asked for.

@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::super::CliError;
+use super::super::settings::Execution;
 use crate::gpu::{Device, adapters};
 use crate::output::host_name;
 use crate::ranks::{self, Communicator, choose_device};
 use crate::scene::to_toml;
 use crate::simulation::Model;
-
-use super::super::CliError;
-use super::super::settings::Execution;
 
 /// The device that was asked for, or the one that is this rank's among those of its machine: GPUs in turn,
 /// a CPU adapter only where there is no GPU.

@@ -1,20 +1,19 @@
 //! What a run leaves behind while it goes on: rows, snapshots, and the display of its progress.
 
-use crate::simulation::RowObserver;
 use std::path::{Path, PathBuf};
 
+use super::checkpoints::Checkpoints;
+use super::reference::Reference;
+use super::table::{columns, values};
 use crate::output::{
     BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
     SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, over_mean, subdomain_chart,
 };
 use crate::simulation::{
-    BalanceRecord, GuardWarning, Model, Moment, Observer, Outcome, Request, Row, SimulationError, VentWatch, imbalance,
+    BalanceRecord, GuardWarning, Model, Moment, Observer, Outcome, Request, Row, RowObserver, SimulationError,
+    VentWatch, imbalance,
 };
 use crate::subdomain::{GpuParticle, Scales};
-
-use super::checkpoints::Checkpoints;
-use super::reference::Reference;
-use super::table::{columns, values};
 
 pub struct Recorder<'a> {
     model: &'a Model,

@@ -2,6 +2,9 @@
 
 use std::time::Instant;
 
+use super::devices;
+use super::ending::Ending;
+use super::launch::{claim, launch};
 use crate::cli::CliError;
 use crate::cli::settings::{RunSettings, model_of};
 use crate::cli::terminal::tell;
@@ -10,10 +13,6 @@ use crate::output::{
 };
 use crate::ranks::Communicator;
 use crate::scene::{Method, to_toml};
-
-use super::devices;
-use super::ending::Ending;
-use super::launch::{claim, launch};
 
 /// Seeds are below this.
 const SEEDS: u64 = 1 << 56;

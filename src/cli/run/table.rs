@@ -6,11 +6,10 @@
 //! `surface:NAME`, and a probe called like a chamber or a surface is `probe:NAME`. So no column of what is there is renamed by a key
 //! that is given, or by a probe or a surface that is added.
 
+use super::reference::Reference;
 use crate::output::Column;
 use crate::scene::Scene;
 use crate::simulation::{Row, ZoneState};
-
-use super::reference::Reference;
 
 /// The part before the quantity, of everything that has columns.
 pub struct Owners {

@@ -2,6 +2,10 @@
 
 use std::time::Instant;
 
+use super::chart;
+use super::environment::command;
+use super::recorder::Recorder;
+use super::reference::Reference;
 use crate::cli::CliError;
 use crate::cli::settings::RunSettings;
 use crate::cli::terminal::{self, tell};
@@ -10,11 +14,6 @@ use crate::output::{
 };
 use crate::scene::to_toml;
 use crate::simulation::{audit_limits, run_uniform};
-
-use super::chart;
-use super::environment::command;
-use super::recorder::Recorder;
-use super::reference::Reference;
 
 pub fn run(settings: &RunSettings, folder: &OutputFolder, quiet: bool, started: Instant) -> Result<(), CliError> {
     let RunSettings { model, execution, .. } = settings;

@@ -2,7 +2,7 @@
 
 use crate::gpu::Device;
 use crate::partition::By;
-use crate::simulation::{Ghosts, HaloOptions, Initial, Model, Setup, Stock};
+use crate::simulation::{Ghosts, HaloOptions, Initial, InitialParticles, Model, Setup};
 use crate::study::Strategy;
 use crate::study::emulation::{Effort, Emulated, State, emulate};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
@@ -96,7 +96,7 @@ impl SweepPlan {
             let Some(moment) = moment else { return Ok(Setup::new(model, device, ranks, None)?) };
             let setup = Setup::with_particles(model, device, ranks, moment.particles.clone())?;
             // Cuts of the start of the run are made by the gas of then.
-            Ok(Setup { cut_by: Some(Stock::Initial(Initial::default())), ..setup })
+            Ok(Setup { cut_by: Some(InitialParticles::Sampled(Initial::default())), ..setup })
         };
         let several = pairs.iter().any(|&(devices, _)| devices > 1);
         let shared = several.then(|| set_up(&among, 2)).transpose()?;

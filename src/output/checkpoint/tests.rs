@@ -1,10 +1,12 @@
-use super::layout::{ID_OFFSET, MANIFEST, PLAN, SCENE, STATE, folder_name};
-use super::*;
-use crate::output::AppendedState;
-use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+
+use super::layout::{ID_OFFSET, MANIFEST, PLAN, SCENE, STATE, folder_name};
+use super::*;
+use crate::output::AppendedState;
 
 /// Particles `ids`, each a record with its id where the device has it and a gas above it.
 fn records(ids: impl Iterator<Item = u32>) -> Vec<u8> {

@@ -1,7 +1,8 @@
 //! What a plan is worth: the error of each column and its causes, and what it costs.
 
-use crate::scene::Method;
 use serde::Serialize;
+
+use crate::scene::Method;
 
 /// What a plan is worth, and what it costs.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -19,6 +19,7 @@ use crate::scene::{
     SurfaceId, UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
 use range::{Kind, Range, largest, most, range_of};
+
 pub use times::{long_run, many_steps};
 use units::{atmosphere_in, likely, question};
 

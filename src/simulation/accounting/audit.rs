@@ -3,19 +3,19 @@
 //! It starts at time 0, or, of a refined state, at the moment of the refinement: then what had entered `before` counts as
 //! there from the start.
 
-use super::averages::Averages;
-use crate::simulation::accounting::phases::{once_an_interval, order_of};
-use crate::simulation::control::interval::Interval;
-use crate::simulation::control::state_error::RunStateError;
-use crate::simulation::control::surface_states::SurfaceStates;
-use crate::simulation::model::build::Model;
 use serde::{Deserialize, Serialize};
 
+use super::averages::Averages;
 use crate::gas::Inflow;
 use crate::geometry::Vessel;
 use crate::output::{Audit, AuditLimits, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
+use crate::simulation::accounting::phases::{once_an_interval, order_of};
+use crate::simulation::control::interval::Interval;
+use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::control::surface_states::SurfaceStates;
+use crate::simulation::model::build::Model;
 use crate::subdomain::{GpuParticle, Scales, Tallies, Walls};
 
 /// The same limit as that of the audit at the end.
@@ -168,9 +168,9 @@ impl Account {
     /// The energy that walls took, also as work, and vents let out in an interval, J, and what its tallies of the zones miss of it, summed
     /// over them.
     fn lost(&self, tallies: &Tallies) -> (f64, f64) {
-        let coats = tallies.surface_models.iter().map(|coat| (coat.energy, coat.tallied));
+        let surface_models = tallies.surface_models.iter().map(|placed| (placed.energy, placed.tallied));
         let vents = tallies.vents.iter().map(|vent| (vent.energy, vent.tallied));
-        let (energy, tallied) = coats
+        let (energy, tallied) = surface_models
             .chain(vents)
             .chain(tallies.works.iter().map(|work| (work.energy, work.tallied)))
             .fold((0i128, 0i128), |(energy, tallied), (e, t)| (energy + i128::from(e), tallied + i128::from(t)));

@@ -4,12 +4,12 @@
 //! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
 //! normal impulse of its hits over area and time.
 
-use crate::simulation::control::state_error::RunStateError;
-use crate::simulation::control::surface_states::VentTarget;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Plan;
 use crate::scene::GAS_CONSTANT;
+use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::control::surface_states::VentTarget;
 use crate::subdomain::{Scales, SurfaceSum, Tallies, VentSum, ZoneSum};
 
 /// Mean state of a zone over a window.
@@ -110,9 +110,9 @@ pub struct Layout {
     pub chambers: usize,
     /// Patches of each surface, and its area, m2.
     pub surfaces: Vec<(Vec<usize>, f64)>,
-    /// Coats of each wall that exchanges heat, and its area, m2.
+    /// The placed surface models of each wall that exchanges heat, and its area, m2.
     pub walls: Vec<(Vec<usize>, f64)>,
-    pub coats: usize,
+    pub surface_models: usize,
     pub vents: usize,
     pub motions: usize,
 }
@@ -161,7 +161,7 @@ pub struct Averages {
     patches: Vec<SurfaceSum>,
     /// Per patch since the start.
     received: Vec<[i128; 3]>,
-    /// Energy that each coat took, in the window and since the start.
+    /// Energy that each placed surface model took, in the window and since the start.
     heat: Vec<[i128; 2]>,
     /// What each vent passed, the same.
     passed: Vec<[Passed; 2]>,
@@ -187,9 +187,20 @@ pub struct AveragesState {
     room: Vec<f64>,
 }
 
+/// What a window has sums of.
+#[derive(Debug, Clone, Copy)]
+pub struct Counts {
+    pub zones: usize,
+    pub gases: usize,
+    pub patches: usize,
+    pub surface_models: usize,
+    pub vents: usize,
+}
+
 impl AveragesState {
     /// An empty window that starts at a time, s: of a run that is measured from there on, and whose walls are at rest.
-    pub fn starting_at(start: f64, [zones, gases, patches, coats, vents]: [usize; 5]) -> AveragesState {
+    pub fn starting_at(start: f64, counts: &Counts) -> AveragesState {
+        let &Counts { zones, gases, patches, surface_models, vents } = counts;
         AveragesState {
             start,
             steps: 0,
@@ -197,7 +208,7 @@ impl AveragesState {
             sums: vec![Sum::default(); zones * gases],
             patches: vec![(0, 0); patches],
             received: vec![[0; 3]; patches],
-            heat: vec![[0; 2]; coats],
+            heat: vec![[0; 2]; surface_models],
             passed: vec![[Passed::default(); 2]; vents],
             works: Vec::new(),
             room: Vec::new(),
@@ -220,7 +231,7 @@ impl Averages {
             sums: vec![Sum::default(); zones * plan.gases.len()],
             patches: vec![SurfaceSum::default(); patches],
             received: vec![[0; 3]; patches],
-            heat: vec![[0; 2]; layout.coats],
+            heat: vec![[0; 2]; layout.surface_models],
             passed: vec![[Passed::default(); 2]; layout.vents],
             works: vec![[0; 2]; layout.motions],
             room: if layout.motions > 0 { vec![0.0; zones] } else { Vec::new() },
@@ -265,9 +276,9 @@ impl Averages {
     }
 
     fn add_losses(&mut self, tallies: &Tallies, wanted: &[VentTarget]) {
-        for (heat, coat) in self.heat.iter_mut().zip(&tallies.surface_models) {
+        for (heat, placed) in self.heat.iter_mut().zip(&tallies.surface_models) {
             for total in heat {
-                *total += i128::from(coat.energy);
+                *total += i128::from(placed.energy);
             }
         }
         for (work, sum) in self.works.iter_mut().zip(&tallies.works) {
@@ -304,7 +315,7 @@ impl Averages {
             ("sums over zones", state.sums.len(), self.sums.len()),
             ("patches of wall", state.patches.len(), self.patches.len()),
             ("impulses of patches", state.received.len(), self.received.len()),
-            ("coats of walls", state.heat.len(), self.heat.len()),
+            ("surface models of walls", state.heat.len(), self.heat.len()),
             ("vents", state.passed.len(), self.passed.len()),
             ("moving walls", state.works.len(), self.works.len()),
             ("volumes of zones", state.room.len(), self.room.len()),
@@ -344,7 +355,12 @@ impl Averages {
             step: duration / self.steps as f64,
             particles,
             surfaces: surfaces.collect(),
-            walls: self.layout.walls.iter().map(|(coats, area)| self.wall(coats, *area, duration)).collect(),
+            walls: self
+                .layout
+                .walls
+                .iter()
+                .map(|(surface_models, area)| self.wall(surface_models, *area, duration))
+                .collect(),
             vents: self.passed.iter().map(|passed| self.vent(passed, duration)).collect(),
             motions: self.works.iter().map(|work| self.motion(work, duration)).collect(),
             chambers: states[..self.layout.chambers].to_vec(),
@@ -418,8 +434,8 @@ impl Averages {
         self.scales.reference_mass / self.scales.energy
     }
 
-    fn wall(&self, coats: &[usize], area: f64, duration: f64) -> WallState {
-        let sum = |since: usize| coats.iter().map(|&coat| self.heat[coat][since]).sum::<i128>() as f64;
+    fn wall(&self, surface_models: &[usize], area: f64, duration: f64) -> WallState {
+        let sum = |since: usize| surface_models.iter().map(|&placed| self.heat[placed][since]).sum::<i128>() as f64;
         WallState::new(sum(1) * self.energy_unit(), sum(0) * self.energy_unit(), area, duration)
     }
 

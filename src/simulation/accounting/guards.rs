@@ -4,9 +4,9 @@
 //! same at the same time, and a run that goes on from a checkpoint tells what the run without interruption does. Guards
 //! change nothing in a run but whether it goes on (`--strict`).
 
-use super::averages::Row;
 use serde::{Deserialize, Serialize};
 
+use super::averages::Row;
 use crate::gas::kinetics;
 use crate::plan::{Bound, Plan, Quantity, Warning, limit};
 use crate::scene::{Method, Scene};

@@ -1,10 +1,10 @@
 //! Simulated time in integer ticks of the smallest step of the ladder, so that sums of steps are exact
 //! and the run ends exactly at its end time.
 
-use crate::simulation::control::state_error::RunStateError;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Plan;
+use crate::simulation::control::state_error::RunStateError;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {

@@ -2,11 +2,11 @@
 //! changed only between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 
-use super::local_gas::{BlockGas, Part};
-use crate::simulation::control::state_error::RunStateError;
 use serde::{Deserialize, Serialize};
 
+use super::local_gas::{BlockGas, Part};
 use crate::plan::{FAST_TAIL, LADDER_TAIL, Plan};
+use crate::simulation::control::state_error::RunStateError;
 use crate::subdomain::BlockSum;
 
 /// Share of the collisions that may be of pairs faster than the plan's fastest: twice what 6 sqrt(kT/m) leaves in gas at

@@ -8,14 +8,14 @@
 //! or less than its beta would let out of a gas at rest the vent lately let out of the gas before it, which flows. Without the
 //! latter a vent would for ever owe what makes up for it, some intervals' flow in proportion.
 
-use crate::simulation::control::state_error::RunStateError;
-use crate::simulation::model::build::Model;
 use serde::{Deserialize, Serialize};
 
 use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer};
+use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::model::build::Model;
 use crate::subdomain::{GpuSurfaceModel, GpuVent, Scales, Tables, Tallies, ZoneSum};
 
 /// A vent pays what it owes within so many intervals of its flow, or while so many particles leave.
@@ -78,7 +78,7 @@ impl VentSeen {
 pub struct SurfaceMemory {
     latest: SeenGas,
     current: SeenGas,
-    /// Of each coat, the largest share of accommodation that its coefficient has asked for.
+    /// Of each placed surface model, the largest share of accommodation that its coefficient has asked for.
     most_asked: Vec<f64>,
 }
 
@@ -98,7 +98,7 @@ pub struct SurfaceStates<'a> {
 
 impl<'a> SurfaceStates<'a> {
     pub fn new(model: &'a Model) -> SurfaceStates<'a> {
-        let most_asked = vec![0.0; model.coats.coats.len()];
+        let most_asked = vec![0.0; model.surface_models.placed.len()];
         SurfaceStates {
             model,
             species: model.plan.species(),
@@ -115,7 +115,7 @@ impl<'a> SurfaceStates<'a> {
     /// If the state is of another scene; then nothing is changed.
     pub fn restore(&mut self, state: &SurfaceMemory) -> Result<(), RunStateError> {
         let (chambers, vents) = (self.model.plan.chambers.len(), self.model.scene.vents.len());
-        let mut lengths = vec![("coats of walls", state.most_asked.len(), self.state.most_asked.len())];
+        let mut lengths = vec![("surface models of walls", state.most_asked.len(), self.state.most_asked.len())];
         // Where all walls are mirrors nothing is seen.
         for seen in [&state.latest, &state.current].into_iter().filter(|seen| **seen != SeenGas::default()) {
             lengths.push(("chambers", seen.chambers.len(), chambers));
@@ -138,7 +138,7 @@ impl<'a> SurfaceStates<'a> {
     }
 
     fn mirrors(&self) -> bool {
-        self.model.coats.coats.is_empty()
+        self.model.surface_models.placed.is_empty()
     }
 
     /// Takes the tallies of an interval from `start` to `end`, s; intervals come in their order. Also tells what its
@@ -172,7 +172,7 @@ impl<'a> SurfaceStates<'a> {
             (0..model.scene.vents.len()).map(|index| self.flow(&self.state.latest, index, start, end).0).collect();
         for (index, vent) in model.scene.vents.iter().enumerate() {
             let mut seen = self.state.latest.vents[index];
-            let place = &model.coats.vents[index];
+            let place = &model.surface_models.vents[index];
             let gas = self.local(&self.state.latest, place.chamber);
             seen.open = opens(vent, seen.open, gas.map_or(0.0, |gas| gas.pressure));
             let (mass, left) = (wanted[index].mass, self.left(tallies, index));
@@ -193,7 +193,7 @@ impl<'a> SurfaceStates<'a> {
 
     /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last.
     pub fn pressure_before(&self, vent: usize) -> f64 {
-        self.local(&self.state.latest, self.model.coats.vents[vent].chamber).map_or(0.0, |gas| gas.pressure)
+        self.local(&self.state.latest, self.model.surface_models.vents[vent].chamber).map_or(0.0, |gas| gas.pressure)
     }
 
     /// Of each vent, whether it has opened.
@@ -253,18 +253,18 @@ impl<'a> SurfaceStates<'a> {
         let betas: Vec<f64> =
             (0..model.scene.vents.len()).map(|index| self.flow(&self.state.current, index, start, end).1).collect();
         let heaviest = self.heaviest();
-        for (index, coat) in model.coats.coats.iter().enumerate() {
+        for (index, placed) in model.surface_models.placed.iter().enumerate() {
             let first_vent = tables.vents.len() as u32;
-            for &vent in &coat.vents {
+            for &vent in &placed.vents {
                 let (center, radius2) = self.disc(vent);
                 let (beta, index) = (betas[vent] as f32, vent as u32);
                 tables.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
             }
-            let surface = model.scene.surface_model(coat.surface);
+            let surface = model.scene.surface_model(placed.surface);
             let (mut thermal, mut share) = (0.0, 0.0);
             if let Some(heat) = &surface.heat {
                 thermal = GAS_CONSTANT * heat.temperature / heaviest;
-                share = match self.state.current.chambers.get(coat.chamber) {
+                share = match self.state.current.chambers.get(placed.chamber) {
                     Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
                     None => 0.0,
                 };
@@ -299,7 +299,7 @@ impl<'a> SurfaceStates<'a> {
     /// What a vent should pass of the gas of a state, and its beta for the reference mass, s/m.
     fn flow(&self, state: &SeenGas, index: usize, start: f64, end: f64) -> (VentTarget, f64) {
         let model = self.model;
-        let (vent, place) = (&model.scene.vents[index], &model.coats.vents[index]);
+        let (vent, place) = (&model.scene.vents[index], &model.surface_models.vents[index]);
         let Some(gas) = self.local(state, place.chamber) else {
             return (VentTarget::default(), 0.0);
         };
@@ -321,9 +321,9 @@ impl<'a> SurfaceStates<'a> {
     /// The walls whose coefficient asked for more than all hits can give, with how many times as much.
     pub fn beyond(&self) -> Vec<(String, f64)> {
         let mut beyond: Vec<(String, f64)> = Vec::new();
-        for (coat, &asked) in self.model.coats.coats.iter().zip(&self.state.most_asked) {
+        for (placed, &asked) in self.model.surface_models.placed.iter().zip(&self.state.most_asked) {
             if asked > 1.0 {
-                let name = self.model.scene.surface_name(coat.surface);
+                let name = self.model.scene.surface_name(placed.surface);
                 match beyond.iter_mut().find(|(known, _)| *known == name) {
                     Some((_, most)) => *most = most.max(asked),
                     None => beyond.push((name, asked)),
@@ -369,7 +369,7 @@ mod tests {
         };
         conditions.start(&tallies(0));
         let pressure = number * plan.moles_per_particle * GAS_CONSTANT * temperature / plan.chambers[0].volume;
-        let area = model.coats.vents[0].area;
+        let area = model.surface_models.vents[0].area;
         let (mut flying, mut rest, mut wanted) = (Vec::<Tables>::new(), 0.0, 0.0);
         for k in 0..intervals + 2 {
             let span = [k as f64 * dt, (k + 1) as f64 * dt];

@@ -2,14 +2,13 @@
 
 use super::error::ModelError;
 use super::facing::Known;
+use super::flow_only;
 use super::flow_only::Part;
 use super::measure::measured;
 use super::moving::Moving;
 use super::orifices::{check_discs, check_orifices};
 use super::outlook::outlook;
-use super::surface_models::Coats;
-
-use super::flow_only;
+use super::surface_models::SurfaceModels;
 use crate::geometry::Vessel;
 use crate::plan::{
     Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors, plan,
@@ -22,7 +21,7 @@ pub struct Model {
     pub scene: Scene,
     pub vessel: Vessel,
     pub plan: Plan,
-    pub coats: Coats,
+    pub surface_models: SurfaceModels,
     /// The walls that move; `vessel` has them as they are drawn.
     pub moving: Moving,
     /// m3 of gas in each probe.
@@ -54,8 +53,8 @@ impl Model {
         if plan.method != Method::ControlVolume {
             check_discs(&scene, &seen.vessel)?;
         }
-        let Survey { vessel, coats, moving, probe_volumes, .. } = seen;
-        Ok(Model { scene, vessel, plan, coats, moving, probe_volumes, choice })
+        let Survey { vessel, surface_models, moving, probe_volumes, .. } = seen;
+        Ok(Model { scene, vessel, plan, surface_models, moving, probe_volumes, choice })
     }
 
     /// The plan with the reasons and the forecast of the choice, and what memory it takes, for people. `plan` is what runs
@@ -98,7 +97,7 @@ impl Model {
 /// What a scene's walls are, and what was measured of them.
 struct Survey {
     vessel: Vessel,
-    coats: Coats,
+    surface_models: SurfaceModels,
     moving: Moving,
     probe_volumes: Vec<f64>,
     measured: Measured,
@@ -108,15 +107,15 @@ impl Survey {
     fn new(scene: &Scene) -> Result<Survey, ModelError> {
         let vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
         check_orifices(scene, &vessel)?;
-        let coats = Coats::new(scene, &vessel)?;
+        let surface_models = SurfaceModels::new(scene, &vessel)?;
         let moving = Moving::new(scene, &vessel)?;
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
-        let measured = measured(scene, &vessel, &coats, &moving, &probe_volumes);
-        Ok(Survey { vessel, coats, moving, probe_volumes, measured })
+        let measured = measured(scene, &vessel, &surface_models, &moving, &probe_volumes);
+        Ok(Survey { vessel, surface_models, moving, probe_volumes, measured })
     }
 
     fn outlook(&self, scene: &Scene) -> Outlook {
-        outlook(scene, &self.vessel, &self.measured, &self.coats)
+        outlook(scene, &self.vessel, &self.measured, &self.surface_models)
     }
 }
 

@@ -1,9 +1,9 @@
 //! What a control volume knows of probes and surfaces: the chambers that they lie in, or face.
 
-use super::error::NoChamber;
-use super::places::chamber_of;
 use glam::DVec3;
 
+use super::error::NoChamber;
+use super::places::chamber_of;
 use crate::geometry::{Vessel, region_bounds};
 use crate::scene::{Scene, Surface};
 

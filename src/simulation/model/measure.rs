@@ -3,13 +3,19 @@
 use super::moving::{Moving, extent};
 use super::outlook::is_open_to_empty;
 use super::places::{along, chamber_of};
-use super::surface_models::Coats;
+use super::surface_models::SurfaceModels;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
 use crate::plan::{Measured, MeasuredVent, MeasuredWall};
 use crate::scene::{Opening, Scene};
 
 /// What the plan needs to know of the geometry.
-pub fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving, probe_volumes: &[f64]) -> Measured {
+pub fn measured(
+    scene: &Scene,
+    vessel: &Vessel,
+    surface_models: &SurfaceModels,
+    moving: &Moving,
+    probe_volumes: &[f64],
+) -> Measured {
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     let Narrowest { gap, body } = vessel.narrowest();
@@ -26,8 +32,12 @@ pub fn measured(scene: &Scene, vessel: &Vessel, coats: &Coats, moving: &Moving, 
         thinnest_body: body,
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
         probe_volumes: probe_volumes.to_vec(),
-        vents: coats.vents.iter().map(|place| MeasuredVent { chamber: place.chamber, area: place.area }).collect(),
-        coated: coats.coats.iter().map(|coat| (coat.surface, coat.chamber)).collect(),
+        vents: surface_models
+            .vents
+            .iter()
+            .map(|place| MeasuredVent { chamber: place.chamber, area: place.area })
+            .collect(),
+        modelled_surfaces: surface_models.placed.iter().map(|placed| (placed.surface, placed.chamber)).collect(),
         walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
 }

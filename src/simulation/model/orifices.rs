@@ -1,8 +1,8 @@
 //! Discs of orifices lie in the gas.
 
-use super::error::ModelError;
 use glam::DVec3;
 
+use super::error::ModelError;
 use crate::geometry::Vessel;
 use crate::plan::significant;
 use crate::scene::{Dimension, Orifice, Scene};

@@ -1,11 +1,11 @@
 //! What a forecast needs to know of the vessel ([`Outlook`]): measured only for scenes that wish an accuracy or have a
 //! budget.
 
-use super::facing::facing;
-use super::places::chamber_of;
-use super::surface_models::Coats;
 use glam::DVec3;
 
+use super::facing::facing;
+use super::places::chamber_of;
+use super::surface_models::SurfaceModels;
 use crate::geometry::{Vessel, region_bounds, region_volume};
 use crate::plan::{Measured, Outlook, SeenHeat, SeenProbe, SeenSurface};
 use crate::scene::{Opening, Orifice, Region, Scene};
@@ -15,7 +15,7 @@ const POINTS: u32 = 16;
 /// An open border is that much more open than the holes in it.
 const OPEN: f64 = 2.0;
 
-pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coats) -> Outlook {
+pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, surface_models: &SurfaceModels) -> Outlook {
     let surfaces = scene.surfaces.iter().map(|surface| {
         // A surface without gas before it is refused by the run itself.
         let faces = facing(scene, vessel, surface).unwrap_or_default();
@@ -29,13 +29,15 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, coats: &Coat
         let chamber = chamber_of(scene, vessel, middle).unwrap_or(scene.chambers.len() - 1);
         SeenProbe { chamber, volume: vessel.gas_volume_in(&probe.region) }
     });
-    let heated = coats.coats.iter().filter(|coat| scene.surface_model(coat.surface).heat.is_some());
+    let heated = surface_models.placed.iter().filter(|placed| scene.surface_model(placed.surface).heat.is_some());
     Outlook {
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         surfaces: surfaces.collect(),
         probes: probes.collect(),
         borders: borders(scene, vessel, measured),
-        heated: heated.map(|coat| SeenHeat { surface: coat.surface, chamber: coat.chamber, area: coat.area }).collect(),
+        heated: heated
+            .map(|placed| SeenHeat { surface: placed.surface, chamber: placed.chamber, area: placed.area })
+            .collect(),
         modelled: Vec::new(),
     }
 }
@@ -174,9 +176,9 @@ mod tests {
 
     fn borders_of(text: &str) -> Vec<[usize; 2]> {
         let scene = crate::scene::parse(text, "test.toml", std::path::Path::new("")).unwrap();
-        let Model { scene, vessel, coats, moving, .. } = Model::new(scene).unwrap();
-        let measured = crate::simulation::model::measure::measured(&scene, &vessel, &coats, &moving, &[]);
-        outlook(&scene, &vessel, &measured, &coats).borders
+        let Model { scene, vessel, surface_models, moving, .. } = Model::new(scene).unwrap();
+        let measured = crate::simulation::model::measure::measured(&scene, &vessel, &surface_models, &moving, &[]);
+        outlook(&scene, &vessel, &measured, &surface_models).borders
     }
 
     /// Chambers on two sides of a wall with a hole do not touch; a corner of a box touches the rest.

@@ -1,10 +1,10 @@
-//! Which triangles of the walls are no mirrors, and what they are: a *coat* is what a wall has in one chamber with
-//! the same vents, so that one state of the gas and one table entry serve all of it.
+//! Which triangles of the walls are no mirrors, and what they are: a *placed model* is what a wall, or a part of it, has in one
+//! chamber with the same vents, so that one state of the gas and one table entry serve all of it.
+
+use glam::DVec3;
 
 use super::error::ModelError;
 use super::places::chamber_of;
-use glam::DVec3;
-
 use crate::geometry::Vessel;
 use crate::scene::{Chamber, Disc, Scene, SurfaceId, Vent};
 
@@ -17,16 +17,16 @@ const MOST_SPLITS: u32 = 24;
 const FINEST: f64 = 1e-3;
 
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Coats {
-    /// Coat of each triangle of the vessel, or `u32::MAX` for a mirror; empty if all are.
+pub struct SurfaceModels {
+    /// The placed model of each triangle of the vessel, or `u32::MAX` for a mirror; empty if all are.
     pub of_triangle: Vec<u32>,
-    pub coats: Vec<Coat>,
+    pub placed: Vec<PlacedModel>,
     /// Of the scene's vents.
     pub vents: Vec<VentPlace>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct Coat {
+pub struct PlacedModel {
     pub surface: SurfaceId,
     pub chamber: usize,
     /// m2.
@@ -42,12 +42,12 @@ pub struct VentPlace {
     pub area: f64,
 }
 
-impl Coats {
+impl SurfaceModels {
     /// # Errors
     /// If a vent has no place, or none can say which chamber it empties.
-    pub fn new(scene: &Scene, vessel: &Vessel) -> Result<Coats, ModelError> {
+    pub fn new(scene: &Scene, vessel: &Vessel) -> Result<SurfaceModels, ModelError> {
         if scene.has_mirrors_only() && scene.vents.is_empty() {
-            return Ok(Coats::default());
+            return Ok(SurfaceModels::default());
         }
         let mirrors = |id: SurfaceId| scene.surface_model(id).is_mirror();
         let has_vents = |wall: usize| scene.vents.iter().any(|vent| vent.wall == wall);
@@ -56,12 +56,12 @@ impl Coats {
             .iter()
             .map(|triangle| {
                 let wall = triangle.wall as usize;
-                let coated = !mirrors(scene.surface_of(wall, triangle.face)) || has_vents(wall);
-                coated.then(|| chamber_before(scene, vessel, corners(vessel, triangle.vertices)))
+                let modelled = !mirrors(scene.surface_of(wall, triangle.face)) || has_vents(wall);
+                modelled.then(|| chamber_before(scene, vessel, corners(vessel, triangle.vertices)))
             })
             .collect();
         let places = places(scene, vessel, &chambers)?;
-        let mut coats: Vec<Coat> = Vec::new();
+        let mut placed: Vec<PlacedModel> = Vec::new();
         let mut of_triangle = Vec::with_capacity(vessel.triangles.len());
         for (triangle, chamber) in vessel.triangles.iter().zip(&chambers) {
             let Some(chamber) = *chamber else {
@@ -77,20 +77,21 @@ impl Coats {
                 of_triangle.push(NOBODY);
                 continue;
             }
-            let same = |coat: &Coat| coat.surface == surface && coat.chamber == chamber && coat.vents == vents;
-            let index = coats.iter().position(same).unwrap_or_else(|| {
-                coats.push(Coat { surface, chamber, area: 0.0, vents: vents.clone() });
-                coats.len() - 1
+            let same =
+                |model: &PlacedModel| model.surface == surface && model.chamber == chamber && model.vents == vents;
+            let index = placed.iter().position(same).unwrap_or_else(|| {
+                placed.push(PlacedModel { surface, chamber, area: 0.0, vents: vents.clone() });
+                placed.len() - 1
             });
-            coats[index].area += area(corners(vessel, triangle.vertices));
+            placed[index].area += area(corners(vessel, triangle.vertices));
             of_triangle.push(index as u32);
         }
-        Ok(Coats { of_triangle, coats, vents: places })
+        Ok(SurfaceModels { of_triangle, placed, vents: places })
     }
 
-    /// Entries of the device's table of vents: a vent that lies on several coats has several.
+    /// Entries of the device's table of vents: a vent that lies on several placed models has several.
     pub fn vent_entries(&self) -> usize {
-        self.coats.iter().map(|coat| coat.vents.len()).sum()
+        self.placed.iter().map(|placed| placed.vents.len()).sum()
     }
 }
 
@@ -228,7 +229,7 @@ mod tests {
 
     #[test]
     fn mirrors_have_no_coats() {
-        assert_eq!(model("", "").unwrap().coats, Coats::default());
+        assert_eq!(model("", "").unwrap().surface_models, SurfaceModels::default());
     }
 
     /// The earlier vent has the disc, the later one the rest of the wall.
@@ -237,13 +238,13 @@ mod tests {
         let disc = std::f64::consts::PI * 0.025 * 0.025;
         let close = |found: f64, expected: f64| (found - expected).abs() < 1e-3 * disc;
         let both = vent("disc", DISC) + &vent("all", "wall = \"outer\"");
-        let coats = model(&both, "").unwrap().coats;
-        assert!(close(coats.vents[0].area, disc), "{} {disc}", coats.vents[0].area);
-        assert!(close(coats.vents[1].area, 0.24 - disc), "{}", coats.vents[1].area);
-        assert!(coats.vents.iter().all(|place| place.chamber == 1));
-        // One coat with both, and one for the other faces.
-        assert_eq!((coats.coats.len(), coats.vent_entries()), (2, 3));
-        let area: f64 = coats.coats.iter().map(|coat| coat.area).sum();
+        let surface_models = model(&both, "").unwrap().surface_models;
+        assert!(close(surface_models.vents[0].area, disc), "{} {disc}", surface_models.vents[0].area);
+        assert!(close(surface_models.vents[1].area, 0.24 - disc), "{}", surface_models.vents[1].area);
+        assert!(surface_models.vents.iter().all(|place| place.chamber == 1));
+        // One placed model with both, and one for the other faces.
+        assert_eq!((surface_models.placed.len(), surface_models.vent_entries()), (2, 3));
+        let area: f64 = surface_models.placed.iter().map(|placed| placed.area).sum();
         assert!((area - 0.24).abs() < 1e-12);
         // The other way round nothing is left for the disc.
         let covered = vent("all", "wall = \"outer\"") + &vent("disc", DISC);
@@ -261,25 +262,28 @@ mod tests {
         let Err(error) = model(&two, "") else { panic!("which chamber?") };
         assert!(error.to_string().contains("\"inside\", \"around\""), "{error}");
         let one = vent("one", "wall = \"inner\"\nchamber = \"inside\"");
-        let coats = model(&one, "").unwrap().coats;
-        assert!((coats.vents[0].area - 6.0 * 0.05 * 0.05).abs() < 1e-12 && coats.vents[0].chamber == 0);
-        assert_eq!(coats.coats.len(), 1);
-        let heated = model(&one, "temperature = 400.0\n").unwrap().coats;
+        let surface_models = model(&one, "").unwrap().surface_models;
+        assert!(
+            (surface_models.vents[0].area - 6.0 * 0.05 * 0.05).abs() < 1e-12 && surface_models.vents[0].chamber == 0
+        );
+        assert_eq!(surface_models.placed.len(), 1);
+        let heated = model(&one, "temperature = 400.0\n").unwrap().surface_models;
         assert_eq!(
-            heated.coats.iter().map(|coat| (coat.surface.wall, coat.chamber)).collect::<Vec<_>>(),
+            heated.placed.iter().map(|placed| (placed.surface.wall, placed.chamber)).collect::<Vec<_>>(),
             [(0, 1), (1, 0)]
         );
     }
 
-    /// A part has its own coat, the wall's others another, whatever a vent on it does; a mirror has none.
+    /// A part has a placed model of its own, the rest of the wall another, whatever a vent on it does; a mirror has none.
     #[test]
     fn parts_have_coats_of_their_own() {
         let part = "[[wall.part]]\nface = \"+x\"\ntemperature = 600.0\n";
         let found = |vents: &str, wall: &str| {
-            let Model { scene, coats, .. } = model(vents, wall).unwrap();
-            let of =
-                |coat: &Coat| (scene.surface_name(coat.surface), (1e4 * coat.area).round() as u32, coat.vents.len());
-            coats.coats.iter().map(of).collect::<Vec<_>>()
+            let Model { scene, surface_models, .. } = model(vents, wall).unwrap();
+            let of = |placed: &PlacedModel| {
+                (scene.surface_name(placed.surface), (1e4 * placed.area).round() as u32, placed.vents.len())
+            };
+            surface_models.placed.iter().map(of).collect::<Vec<_>>()
         };
         assert_eq!(found("", part), [("outer/+x".to_string(), 400, 0)]);
         let all = found("", &format!("friction = 0.5\n{part}"));

@@ -3,14 +3,14 @@
 //! Every rank's load in the last step of an interval comes with the sums of the interval's tallies, so that all
 //! ranks decide alike. Nothing here changes a result.
 
-use super::decomposition::Decomposition;
-use super::exchange::Traffic;
-use crate::simulation::error::SimulationError;
 use std::time::Instant;
 
+use super::decomposition::Decomposition;
+use super::exchange::Traffic;
 use crate::gpu::Device;
 use crate::partition::{By, CostModel, Decision, IntegerWeights, Measurement, Trigger, Work};
 use crate::ranks::Communicator;
+use crate::simulation::error::SimulationError;
 use crate::subdomain::{GridCells, Subdomain, Tallies};
 
 /// Steps that a rebalance is thought to cost at most before one was measured.

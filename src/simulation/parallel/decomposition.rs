@@ -11,7 +11,7 @@ use crate::partition::{Bisection, CellBox, IntegerWeights, Node, TOLERANCE, Tree
 use crate::plan::Plan;
 use crate::ranks::Communicator;
 use crate::simulation::error::SimulationError;
-use crate::subdomain::{Cells, GpuParticle, Place, Subdomain};
+use crate::subdomain::{Cells, GpuParticle, Subdomain, SubdomainBox};
 
 /// Layers of cells beyond the halo from which a particle may come in a step. One that flew farther is
 /// found by its owner of the step before, and the interval is run again with everyone as a peer.
@@ -58,7 +58,7 @@ impl Decomposition {
 
     /// The ranks that this one exchanges particles with, those that share ghosts with it first, and its place
     /// among them.
-    pub fn place(&self) -> (Vec<usize>, Place) {
+    pub fn place(&self) -> (Vec<usize>, SubdomainBox) {
         let boxes = self.tree.boxes();
         let own = boxes[self.rank];
         let gap = |rank: &usize| boxes[*rank].gap(&own);
@@ -68,7 +68,7 @@ impl Decomposition {
         peers.sort_by_key(|rank| (gap(rank) >= self.depth(), *rank));
         let near = peers.iter().filter(|rank| gap(rank) < self.depth()).count();
         let cells = |extent: &CellBox| Cells { low: extent.low, high: extent.high };
-        let place = Place {
+        let place = SubdomainBox {
             own: cells(&own),
             depth: self.depth(),
             ghosts: self.halo.ghosts,

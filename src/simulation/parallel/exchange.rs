@@ -1,11 +1,11 @@
 //! What the ranks tell each other within a step: the particles that change their owner or are near its
 //! border, and what the rounds did to the ghosts. A rank alone tells nothing.
 
-use crate::simulation::error::SimulationError;
 use std::time::Instant;
 
 use crate::gpu::Recording;
 use crate::ranks::Communicator;
+use crate::simulation::error::SimulationError;
 use crate::subdomain::{StepSlot, Subdomain};
 
 /// What went between the ranks, as this one saw it.

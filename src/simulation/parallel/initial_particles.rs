@@ -3,8 +3,6 @@
 //! Each rank draws or reads an equal share. The ranks cut the space by histograms of their shares, and then hand each other
 //! what the other owns, so many at a time. A rank holds its share, what it owns, and what is on its way.
 
-use crate::simulation::error::SimulationError;
-use crate::simulation::model::build::Model;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -14,16 +12,18 @@ use crate::geometry::{region_bounds, region_contains};
 use crate::output::Checkpoint;
 use crate::ranks::{Communicator, RankError};
 use crate::scene::Region;
+use crate::simulation::error::SimulationError;
+use crate::simulation::model::build::Model;
 use crate::subdomain::{GpuParticle, Scales};
 
 /// What a rank hands on at once of its share.
-const HANDFUL: usize = 1 << 14;
+const BATCH: usize = 1 << 14;
 
 /// The particles of a start, before they are anyone's.
 #[derive(Clone)]
-pub enum Stock {
+pub enum InitialParticles {
     /// Of a scene that starts: by id.
-    Initial(Initial),
+    Sampled(Initial),
     /// Of a run that goes on: as they are in the files.
     Saved(Arc<Checkpoint>),
     /// In the memory that all ranks of the process share: for tests and studies.
@@ -34,12 +34,12 @@ pub enum Stock {
 #[derive(Clone, Default)]
 pub struct Initial(Arc<OnceLock<Result<Vec<Correction>, FillError>>>);
 
-impl Stock {
+impl InitialParticles {
     fn number(&self, model: &Model) -> u64 {
         match self {
-            Stock::Initial(_) => model.plan.initial_particles,
-            Stock::Saved(checkpoint) => checkpoint.manifest().particles,
-            Stock::Listed(all) => all.len() as u64,
+            InitialParticles::Sampled(_) => model.plan.initial_particles,
+            InitialParticles::Saved(checkpoint) => checkpoint.manifest().particles,
+            InitialParticles::Listed(all) => all.len() as u64,
         }
     }
 
@@ -50,15 +50,15 @@ impl Stock {
     pub fn share(&self, model: &Model, comm: &dyn Communicator) -> Result<Cow<'_, [GpuParticle]>, SimulationError> {
         let wanted = share(self.number(model), comm.rank(), comm.size());
         Ok(match self {
-            Stock::Initial(_) if comm.size() == 1 => Cow::Owned(initial_particles(model)?),
-            Stock::Initial(initial) => Cow::Owned(initial.part(model, wanted)?),
-            Stock::Saved(checkpoint) => {
+            InitialParticles::Sampled(_) if comm.size() == 1 => Cow::Owned(initial_particles(model)?),
+            InitialParticles::Sampled(initial) => Cow::Owned(initial.part(model, wanted)?),
+            InitialParticles::Saved(checkpoint) => {
                 let mut own = Vec::with_capacity((wanted.end - wanted.start) as usize);
                 checkpoint
                     .records(wanted, &mut |piece| own.extend(bytemuck::pod_collect_to_vec::<u8, GpuParticle>(piece)))?;
                 Cow::Owned(own)
             }
-            Stock::Listed(all) => Cow::Borrowed(&all[wanted.start as usize..wanted.end as usize]),
+            InitialParticles::Listed(all) => Cow::Borrowed(&all[wanted.start as usize..wanted.end as usize]),
         })
     }
 
@@ -74,7 +74,9 @@ impl Stock {
         owner: impl Fn(&GpuParticle) -> usize,
     ) -> Result<Vec<GpuParticle>, SimulationError> {
         match self {
-            Stock::Listed(all) => Ok(all.iter().filter(|particle| owner(particle) == comm.rank()).copied().collect()),
+            InitialParticles::Listed(all) => {
+                Ok(all.iter().filter(|particle| owner(particle) == comm.rank()).copied().collect())
+            }
             _ if comm.size() == 1 => Ok(share.into_owned()),
             _ => hand_out(share.into_owned(), self.number(model), comm, owner),
         }
@@ -152,9 +154,9 @@ fn hand_out(
     let (rank, ranks) = (comm.rank(), comm.size());
     let mut own = Vec::with_capacity(share.len());
     // As often as the largest share needs, the same on all ranks.
-    for _ in 0..number.div_ceil(ranks as u64).div_ceil(HANDFUL as u64) {
+    for _ in 0..number.div_ceil(ranks as u64).div_ceil(BATCH as u64) {
         let mut messages = vec![Vec::new(); ranks];
-        for particle in share.drain(share.len().saturating_sub(HANDFUL)..) {
+        for particle in share.drain(share.len().saturating_sub(BATCH)..) {
             let owner = owner(&particle);
             if owner == rank {
                 own.push(particle);
@@ -207,7 +209,7 @@ mod tests {
         let to_one = |_| 2;
         let unevenly = |id: u32| if id > 5 { 2 } else { 0 };
         let laws: [&(dyn Fn(u32) -> usize + Sync); 3] = [&by_turns, &to_one, &unevenly];
-        for number in [0, 1, 11, 4 * HANDFUL as u64 + 5] {
+        for number in [0, 1, 11, 4 * BATCH as u64 + 5] {
             for (k, law) in laws.into_iter().enumerate() {
                 let dealt = in_process(3, Pace::Together, |comm: &dyn Communicator| {
                     let mine = share(number, comm.rank(), comm.size()).map(|id| particle(id as u32)).collect();

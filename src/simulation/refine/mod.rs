@@ -16,19 +16,17 @@ mod places;
 mod report;
 mod start;
 
+use super::control::clock::Clock;
+use super::control::ladder::LadderError;
 use super::model::build::Model;
 use super::model::error::ModelError;
 use crate::gas::{FlowIntegral, Inflow, InflowStateError, moles_at, thermo};
 use crate::geometry::GeometryError;
 use crate::plan::MOST_PARTICLES;
 use crate::scene::Scene;
-use crate::subdomain::GpuParticle;
-
-use super::control::clock::Clock;
-use super::control::ladder::LadderError;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::run_state::RunState;
-
+use crate::subdomain::GpuParticle;
 use groups::groups;
 use lineage::Lineage;
 use local::Split;

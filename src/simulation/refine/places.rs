@@ -4,11 +4,11 @@
 //! holes or heaps. Mirrored at walls, and not refused there, the children of an even gas are even up to the wall. A path
 //! that ends in another chamber (through a hole) or in no gas is drawn again, the later tries nearer to the parent.
 
-use crate::simulation::model::build::Model;
 use glam::DVec3;
 
 use crate::gas::{Draws, Purpose};
 use crate::geometry::{CellClass, GeometryError, TriangleGrid, block_volumes, region_contains};
+use crate::simulation::model::build::Model;
 use crate::subdomain::{GpuParticle, Walls};
 
 const TRIES: i32 = 12;

@@ -8,7 +8,7 @@ use crate::gas::Inflow;
 use crate::geometry::block_volumes;
 use crate::plan::Plan;
 use crate::simulation::accounting::audit::Account;
-use crate::simulation::accounting::averages::AveragesState;
+use crate::simulation::accounting::averages::{AveragesState, Counts};
 use crate::simulation::accounting::guards::GuardState;
 use crate::simulation::control::clock::Clock;
 use crate::simulation::control::ladder::{Ladder, LadderError};
@@ -26,7 +26,7 @@ pub fn state(
     parent: &RunState,
     particles: &[GpuParticle],
 ) -> Result<RunState, LadderError> {
-    let Model { scene, vessel, plan, coats, .. } = model;
+    let Model { scene, vessel, plan, surface_models, .. } = model;
     let mut ladder = Ladder::new(plan, block_volumes(vessel, &plan.grid, plan.block_cells_log2));
     let (blocks, fast) = tallies(plan, particles);
     ladder.start(ladder.demand(&blocks, &fast, [0; 2]))?;
@@ -38,14 +38,20 @@ pub fn state(
         ladder: ladder.state(),
         averages: AveragesState::starting_at(
             clock.time(),
-            [zones, plan.gases.len(), patches(model).1.len(), coats.coats.len(), scene.vents.len()],
+            &Counts {
+                zones,
+                gases: plan.gases.len(),
+                patches: patches(model).1.len(),
+                surface_models: surface_models.placed.len(),
+                vents: scene.vents.len(),
+            },
         ),
         account: account.state().clone(),
         inflow: inflow.state(),
-        asked: Vec::new(),
+        feedback: Vec::new(),
         switch: SwitchState::default(),
         vents: parent.vents.clone(),
-        conditions: parent.conditions.clone(),
+        surfaces: parent.surfaces.clone(),
         guards: GuardState::default(),
         submitted: 0,
         next_row: parent.next_row,

@@ -3,6 +3,8 @@
 //! Every rank takes the same decisions, since they follow from tallies summed over all ranks, and runs the same
 //! host code on the inflow. Rank 0 tells the observer.
 
+use std::time::Instant;
+
 use super::collect::all_tallies;
 use super::interrupt::Request;
 use super::observer::{Moment, Observer, Outcome};
@@ -13,7 +15,6 @@ use crate::simulation::accounting::audit::count_outside;
 use crate::simulation::control::interval::{Deal, Interval, Span};
 use crate::simulation::error::SimulationError;
 use crate::subdomain::Tallies;
-use std::time::Instant;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.

@@ -3,10 +3,11 @@
 //!
 //! Pure: it is told the time and changes no result. Wall times differ between ranks, so one rank decides for all.
 
-use super::interrupt::Request;
 use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
+
+use super::interrupt::Request;
 
 /// A length of wall time, as people write it: `90s`, `10m`, `2h`, `1h30m`, `1:30:00`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

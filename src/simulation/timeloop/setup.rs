@@ -1,16 +1,16 @@
 //! What a model becomes on a device: walls, zones and patches; and where its particles come from.
 
-use crate::simulation::accounting::averages::Layout;
-use crate::simulation::error::SimulationError;
-use crate::simulation::model::build::Model;
-use crate::simulation::model::patches::patches;
-use crate::simulation::parallel::initial_particles::{Initial, Stock, initial_particles};
 use std::sync::Arc;
 
 use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
 use crate::gpu::Device;
 use crate::output::Checkpoint;
 use crate::scene::{Face, Method};
+use crate::simulation::accounting::averages::Layout;
+use crate::simulation::error::SimulationError;
+use crate::simulation::model::build::Model;
+use crate::simulation::model::patches::patches;
+use crate::simulation::parallel::initial_particles::{Initial, InitialParticles, initial_particles};
 use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, KernelChoice, Patches, Walls, zone_of};
 
 /// What the ranks that share a device have in common; made once for all of them.
@@ -22,8 +22,8 @@ pub struct Setup {
     /// Gas volume of each coarse block, m3.
     pub volumes: Arc<Vec<f64>>,
     /// What the space is cut by at the start, if not by the particles.
-    pub cut_by: Option<Stock>,
-    pub particles: Stock,
+    pub cut_by: Option<InitialParticles>,
+    pub particles: InitialParticles,
 }
 
 /// The order in which the initial particles are handed to the device; results must not depend on it.
@@ -41,7 +41,13 @@ impl Setup {
         shuffle: Option<&Shuffle>,
     ) -> Result<Setup, SimulationError> {
         let Some(shuffle) = shuffle else {
-            return Setup::build(model, device, ranks, Stock::Initial(Initial::default()), KernelChoice::Fitting);
+            return Setup::build(
+                model,
+                device,
+                ranks,
+                InitialParticles::Sampled(Initial::default()),
+                KernelChoice::Fitting,
+            );
         };
         let mut particles = initial_particles(model)?;
         shuffle(&mut particles);
@@ -53,7 +59,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn fixed(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::Fixed)
+        Setup::build(model, device, 1, InitialParticles::Sampled(Initial::default()), KernelChoice::Fixed)
     }
 
     /// For one device, with kernels as if the scene had all that a scene may have: to see what it saves that they have not.
@@ -61,7 +67,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn whole(model: &Model, device: &Device) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, 1, Stock::Initial(Initial::default()), KernelChoice::AllFeatures)
+        Setup::build(model, device, 1, InitialParticles::Sampled(Initial::default()), KernelChoice::AllFeatures)
     }
 
     /// With the kernels of many particles also where these are few: for tests of those.
@@ -69,7 +75,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::new`].
     pub fn for_many(model: &Model, device: &Device, ranks: usize) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Initial(Initial::default()), KernelChoice::ForMany)
+        Setup::build(model, device, ranks, InitialParticles::Sampled(Initial::default()), KernelChoice::ForMany)
     }
 
     /// For a run that goes on: all particles of that moment instead of the initial ones.
@@ -82,7 +88,7 @@ impl Setup {
         ranks: usize,
         particles: Vec<GpuParticle>,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Listed(Arc::new(particles)), KernelChoice::Fitting)
+        Setup::build(model, device, ranks, InitialParticles::Listed(Arc::new(particles)), KernelChoice::Fitting)
     }
 
     /// For a run that goes on from a checkpoint.
@@ -95,14 +101,14 @@ impl Setup {
         ranks: usize,
         checkpoint: Checkpoint,
     ) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, Stock::Saved(Arc::new(checkpoint)), KernelChoice::Fitting)
+        Setup::build(model, device, ranks, InitialParticles::Saved(Arc::new(checkpoint)), KernelChoice::Fitting)
     }
 
     fn build(
         model: &Model,
         device: &Device,
         ranks: usize,
-        particles: Stock,
+        particles: InitialParticles,
         kernels: KernelChoice,
     ) -> Result<Setup, SimulationError> {
         let plan = &model.plan;
@@ -120,7 +126,7 @@ impl Setup {
             let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
             !wall.is_convex_cavity()
         };
-        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.coats.of_triangle, parts)
+        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.surface_models.of_triangle, parts)
             .moving(&triangle_grid, |source| motion(model.vessel.triangles[source].wall as usize));
         let cells = match plan.method {
             Method::Cell => cell_table(model, &still, &triangle_grid, parts)?,
@@ -129,7 +135,7 @@ impl Setup {
         let zones = zones(model);
         let tallied = Patches {
             surfaces: patches.len(),
-            surface_models: model.coats.coats.len(),
+            surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };
@@ -139,7 +145,7 @@ impl Setup {
             cells: &cells,
             zones: &zones,
             patches: tallied,
-            vent_entries: model.coats.vent_entries(),
+            vent_entries: model.surface_models.vent_entries(),
             among_others: ranks > 1,
             kernels,
         };
@@ -192,7 +198,7 @@ fn zones(model: &Model) -> Vec<GpuZone> {
 }
 
 fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, coats, moving, probe_volumes, .. } = model;
+    let Model { scene, vessel, plan, surface_models, moving, probe_volumes, .. } = model;
     let area_of = |wall: u32, face: Option<Face>| -> f64 {
         let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
         let own = |patch: &u32| patches[*patch as usize] == (wall, face);
@@ -213,15 +219,15 @@ fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -
         (members, area)
     });
     let walls = scene.heated_surfaces().map(|(surface, _)| {
-        let own = coats.coats.iter().enumerate().filter(|(_, coat)| coat.surface == surface);
+        let own = surface_models.placed.iter().enumerate().filter(|(_, placed)| placed.surface == surface);
         let members: Vec<usize> = own.map(|(index, _)| index).collect();
-        let area = members.iter().map(|&index| coats.coats[index].area).sum();
+        let area = members.iter().map(|&index| surface_models.placed[index].area).sum();
         (members, area)
     });
     Layout {
         walls: walls.collect(),
         vents: scene.vents.len(),
-        coats: coats.coats.len(),
+        surface_models: surface_models.placed.len(),
         motions: moving.count(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes.iter().copied()).collect(),
         chambers: scene.chambers.len(),

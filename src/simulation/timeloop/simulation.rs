@@ -1,5 +1,8 @@
 //! What a rank of a run has, from its start or from a state.
 
+use std::collections::VecDeque;
+use std::time::Instant;
+
 use super::interrupt::Request;
 use super::observer::Options;
 use super::setup::Setup;
@@ -22,12 +25,9 @@ use crate::simulation::parallel::balance::Balance;
 use crate::simulation::parallel::decomposition::Decomposition;
 use crate::simulation::parallel::exchange::Exchange;
 use crate::simulation::parallel::halo_tuner::Tuner;
-use crate::simulation::run_state::Feedback;
-use crate::simulation::run_state::RunState;
+use crate::simulation::run_state::{Feedback, RunState};
 use crate::simulation::zero_d::switch::Switching;
-use crate::subdomain::{GpuParticle, Place, Subdomain};
-use std::collections::VecDeque;
-use std::time::Instant;
+use crate::subdomain::{GpuParticle, Subdomain, SubdomainBox};
 
 /// The ranks of a run.
 pub enum Ranks<'a> {
@@ -173,7 +173,7 @@ impl<'a> Simulation<'a> {
             let ranks = comm.size();
             setup.particles.own(model, comm, share, |particle| particle.id() as usize % ranks)?
         };
-        let place = decomposition.as_ref().map_or_else(|| Place::alone(plan), |cut| cut.place().1);
+        let place = decomposition.as_ref().map_or_else(|| SubdomainBox::alone(plan), |cut| cut.place().1);
         let mut subdomain = Subdomain::new(device, setup.domain.clone(), place, &own)?;
         if options.dispatch_by_lengths {
             subdomain.dispatch_by_lengths();
@@ -250,11 +250,11 @@ impl<'a> Simulation<'a> {
         simulation.books.averages.restore(&state.averages)?;
         simulation.books.account.restore(&model.plan, &state.account)?;
         simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
-        for asked in &state.asked {
-            simulation.control.ladder.check(&asked.demand.shares)?;
+        for wanted in &state.feedback {
+            simulation.control.ladder.check(&wanted.demand.shares)?;
         }
-        simulation.control.feedback = state.asked.iter().cloned().collect();
-        simulation.control.surfaces.restore(&state.conditions)?;
+        simulation.control.feedback = state.feedback.iter().cloned().collect();
+        simulation.control.surfaces.restore(&state.surfaces)?;
         simulation.books.guards.restore(&state.guards);
         simulation.switching.restore(&state.switch)?;
         if state.vents.len() != model.scene.vents.len() {
@@ -278,8 +278,8 @@ impl<'a> Simulation<'a> {
             averages: self.books.averages.state(),
             account: self.books.account.state().clone(),
             inflow: self.inflow.state(),
-            asked: self.control.feedback.iter().cloned().collect(),
-            conditions: self.control.surfaces.state().clone(),
+            feedback: self.control.feedback.iter().cloned().collect(),
+            surfaces: self.control.surfaces.state().clone(),
             guards: self.books.guards.state().clone(),
             switch: self.switching.state().clone(),
             vents: self.books.vents.clone(),

@@ -1,10 +1,9 @@
 //! The particles of all ranks, at the times that the scene asks for and at the end.
 
 use super::simulation::Simulation;
-use crate::subdomain::GpuParticle;
-
 use crate::simulation::SimulationError;
 use crate::simulation::timeloop::observer::Observer;
+use crate::subdomain::GpuParticle;
 
 /// Particles by id, and the rank that owns each.
 type Owned = (Vec<GpuParticle>, Vec<u32>);

@@ -1,16 +1,16 @@
 //! Intervals on their way through the device: they are submitted, and read late.
 
+use std::time::Instant;
+
 use super::step::{Sampling, step};
+use crate::gpu::{Device, PhaseTimer, Readback, Recording};
+use crate::plan::Plan;
+use crate::ranks::Reduction;
 use crate::simulation::accounting::phases::{BLOCKS, LOST, TALLY};
 use crate::simulation::control::interval::Interval;
 use crate::simulation::error::SimulationError;
 use crate::simulation::parallel::decomposition::Decomposition;
 use crate::simulation::parallel::exchange::{Exchange, Traffic};
-use std::time::Instant;
-
-use crate::gpu::{Device, PhaseTimer, Readback, Recording};
-use crate::plan::Plan;
-use crate::ranks::Reduction;
 use crate::subdomain::{GridCells, Remembered, Steps, Subdomain, Tallies};
 
 /// An interval on its way through the device.

@@ -59,21 +59,21 @@ fn volume(model: &Model) -> ControlVolume {
 
 /// The scene's surfaces that the heat of [`Lost`] went to.
 pub fn heated_walls(model: &Model) -> Vec<SurfaceId> {
-    let coats = model.coats.coats.iter().map(|coat| coat.surface);
-    coats.filter(|&surface| model.scene.surface_model(surface).heat.is_some()).collect()
+    let surface_models = model.surface_models.placed.iter().map(|placed| placed.surface);
+    surface_models.filter(|&surface| model.scene.surface_model(surface).heat.is_some()).collect()
 }
 
 fn walls(model: &Model) -> Vec<HeatedWall> {
-    let coats = model.coats.coats.iter();
-    let heated = coats.filter_map(|coat| {
-        let heat = model.scene.surface_model(coat.surface).heat?;
-        Some(HeatedWall { chamber: coat.chamber, area: coat.area, heat })
+    let surface_models = model.surface_models.placed.iter();
+    let heated = surface_models.filter_map(|placed| {
+        let heat = model.scene.surface_model(placed.surface).heat?;
+        Some(HeatedWall { chamber: placed.chamber, area: placed.area, heat })
     });
     heated.collect()
 }
 
 fn vents(model: &Model) -> Vec<OpenVent> {
-    let places = model.scene.vents.iter().zip(&model.coats.vents);
+    let places = model.scene.vents.iter().zip(&model.surface_models.vents);
     let open = places.map(|(vent, place)| OpenVent {
         chamber: place.chamber,
         area: vent.area.unwrap_or(place.area),

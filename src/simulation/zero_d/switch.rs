@@ -7,11 +7,6 @@
 //! besides: to that the volumes of probes and the areas of surfaces are known. Decided by rows of the history, which are the
 //! same on any number of ranks.
 
-use crate::simulation::accounting::averages::Row;
-use crate::simulation::control::state_error::RunStateError;
-use crate::simulation::error::SimulationError;
-use crate::simulation::model::build::Model;
-use crate::simulation::model::facing::Known;
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
@@ -19,6 +14,11 @@ use serde::{Deserialize, Serialize};
 use crate::gas::{Beginning, kinetics};
 use crate::plan::{Plan, noise_of_hits, noise_of_zone};
 use crate::scene::Switch;
+use crate::simulation::accounting::averages::Row;
+use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::error::SimulationError;
+use crate::simulation::model::build::Model;
+use crate::simulation::model::facing::Known;
 use crate::subdomain::{Scales, Tallies};
 
 const STANDARD_ERRORS: f64 = 3.0;

@@ -5,20 +5,20 @@
 //! surfaces received in it by Simpson's rule. A probe shows the chamber that its middle lies in; a surface is pressed
 //! by the chambers that its parts face. No device, no ranks, no random numbers: a run takes milliseconds.
 
-use super::reference::{continued_with_losses, heated_walls, reference_with_losses};
-use super::rows::RowObserver;
-use crate::simulation::accounting::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
-use crate::simulation::accounting::vent_watch::VentWatch;
-use crate::simulation::error::SimulationError;
-use crate::simulation::model::build::Model;
-use crate::simulation::model::facing::Known;
 use glam::DVec3;
 
+use super::reference::{continued_with_losses, heated_walls, reference_with_losses};
+use super::rows::RowObserver;
 use crate::gas::{
     Beginning, FlowIntegral, Lost, State, Vented, flow_times_of_temperature, flow_times_temperature, thermo,
 };
 use crate::output::Audit;
 use crate::scene::{SurfaceId, WallHeat};
+use crate::simulation::accounting::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
+use crate::simulation::accounting::vent_watch::VentWatch;
+use crate::simulation::error::SimulationError;
+use crate::simulation::model::build::Model;
+use crate::simulation::model::facing::Known;
 
 /// Parts of a row over which the work of moving walls is summed.
 const WORK_PARTS: u32 = 32;
@@ -149,7 +149,7 @@ fn stretch(
 /// A vent opens where the line between two states reaches its pressure.
 fn watch_vents(model: &Model, watches: &mut [VentWatch], time: f64, states: &[State], observer: &mut dyn RowObserver) {
     for (index, (watch, vent)) in watches.iter_mut().zip(&model.scene.vents).enumerate() {
-        if watch.see(vent, [time, states[model.coats.vents[index].chamber].pressure], true) {
+        if watch.see(vent, [time, states[model.surface_models.vents[index].chamber].pressure], true) {
             observer.vent_opened(index, watch);
         }
     }
@@ -167,8 +167,8 @@ fn walls(
         let earlier = last.map_or(0.0, |row| row.walls[index].heat);
         let own = heated.iter().enumerate().filter(|(_, of)| **of == surface).map(|(index, _)| index);
         let [before, after] = lost.map(|lost| own.clone().map(|index| lost.heat[index]).sum::<f64>());
-        let coats = model.coats.coats.iter().filter(|coat| coat.surface == surface);
-        let area: f64 = coats.map(|coat| coat.area).sum();
+        let surface_models = model.surface_models.placed.iter().filter(|placed| placed.surface == surface);
+        let area: f64 = surface_models.map(|placed| placed.area).sum();
         WallState::new(earlier + after, after - before, area, window[1] - window[0])
     };
     model.scene.heated_surfaces().enumerate().map(of_surface).collect()

@@ -132,7 +132,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
         let (_, patches) = crate::simulation::model::patches::patches(&model);
         let patches = Patches {
             surfaces: patches.len(),
-            surface_models: model.coats.coats.len(),
+            surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
         };

@@ -20,7 +20,8 @@ fn scene(text: &str) -> Scene {
 fn part_of(text: &str) -> Result<Part, String> {
     let scene = scene(text);
     let seen = Model::new(Scene { model: crate::scene::ModelRequest::default(), ..scene.clone() }).unwrap();
-    let measured = crate::simulation::model::measure::measured(&scene, &seen.vessel, &seen.coats, &seen.moving, &[]);
+    let measured =
+        crate::simulation::model::measure::measured(&scene, &seen.vessel, &seen.surface_models, &seen.moving, &[]);
     part(&scene, &seen.vessel, &measured).unwrap()
 }
 
@@ -89,9 +90,12 @@ fn parts_of_the_box_stay_but_for_its_outside() {
     assert_eq!(names, ["inner", "inner/-y", "inner/+x"]);
     let again = parse(&to_toml(&scene), "test.toml", std::path::Path::new("")).unwrap();
     assert_eq!(again.walls, scene.walls);
-    let coats = Model::new(scene).unwrap().coats.coats;
-    assert_eq!(coats.len(), 2);
-    assert!(coats.iter().all(|coat| coat.vents.len() == usize::from(coat.surface.part == Some(1))), "{coats:?}");
+    let surface_models = Model::new(scene).unwrap().surface_models.placed;
+    assert_eq!(surface_models.len(), 2);
+    assert!(
+        surface_models.iter().all(|placed| placed.vents.len() == usize::from(placed.surface.part == Some(1))),
+        "{surface_models:?}"
+    );
 }
 
 /// Where only the flow matters, a hole is modelled if that is cheaper at the accuracy, and resolved if what is left out would be too
