@@ -8,6 +8,7 @@ use crate::simulation::accounting::averages::Row;
 use crate::simulation::accounting::guards::{GuardWarning, Shown};
 use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
 use crate::simulation::control::interval::Interval;
+use crate::simulation::control::surface_states::SeenGas;
 use crate::simulation::parallel::balance::Load;
 use crate::simulation::parallel::exchange::Traffic;
 use crate::simulation::run_state::Feedback;
@@ -86,34 +87,76 @@ impl Simulation<'_> {
             tallies = tallies.and_before(&earlier).ok_or_else(misshapen)?;
         }
         self.submissions.spare.extend(before.spare());
-        let duration = interval.dt * f64::from(interval.steps);
-        self.progress.read_until += duration;
-        let plan = &self.model.plan;
-        let lost = |what: String| SimulationError::Lost { time: self.progress.read_until, what };
-        let drift = self.books.account.check(&tallies, &interval).map_err(lost)?;
+        self.progress.read_until += interval.dt * f64::from(interval.steps);
         let timed = self.submissions.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
-        let samples = interval.samples();
-        self.books.account.add(plan, &tallies, &interval, samples, &timed);
+        let drift = self.enter_into_account(&interval, &tallies, &timed)?;
+        self.guard(&interval, &tallies, drift, observer)?;
+        let seen = self.average(&interval, &tallies, observer);
+        self.weigh_ranks(&interval, loads, observer)?;
+        self.ask_for_next(&tallies, seen, observer)?;
+        observer.progress(
+            self.progress.read_until,
+            interval.first_step + u64::from(interval.steps),
+            self.books.account.state().particle_steps,
+        );
+        Ok(())
+    }
+
+    /// Checks that nothing is lost and adds the interval to the totals; returns the drift of the energy.
+    fn enter_into_account(
+        &mut self,
+        interval: &Interval,
+        tallies: &Tallies,
+        timed: &[(&'static str, f64)],
+    ) -> Result<f64, SimulationError> {
+        let lost = |what: String| SimulationError::Lost { time: self.progress.read_until, what };
+        let drift = self.books.account.check(tallies, interval).map_err(lost)?;
+        self.books.account.add(&self.model.plan, tallies, interval, interval.samples(), timed);
         self.lists.add(&tallies.counters);
-        let particle_steps = interval.particles * u64::from(interval.steps);
-        let clipped = self.books.account.state().clipped();
+        Ok(drift)
+    }
+
+    /// Tells what left its limits in the interval.
+    fn guard(
+        &mut self,
+        interval: &Interval,
+        tallies: &Tallies,
+        drift: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), SimulationError> {
         let shown = Shown {
             time: self.progress.read_until,
             step: interval.dt,
-            tallies: &tallies,
+            tallies,
             shares: &interval.tables.cross_section_shares,
-            particle_steps,
+            particle_steps: interval.particles * u64::from(interval.steps),
             drift,
-            clipped,
+            clipped: self.books.account.state().clipped(),
         };
         let told = self.books.guards.interval(&shown);
-        self.tell(&told, observer)?;
-        let span = [self.progress.read_until - duration, self.progress.read_until];
-        let (seen, wanted) =
-            self.control.surfaces.see(&tallies, samples, span, &interval.volumes, &interval.tables.vents);
-        self.watch_vents(self.progress.read_until, observer);
-        self.books.averages.add(&tallies, interval.dt, interval.steps, samples, &wanted);
+        self.tell(&told, observer)
+    }
+
+    /// Adds the interval to the averages; returns what the surfaces have seen in it.
+    fn average(&mut self, interval: &Interval, tallies: &Tallies, observer: &mut dyn Observer) -> SeenGas {
+        let samples = interval.samples();
+        let end = self.progress.read_until;
+        let span = [end - interval.dt * f64::from(interval.steps), end];
+        let (seen, targets) =
+            self.control.surfaces.see(tallies, samples, span, &interval.volumes, &interval.tables.vents);
+        self.watch_vents(end, observer);
+        self.books.averages.add(tallies, interval.dt, interval.steps, samples, &targets);
         self.books.averages.add_room(interval.dt, samples, &interval.volumes);
+        seen
+    }
+
+    /// Takes in what each rank had to do.
+    fn weigh_ranks(
+        &mut self,
+        interval: &Interval,
+        loads: Vec<Load>,
+        observer: &mut dyn Observer,
+    ) -> Result<(), SimulationError> {
         if self.parallel.decomposition.is_some() {
             let slowest = loads.iter().map(|load| load.wall).fold(0.0, f64::max);
             self.parallel.halo_tuner.measured(slowest, interval.steps, interval.particles);
@@ -124,6 +167,16 @@ impl Simulation<'_> {
                 observer.balance(record)?;
             }
         }
+        Ok(())
+    }
+
+    /// What the state at the end of the interval asks of a later one; emits a row if one is due.
+    fn ask_for_next(
+        &mut self,
+        tallies: &Tallies,
+        seen: SeenGas,
+        observer: &mut dyn Observer,
+    ) -> Result<(), SimulationError> {
         let met = [tallies.counters.collisions, tallies.counters.fast_pairs.into()];
         let demand = self.control.ladder.demand(&tallies.blocks, &tallies.fast, met);
         let left = self.books.account.state().left();
@@ -133,11 +186,6 @@ impl Simulation<'_> {
             switches = self.switching.row(&row);
         }
         self.control.feedback.push_back(Feedback { demand, seen, left, switches });
-        observer.progress(
-            self.progress.read_until,
-            interval.first_step + u64::from(interval.steps),
-            self.books.account.state().particle_steps,
-        );
         Ok(())
     }
 
