@@ -1,5 +1,5 @@
 //! When vents open: the first time at which the pressure of the chamber before one reaches that at which it opens, and the highest
-//! that was seen. Tells, and changes nothing: what a vent passes follows from the same pressures in `conditions` and in the control
+//! that was seen. Tells, and changes nothing: what a vent passes follows from the same pressures in `surface_states` and in the control
 //! volume.
 
 use serde::{Deserialize, Serialize};

@@ -41,7 +41,7 @@ pub struct Interval {
     pub tables: Tables,
     /// The mean volumes of its tallied steps where walls move, m3: of the chambers, then the probes.
     pub volumes: Vec<f64>,
-    /// If it goes on where the device was held: how many of its first steps are done, and what they tallied.
+    /// If it goes on where the device had stalled: how many of its first steps are done, and what they tallied.
     pub done: Option<(u32, Box<Tallies>)>,
 }
 

@@ -25,7 +25,7 @@ impl Simulation<'_> {
         Ok(particles.iter().map(GpuParticle::id).zip(flights).collect())
     }
 
-    /// The particles, in the order of the device, after [`Simulation::settle`]: before it the device may be held.
+    /// The particles, in the order of the device, after [`Simulation::settle`]: before it the device may have stalled.
     ///
     /// # Errors
     /// If the device fails.
