@@ -51,7 +51,7 @@ pub use place::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
-pub use sizes::{CHUNK, CROWD, MEMBERS, MOTION_ENTRIES, WORKGROUP};
+pub use sizes::{CHUNK, CROWD, MEMBERS, MOTION_ENTRIES, STRETCH, WORKGROUP};
 pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};

@@ -61,7 +61,7 @@ fn what_is_not_as_it_was_written_is_refused_with_the_reason() {
 #[test]
 fn what_is_no_run_or_asks_for_nothing_is_refused() {
     let (case, checkpoint) = stopped();
-    assert!(refused(&case, "nowhere", &[]).contains("holdsnocompletecheckpoint"));
+    assert!(refused(&case, "nowhere", &[]).contains("nowheredoesnotexist"));
     assert!(refused(&case, "whole/snapshots", &[]).contains("holdsnocompletecheckpoint"));
     assert!(refused(&case, "out", &["--steps", "96"]).contains("hasdone96stepsalready"));
     assert!(refused(&case, "out", &["--stop-after", "soon"]).contains("1:30:00"));

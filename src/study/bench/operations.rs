@@ -19,7 +19,8 @@
 
 use crate::gpu::{Constants, GpuError, Operations, Stretch};
 use crate::scene::Method;
-use crate::subdomain::{CROWD, KERNELS};
+use crate::subdomain::registry::LISTS;
+use crate::subdomain::{CROWD, KERNELS, STRETCH};
 
 use super::work::{CHUNK, Work};
 
@@ -201,6 +202,8 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
             let added = particle.around("inside")?[1];
             (seen * (work.zones * work.gas_pairs) + added) * (present * work.tallies)
         }
+        // `reset` compares the number of each of its threads twice, and stores.
+        "bin" => Operations { floating: 0.0, integer: 2.0 * (f64::from(LISTS) * work.steps + cells / STRETCH as f64) },
         "blocks" => counted.straight("blocks")? * (present * work.intervals),
         _ => return None,
     })

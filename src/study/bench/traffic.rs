@@ -7,7 +7,8 @@
 //! copy's rate says how far a phase is from being bound by memory. Walls, classes of cells, lists of rare work and tallies are left out.
 
 use crate::scene::Method;
-use crate::subdomain::{GpuFlight, GpuNewborn, GpuParticle};
+use crate::subdomain::registry::LISTS;
+use crate::subdomain::{GpuFlight, GpuNewborn, GpuParticle, STRETCH};
 
 use super::work::{CHUNK, Work};
 
@@ -54,6 +55,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + candidates * WORD
                 + work.first_choosers * 3.0 * WORD
         }
+        // The lists and their dispatches, and the sums of stretches of cells, are emptied.
+        "bin" => (10.0 * f64::from(LISTS) * work.steps + cells / STRETCH as f64) * WORD,
         "choose" => work.choosers * choice,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
