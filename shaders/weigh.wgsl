@@ -37,7 +37,7 @@ fn weigh(thread: Thread) {
         return;
     }
     let mark = marks[s];
-    // Of the outermost ghosts these are no candidates (on_demand.wgsl).
+    // Neighbours of the outermost ghosts are no candidates (on_demand.wgsl).
     let listed = select(neighbour_count[s], 0u, step.depth > 0u && (mark & LAYER) >= step.depth);
     if (weights.cuts == 0u) {
         atomicAdd(&counters[CANDIDATES], listed);

@@ -271,7 +271,8 @@ impl Vessel {
         size.y * size.z * sum / lines as f64
     }
 
-    /// Of a solid, the share of its volume that lies outside of a cavity (of several: of any); 0 of a cavity. By lines: to about .01.
+    /// The share of a solid's volume that lies outside of a cavity (where there are several: of any), known to about .01 by lines;
+    /// 0 of a cavity.
     pub fn outside_share(&self, wall: usize) -> f64 {
         let info = &self.walls[wall];
         if info.cavity || info.volume <= 0.0 {

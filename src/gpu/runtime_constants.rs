@@ -9,14 +9,15 @@ use super::source::{Constants, KernelSource};
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuntimeConstants {
     pub text: String,
-    /// Of the uniform.
+    /// The uniform's binding number.
     pub binding: u32,
     /// What is in it.
     pub words: Vec<u32>,
 }
 
 impl RuntimeConstants {
-    /// Of the override constants those that `runtime` names and `constants` gives are read; `None` if there are none. `text` is one of the kernel's.
+    /// Override constants that `runtime` names and `constants` gives are read; `None` if there are none. `text` is one of the
+    /// kernel's.
     ///
     /// # Errors
     /// If a value is none of its type, or the text is not as this expects it; with the reason.

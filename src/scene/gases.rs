@@ -132,11 +132,10 @@ pub(super) fn other_system(cp: f64, molar_mass: f64, units: UnitSystem) -> Optio
             (1e-3..=0.5).contains(&si(molar_mass, Quantity::MolarMass)),
         ]
     };
-    let systems = [(UnitSystem::Si, "SI"), (UnitSystem::KgMmMs, "kg-mm-ms"), (UnitSystem::TMmS, "t-mm-s")];
-    let fitting: Vec<String> = systems
+    let fitting: Vec<String> = UnitSystem::ALL
         .into_iter()
-        .filter(|(system, _)| is_gas(units) == [false; 2] && is_gas(*system) == [true; 2])
-        .map(|(_, name)| format!("`units = \"{name}\"`"))
+        .filter(|system| is_gas(units) == [false; 2] && is_gas(*system) == [true; 2])
+        .map(|system| format!("`units = \"{}\"`", system.name()))
         .collect();
     (!fitting.is_empty()).then(|| {
         format!("neither its molar mass nor its heat capacity is a gas's, but both are with {}: are the numbers in that system?", fitting.join(" or "))

@@ -28,6 +28,17 @@ pub enum Quantity {
 }
 
 impl UnitSystem {
+    pub const ALL: [UnitSystem; 3] = [UnitSystem::Si, UnitSystem::KgMmMs, UnitSystem::TMmS];
+
+    /// The value of `units` in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            UnitSystem::Si => "SI",
+            UnitSystem::KgMmMs => "kg-mm-ms",
+            UnitSystem::TMmS => "t-mm-s",
+        }
+    }
+
     /// Metres per unit of length, and what messages call it.
     pub fn length(self) -> (f64, &'static str) {
         (self.factor(Quantity::Length), self.symbol(Quantity::Length))

@@ -3,7 +3,8 @@
 //!
 //! `Simulation::run` submits intervals of steps, one ahead of what it reads: the tallies of an interval
 //! set the step size of the interval after next, so the device never waits for the host. If neighbour
-//! lists had too little room, the intervals since are run again with more, from a remembered state or where the device had stalled.
+//! lists had too little room, the intervals since are run again with more, from a remembered state or where the device had
+//! stalled.
 
 mod accounting;
 mod control;

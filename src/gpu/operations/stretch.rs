@@ -3,7 +3,7 @@
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Mul};
 
-/// Of floating point and of integers (and truth values).
+/// Operations of floating point, and of integers and truth values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Operations {
     pub floating: f64,

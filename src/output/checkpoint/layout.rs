@@ -7,7 +7,7 @@ use crate::output::error::PARTIAL_SUFFIX;
 use crate::output::marker::check_marker;
 use crate::output::names::CHECKPOINT_FOLDER;
 
-/// Of the files' layout and of what is in `state.bin`; another is refused.
+/// The format of the files' layout and of what is in `state.bin`; another is refused.
 pub const FORMAT: u32 = 9;
 /// Complete checkpoints that stay.
 pub const KEPT: usize = 2;

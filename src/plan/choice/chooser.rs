@@ -217,7 +217,7 @@ impl Chooser<'_> {
         Some(Possible {
             time_step: longer.then_some(resolution.time_step),
             beyond: kept::beyond(
-                &kept::Wanted { scene, measured, amounts, method: family.method, particles, cap },
+                &kept::Choices { scene, measured, amounts, method: family.method, particles, cap },
                 &resolution,
             ),
             ..self.forecast(family, candidate, cost)

@@ -21,7 +21,8 @@ const KEPT: [Quantity; 7] = [
     Quantity::Step,
 ];
 
-pub struct Wanted<'a> {
+/// What a plan would be of.
+pub struct Choices<'a> {
     pub scene: &'a Scene,
     pub measured: &'a Measured,
     pub amounts: &'a Amounts,
@@ -33,8 +34,8 @@ pub struct Wanted<'a> {
 }
 
 /// The limits that a plan of these choices would warn of.
-pub fn beyond(wanted: &Wanted<'_>, resolution: &Resolution) -> Vec<Quantity> {
-    let Wanted { scene, measured, amounts, method, particles, cap } = *wanted;
+pub fn beyond(choices: &Choices<'_>, resolution: &Resolution) -> Vec<Quantity> {
+    let Choices { scene, measured, amounts, method, particles, cap } = *choices;
     let per_mole = particles / amounts.total();
     let chambers: Vec<ChamberPlan> = scene
         .chambers
@@ -56,8 +57,6 @@ pub fn beyond(wanted: &Wanted<'_>, resolution: &Resolution) -> Vec<Quantity> {
         chambers: &chambers,
         openings: &[],
     };
-    let found = warnings(scene, measured, &decided).into_iter().map(|warning| warning.quantity);
-    let mut found: Vec<Quantity> = found.filter(|quantity| KEPT.contains(quantity)).collect();
-    found.dedup();
-    found
+    let found = warnings(scene, measured, &decided);
+    KEPT.into_iter().filter(|kept| found.iter().any(|warning| warning.quantity == *kept)).collect()
 }

@@ -19,6 +19,7 @@ use crate::scene::{
     SurfaceId, UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
 use range::{Kind, Range, largest, most, range_of};
+use shapes::longest;
 
 pub use times::{long_run, many_steps};
 use units::{atmosphere_in, likely, question};
@@ -111,14 +112,7 @@ fn temperature(named: &Named<'_>, kelvin: f64) -> Option<String> {
 }
 
 fn of_wall(scene: &Scene, wall: &Wall) -> Option<String> {
-    let longest = match &wall.shape {
-        Shape::Box { min, max, .. } => Some(largest((0..3).map(|axis| max[axis] - min[axis]))),
-        Shape::Cylinder { radius, height, .. } => Some(height.max(2.0 * radius)),
-        Shape::Sphere { radius, .. } => Some(2.0 * radius),
-        Shape::Plane { size, .. } => Some(size[0].max(size[1])),
-        Shape::Mesh { .. } => None,
-    };
-    longest.and_then(|longest| extent(scene.units, wall, longest))
+    longest(&wall.shape).and_then(|longest| extent(scene.units, wall, longest))
 }
 
 fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {

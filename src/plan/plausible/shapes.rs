@@ -1,6 +1,7 @@
 //! Radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
 //! radius, a vent through exactly four times the disc that it is given.
 
+use super::range::largest;
 use crate::plan::text::as_written;
 use crate::scene::{Dimension, GasSide, Region, Scene, Shape, Vent};
 
@@ -12,6 +13,17 @@ const SMALLEST_PARTICLE: f64 = 1e-7;
 
 fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+/// The longest side of the box around a shape, m; of a mesh its file has to say.
+pub fn longest(shape: &Shape) -> Option<f64> {
+    Some(match shape {
+        Shape::Box { min, max, .. } => largest((0..3).map(|axis| max[axis] - min[axis])),
+        Shape::Cylinder { radius, height, .. } => height.max(2.0 * radius),
+        Shape::Sphere { radius, .. } => 2.0 * radius,
+        Shape::Plane { size, .. } => size[0].max(size[1]),
+        Shape::Mesh { .. } => return None,
+    })
 }
 
 pub fn doubts(scene: &Scene) -> Vec<String> {

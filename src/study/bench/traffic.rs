@@ -15,6 +15,8 @@ use super::work::{CHUNK, Work};
 const PARTICLE: f64 = size_of::<GpuParticle>() as f64;
 const FLIGHT: f64 = size_of::<GpuFlight>() as f64;
 const NEWBORN: f64 = size_of::<GpuNewborn>() as f64;
+/// The length of a list, and three dispatches over it of three words each (`shaders/reset.wgsl`).
+const WORDS_OF_A_LIST: f64 = 10.0;
 const WORD: f64 = 4.0;
 
 /// Bytes of a phase over the run; `None` of one that is not counted.
@@ -56,7 +58,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
                 + work.first_choosers * 3.0 * WORD
         }
         // The lists and their dispatches, and the sums of stretches of cells, are emptied.
-        "bin" => (10.0 * f64::from(LISTS) * work.steps + cells / STRETCH as f64) * WORD,
+        "bin" => (WORDS_OF_A_LIST * f64::from(LISTS) * work.steps + cells / STRETCH as f64) * WORD,
         "choose" => work.choosers * choice,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
