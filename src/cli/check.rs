@@ -30,9 +30,10 @@ pub fn check(raw: CheckArguments, quiet: bool) -> Result<(), CliError> {
 }
 
 fn checked(path: &Path, strict: bool, quiet: bool) -> Result<(), CliError> {
-    let Model { vessel, plan, scene, .. } = model_of(path, load(path)?)?;
+    let model = model_of(path, load(path)?)?;
+    let Model { vessel, plan, scene, .. } = &model;
     // The last that a run asks of the walls: that they survive the rounding to the grid of its positions.
-    TriangleGrid::build(&vessel, &plan.grid, Walls::tolerance(&plan.grid))
+    TriangleGrid::build(vessel, &plan.grid, Walls::tolerance(&plan.grid))
         .map_err(|error| CliError::model(path, error.told_in(scene.units).into()))?;
     let warnings = plan.told();
     let mut line = format!(
@@ -58,7 +59,7 @@ fn checked(path: &Path, strict: bool, quiet: bool) -> Result<(), CliError> {
             .collect::<String>();
         say(&indented)?;
     }
-    say(&vessel.notes(scene.units).iter().map(|note| format!("note: {note}\n")).collect::<String>())?;
+    say(&model.notes().iter().map(|note| format!("note: {note}\n")).collect::<String>())?;
     if strict && !warnings.is_empty() {
         return Err(CliError::PlanWarnings { scene: path.to_path_buf(), warnings });
     }

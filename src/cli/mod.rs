@@ -22,6 +22,7 @@ mod settings;
 mod stability;
 mod sweep;
 mod terminal;
+mod usage;
 mod verify;
 
 use std::process::ExitCode;
@@ -37,11 +38,12 @@ use arguments::Verb;
 pub fn main() -> ExitCode {
     let words: Vec<_> = std::env::args_os().collect();
     let choice = arguments::colour_of(&words);
-    let parsed = Arguments::command().color(choice).try_get_matches_from(words);
+    let parsed = Arguments::command().color(choice).try_get_matches_from(&words);
     let arguments = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
         Err(usage) => {
             // Help and version come this way too. Nobody is left to tell if it cannot be printed.
+            let usage = usage::explained(usage, &words);
             let _ = usage.print();
             return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
         }

@@ -11,8 +11,7 @@ pub fn plan(raw: PlanArguments) -> Result<(), CliError> {
     if raw.toml {
         say(&plan.to_toml()?)?;
     } else {
-        let notes = model.vessel.notes(model.scene.units);
-        let notes: String = notes.iter().map(|note| format!("\nnote: {note}\n")).collect();
+        let notes: String = model.notes().iter().map(|note| format!("\nnote: {note}\n")).collect();
         say(&(plan.render() + &notes))?;
     }
     if raw.strict && !plan.warnings.is_empty() {

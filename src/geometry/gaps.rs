@@ -20,6 +20,7 @@ const FACING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const ROUNDING: f64 = 1e-9;
 
 struct Facet {
+    wall: u32,
     corners: [DVec3; 3],
     normal: DVec3,
 }
@@ -42,19 +43,32 @@ impl Facet {
     }
 }
 
-/// What is narrowest, m; none where nothing of the kind was found.
+/// A way across gas, between two places of walls that face each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// m.
+    pub length: f64,
+    /// Indices of the walls; twice the same within one.
+    pub walls: [u32; 2],
+    /// Half-way, m.
+    pub middle: [f64; 3],
+}
+
+/// What is narrowest; none where nothing of the kind was found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Narrowest {
-    /// Across gas, between two walls that face each other.
-    pub gap: Option<f64>,
-    /// Across a solid, between two walls that face away from each other, with gas before both.
+    pub gap: Option<Passage>,
+    /// m, across a solid, between two walls that face away from each other, with gas before both.
     pub body: Option<f64>,
 }
 
 impl Narrowest {
     fn and(self, other: Narrowest) -> Narrowest {
-        let least = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::min);
-        Narrowest { gap: least(self.gap, other.gap), body: least(self.body, other.body) }
+        let shorter = |a: Passage, b: Passage| if b.length < a.length { b } else { a };
+        Narrowest {
+            gap: self.gap.into_iter().chain(other.gap).reduce(shorter),
+            body: self.body.into_iter().chain(other.body).reduce(f64::min),
+        }
     }
 }
 
@@ -67,7 +81,7 @@ impl Vessel {
             .map(|triangle| {
                 let corners = triangle.vertices.map(place);
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-                Facet { corners, normal }
+                Facet { wall: triangle.wall, corners, normal }
             })
             .collect();
         let size = DVec3::from(self.bounds.1).distance(DVec3::from(self.bounds.0));
@@ -93,13 +107,18 @@ impl Vessel {
         }
         let faces_back = |(distance, other): (f64, &Facet)| {
             let apart = own.corners.iter().all(|a| other.corners.iter().all(|b| a.distance(*b) > least));
-            (apart && other.normal.dot(own.normal) < -FACING).then_some(distance)
+            (apart && other.normal.dot(own.normal) < -FACING).then_some((distance, other.wall))
         };
         let gas = |along: f64| self.is_gas((from + along * own.normal).to_array());
         // Of walls that overlap, what is hidden in another faces no gas.
-        let gap = ahead.and_then(faces_back).filter(|&d| gas(0.01 * d) && gas(0.5 * d));
-        let body = behind.and_then(faces_back).filter(|&d| gas(-0.01 * d) && !gas(0.5 * d) && gas(1.01 * d));
-        Narrowest { gap, body: body.map(f64::abs) }
+        let gap = ahead.and_then(faces_back).filter(|&(d, _)| gas(0.01 * d) && gas(0.5 * d));
+        let body = behind.and_then(faces_back).filter(|&(d, _)| gas(-0.01 * d) && !gas(0.5 * d) && gas(1.01 * d));
+        let passage = |(length, other): (f64, u32)| Passage {
+            length,
+            walls: [own.wall.min(other), own.wall.max(other)],
+            middle: (from + 0.5 * length * own.normal).to_array(),
+        };
+        Narrowest { gap: gap.map(passage), body: body.map(|(d, _)| d.abs()) }
     }
 }
 
@@ -109,7 +128,7 @@ mod tests {
     use std::path::Path;
 
     fn gap(walls: &str) -> Option<f64> {
-        narrowest(walls).gap
+        narrowest(walls).gap.map(|passage| passage.length)
     }
 
     fn narrowest(walls: &str) -> Narrowest {
@@ -148,6 +167,17 @@ mod tests {
             "[[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\ngas = \"inside\"\n",
         );
         assert!(ball.is_some_and(|gap| (0.17..0.21).contains(&gap)), "{ball:?}");
+    }
+
+    /// A passage has its walls, the vessel before what stands in it, and lies between them.
+    #[test]
+    fn a_passage_has_its_walls_and_its_place() {
+        let block = "[[wall]]\nname = \"block\"\nshape = \"box\"\nmin = [0.2, 0.1, 0.003]\nmax = [0.6, 0.3, 0.3]\ngas = \"outside\"\n";
+        let found = narrowest(&format!("{TANK}{block}")).gap.unwrap();
+        assert_eq!(found.walls, [0, 1]);
+        let [x, y, z] = found.middle;
+        assert!((0.2..0.6).contains(&x) && (0.1..0.3).contains(&y) && near(Some(z), 0.0015), "{found:?}");
+        assert_eq!(narrowest(TANK).gap.unwrap().walls, [0, 0]);
     }
 
     /// The thickness of a plate is no passage, nor what a plate let into a wall hides.

@@ -38,7 +38,7 @@ pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, sti
 pub use clearance::{CLEARANCE_UNIT, Clearance, NO_PLANE, clearances};
 pub use closed::check_closed;
 pub use error::{GeometryError, Places};
-pub use gaps::Narrowest;
+pub use gaps::{Narrowest, Passage};
 pub use grid::{Grid, GridError};
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};

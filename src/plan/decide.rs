@@ -4,7 +4,8 @@ use super::amounts::{Amounts, highest_temperature};
 use super::cap::diameter_cap;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
-use super::longest::{Basis, possible_step};
+use super::limits::Quantity;
+use super::longest::{Basis, asked_and_own, possible_step};
 use super::population::{Population, openings, silent_orifices, wanted};
 use super::resolution::{
     Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY, default_occupancy,
@@ -13,7 +14,7 @@ use super::text::significant;
 use super::warnings::{Decided, warnings};
 use super::{
     ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, control_volume, facets, motion,
-    plausible, vents,
+    notes, plausible, vents,
 };
 use crate::gas::{Species, jet_mach, kinetics};
 use crate::geometry::Grid;
@@ -57,6 +58,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let number_density = states[1].number_density;
     let basis = Basis { method, request: &scene.model, measured, states, extreme, particles, end_time: scene.end_time };
     let (request, shortened) = possible_step(&basis)?;
+    let steps = asked_and_own(&basis)?;
     let resolution = Resolution::choose(method, &request, states, extreme, scene.end_time, &mut reasons)?;
     let diameter_cap = diameter_cap(scene, method, resolution.diameter, number_density, &mut reasons)?;
     let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
@@ -87,8 +89,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: &chambers,
         openings: &openings,
     };
-    let mut warnings: Vec<String> =
-        warnings(scene, measured, &decided).into_iter().map(|warning| warning.text).collect();
+    let beyond = warnings(scene, measured, &decided);
+    let narrow = beyond.iter().any(|warning| warning.quantity == Quantity::Gap);
+    let mut warnings: Vec<String> = beyond.into_iter().map(|warning| warning.text).collect();
     warnings.extend(shortened);
     warnings.extend(silent_orifices(scene));
     warnings.extend(facets::warnings(scene, method));
@@ -97,8 +100,14 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     warnings.extend(vents::warnings(scene, &species, method, &vents, measured));
     warnings.extend(motion::warnings(scene, &species, method, measured));
     let mut inventory = Inventory::of(scene, measured, &amounts);
-    inventory.doubts.extend(plausible::many_steps(scene, resolution.steps as f64));
-    inventory.doubts.extend(plausible::long_run(scene, measured, method));
+    let [many, long] =
+        [plausible::many_steps(scene, resolution.steps as f64), plausible::long_run(scene, measured, method)];
+    let short = steps.and_then(|[asked, own]| plausible::short_step(scene, asked, own));
+    inventory.doubts.extend([many, short, long].into_iter().flatten().map(|doubt| scene.lines.told(doubt)));
+    inventory.notes.extend(notes::touching(scene, measured));
+    if !narrow {
+        inventory.notes.extend(notes::narrow_gap(scene, measured));
+    }
     Ok(Plan {
         inventory,
         method,

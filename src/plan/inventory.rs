@@ -7,7 +7,7 @@
 use super::amounts::{Amounts, Contents};
 use super::measured::IN_HOLES;
 use super::text::{significant, table};
-use super::{Measured, MeasuredVent, MeasuredWall, plausible};
+use super::{Measured, MeasuredVent, MeasuredWall, notes, plausible};
 use crate::gas::moles_at;
 use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
 
@@ -25,6 +25,8 @@ pub struct Inventory {
     pub vents: Vec<(String, Opens)>,
     /// Values that no vessel has, each with its range and the unit that is likely meant.
     pub doubts: Vec<String>,
+    /// What is no warning, and its author may not know.
+    pub notes: Vec<String>,
     inflow: bool,
     /// m3 of gas space in no chamber; 0 where it is no more than holes have.
     empty: f64,
@@ -62,13 +64,18 @@ impl Inventory {
             let reached = highest >= absolute || measured.motion.is_some();
             (vent.name.clone(), Opens { absolute, outside: vent.external_pressure, reached })
         };
+        let vents: Vec<(String, Opens)> = scene.vents.iter().zip(&measured.vents).map(opens).collect();
+        let shut = vents.iter().filter(|(_, opens)| !opens.reached);
+        let shut: Vec<(&str, f64)> = shut.map(|(name, opens)| (name.as_str(), opens.absolute)).collect();
+        let doubts = plausible::doubts(scene, measured, &end);
         Inventory {
             units: scene.units,
             walls: scene.walls.iter().map(|wall| wall.name.clone()).zip(measured.walls.iter().copied()).collect(),
             chambers,
             end,
-            vents: scene.vents.iter().zip(&measured.vents).map(opens).collect(),
-            doubts: plausible::doubts(scene, measured, &end),
+            notes: notes::of_scene(scene, measured, &shut),
+            vents,
+            doubts: doubts.into_iter().map(|doubt| scene.lines.told(doubt)).collect(),
             empty: Some(measured.empty_space()).filter(|empty| *empty > IN_HOLES * measured.gas_volume).unwrap_or(0.0),
             inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
         }

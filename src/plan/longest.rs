@@ -58,11 +58,24 @@ pub fn possible_step(basis: &Basis<'_>) -> Result<(ModelRequest, Option<String>)
     Ok((ModelRequest { time_step: Some(longest), ..request }, Some(warning)))
 }
 
+/// As the plan would choose them without a `time_step`.
+fn unasked(basis: &Basis<'_>) -> Result<Resolution, PlanError> {
+    let request = ModelRequest { time_step: None, ..basis.request.clone() };
+    Resolution::choose(basis.method, &request, basis.states, basis.extreme, basis.end_time, &mut Vec::new())
+}
+
+/// The step that is asked for and that the plan would choose, s, if one is asked for.
+///
+/// # Errors
+/// If the request has no plan whatever its step.
+pub fn asked_and_own(basis: &Basis<'_>) -> Result<Option<[f64; 2]>, PlanError> {
+    basis.request.time_step.map(|asked| Ok([asked, unasked(basis)?.time_step])).transpose()
+}
+
 /// Limits, s, and what is beyond them.
 fn longest(basis: &Basis<'_>) -> Result<Vec<(f64, &'static str)>, PlanError> {
     let Basis { method, measured, states, extreme, .. } = *basis;
-    let request = ModelRequest { time_step: None, ..basis.request.clone() };
-    let own = Resolution::choose(method, &request, states, extreme, basis.end_time, &mut Vec::new())?;
+    let own = unasked(basis)?;
     let volume = measured.gas_volume * measured.motion.map_or(1.0, |motion| motion.least_share);
     let hit = 4.0 * volume / (measured.wall_area * kinetics::mean_speed(extreme.0));
     let mut limits = vec![

@@ -1,6 +1,7 @@
 //! What the plan needs to know of the geometry.
 
 use super::error::PlanError;
+use crate::geometry::Passage;
 use crate::scene::{Opening, SurfaceId};
 
 /// What the plan needs to know of the geometry.
@@ -15,8 +16,8 @@ pub struct Measured {
     pub bounds_max: [f64; 3],
     /// The openings found from the holes of the walls; those declared in the scene are added.
     pub openings: Vec<Opening>,
-    /// The narrowest passage of the gas between walls that face each other, m, where one was found.
-    pub smallest_gap: Option<f64>,
+    /// The narrowest passage of the gas between walls that face each other, where one was found.
+    pub smallest_gap: Option<Passage>,
     /// The thinnest body with gas on both sides, m, where one was found.
     pub thinnest_body: Option<f64>,
     /// m2, of all walls.
@@ -33,6 +34,14 @@ pub struct Measured {
     pub walls: Vec<MeasuredWall>,
     /// Whether gas space that is in no chamber lies beside a chamber without a wall between.
     pub open_to_empty: bool,
+    /// Pairs of chambers between which a part of the border is neither wall nor a hole of one.
+    pub touching: Vec<[usize; 2]>,
+    /// Holes that join no two chambers.
+    pub no_openings: Vec<NoOpening>,
+    /// Walls that move and have no gas before them at any time.
+    pub dry_motions: Vec<usize>,
+    /// Surfaces of the scene that have none.
+    pub dry_surfaces: Vec<usize>,
 }
 
 impl Measured {
@@ -81,6 +90,15 @@ pub struct MeasuredWall {
     pub cavity: bool,
     /// Of a solid: the share of its volume that lies outside of what encloses the gas.
     pub outside: f64,
+}
+
+/// A hole that joins no two chambers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoOpening {
+    pub name: String,
+    pub wall: usize,
+    /// That of the gas on both sides; none where a side has no gas.
+    pub chamber: Option<usize>,
 }
 
 /// Where a vent is.

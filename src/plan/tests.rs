@@ -1,5 +1,6 @@
 use super::*;
 use crate::gas::kinetics;
+use crate::geometry::Passage;
 use crate::scene::*;
 
 fn gas(name: &str, molar_mass: f64, cv: f64) -> Gas {
@@ -9,6 +10,12 @@ fn gas(name: &str, molar_mass: f64, cv: f64) -> Gas {
 fn chamber(name: &str) -> Chamber {
     let mixture = Mixture(vec![(0, 1.0)]);
     Chamber { name: name.into(), region: None, pressure: 101_325.0, temperature: 293.0, mixture }
+}
+
+/// A box of a metre around gas.
+fn wall(name: &str) -> Wall {
+    let shape = Shape::Box { min: [0.0; 3], max: [1.0; 3], thickness: None, holes: vec![] };
+    Wall { name: name.into(), shape, gas: GasSide::Inside, surface: SurfaceModel::default(), parts: vec![] }
 }
 
 /// The published tank: 60 L of air, 78.2 g of nitrogen at 700 K in 60 ms, a hole of 40 x 40 mm.
@@ -40,6 +47,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         motions: vec![],
         model: ModelRequest { particles: Some(1_000_000), ..ModelRequest::default() },
         output: OutputRequest { rows: 200, snapshots: 10 },
+        lines: Lines::default(),
     };
     let hole = Opening { name: "vent".into(), between: [0, 1], area: 1.6e-3, length: 0.04 };
     let measured = Measured {
@@ -57,6 +65,10 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         motion: None,
         walls: vec![],
         open_to_empty: false,
+        touching: vec![],
+        no_openings: vec![],
+        dry_motions: vec![],
+        dry_surfaces: vec![],
     };
     (scene, measured)
 }
@@ -250,10 +262,28 @@ fn warnings_fire() {
     };
     assert!(into_thin(1e-3) && !into_thin(0.6) && !into_thin(1.0));
     warns("are few", &|scene, _| scene.model.particles = Some(900));
-    warns("smallest passage", &|_, measured| measured.smallest_gap = Some(2e-3));
-    warns("smallest passage", &|_, measured| measured.openings[0].length = 2e-3);
+    let gap = |length| Some(Passage { length, walls: [0, 1], middle: [0.1, 0.0, -0.02] });
+    let walled = |scene: &mut Scene| scene.walls = vec![wall("tank"), wall("plate")];
+    warns(
+        "the smallest passage, 2 mm between walls `tank` and `plate` near (100, 0, -20) mm, with",
+        &|scene, measured| {
+            walled(scene);
+            measured.smallest_gap = gap(2e-3);
+        },
+    );
+    warns("a modelled vent; let the walls overlap if they were meant to touch", &|scene, measured| {
+        walled(scene);
+        measured.smallest_gap = gap(2e-3);
+    });
+    warns("the smallest passage, 2 mm of opening `vent`, with", &|_, measured| measured.openings[0].length = 2e-3);
     warns("the thinnest body, 0.0001 mm: thickness", &|_, measured| measured.thinnest_body = Some(1e-7));
-    warns("the narrowest gap, 0.0001 mm: thickness", &|_, measured| measured.smallest_gap = Some(1e-7));
+    warns(
+        "the narrowest gap, 0.0001 mm between walls `tank` and `plate` near (100, 0, -20) mm: thickness",
+        &|scene, measured| {
+            walled(scene);
+            measured.smallest_gap = gap(1e-7);
+        },
+    );
     warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
     warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
     warns("wall hits", &|_, measured| measured.wall_area = 1e4);

@@ -1,6 +1,7 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
 use super::limits::{Bound, Limit, Quantity, Warning, limit, step_limit};
+use super::notes::between;
 use super::population::more_particles;
 use super::resolution::Resolution;
 use super::text::significant;
@@ -37,6 +38,9 @@ pub fn lost_events(collisions_per_step: f64, rounds: u32) -> f64 {
 /// Chambers with less than this share of the highest pressure have fronts run into them.
 const PRESSED: f64 = 0.5;
 
+/// The unit of length of a plan's warnings, which are the same whatever the scene's: a checkpoint is held against them.
+const MILLIMETRES: (f64, &str) = (1e-3, "mm");
+
 /// What has been decided so far.
 pub struct Decided<'a> {
     pub method: Method,
@@ -68,11 +72,11 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
             table(Quantity::Knudsen, &format!("opening `{}`", opening.name), opening.knudsen, &remedy)
         }));
         found.push(dense(decided));
-        found.push(narrow(measured, decided));
+        found.push(narrow(scene, measured, decided));
         found.extend(thin(scene, decided));
         found.extend(starved(decided));
     }
-    found.extend(too_thin(measured, method));
+    found.extend(too_thin(scene, measured, method));
     found.extend(scene.probes.iter().zip(&measured.probe_volumes).map(|(probe, volume)| {
         let count = number_density * volume;
         let remedy = if *volume > 0.0 {
@@ -154,36 +158,63 @@ fn starved(decided: &Decided<'_>) -> Vec<Option<Warning>> {
 }
 
 /// Passages that gas collides across as if they were not there.
-fn narrow(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
+fn narrow(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
     let Decided { method, resolution, openings, .. } = *decided;
-    let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
+    let smallest = smallest_passage(measured, openings);
+    let gap = measured.smallest_gap.filter(|gap| gap.length <= smallest);
+    let opening = openings.iter().find(|opening| opening.length <= smallest);
+    let place = match gap {
+        Some(gap) => between(scene, &gap, MILLIMETRES),
+        None => opening.map(|opening| format!("of opening `{}`", opening.name)),
+    };
+    let touching = gap.is_some_and(|gap| gap.walls[0] != gap.walls[1]);
+    let remedy = if touching { "; let the walls overlap if they were meant to touch" } else { "" };
     let (length, what) = match method {
         Method::Cell => (resolution.cell, "cell"),
         _ => (resolution.diameter, "collision diameter"),
     };
     let subject = format!(
-        "the smallest passage, {} mm, with a {what} of {} mm",
+        "the smallest passage, {} mm{}, with a {what} of {} mm",
         significant(1e3 * smallest),
+        place.map_or(String::new(), |place| format!(" {place}")),
         significant(1e3 * length)
     );
-    Warning::by_table(Quantity::Gap, method, &subject, smallest / length, "more `particles`, or a modelled vent")
+    Warning::by_table(
+        Quantity::Gap,
+        method,
+        &subject,
+        smallest / length,
+        &format!("more `particles`, or a modelled vent{remedy}"),
+    )
+}
+
+fn smallest_passage(measured: &Measured, openings: &[OpeningPlan]) -> f64 {
+    let gap = measured.smallest_gap.map(|gap| gap.length);
+    openings.iter().map(|opening| opening.length).chain(gap).fold(f64::INFINITY, f64::min)
 }
 
 /// What positions on the grid do not tell apart.
-fn too_thin(measured: &Measured, method: Method) -> [Option<Warning>; 2] {
+fn too_thin(scene: &Scene, measured: &Measured, method: Method) -> [Option<Warning>; 2] {
     let longest = (0..3).map(|axis| measured.bounds_max[axis] - measured.bounds_min[axis]).fold(0.0, f64::max);
-    let warning = |what: &str, found: Option<f64>, remedy: &str| {
+    let warning = |what: &str, found: Option<f64>, place: Option<String>, remedy: &str| {
         let found = found?;
-        let subject = format!("{what}, {} mm", significant(1e3 * found));
+        let place = place.map_or(String::new(), |place| format!(" {place}"));
+        let subject = format!("{what}, {} mm{place}", significant(1e3 * found));
         Warning::by_table(Quantity::Thickness, method, &subject, found / longest, remedy)
     };
     [
         warning(
             "the thinnest body",
             measured.thinnest_body,
+            None,
             "a thicker one: what gas does beside it hardly depends on it",
         ),
-        warning("the narrowest gap", measured.smallest_gap, "walls that overlap, or a wider gap"),
+        warning(
+            "the narrowest gap",
+            measured.smallest_gap.map(|gap| gap.length),
+            measured.smallest_gap.and_then(|gap| between(scene, &gap, MILLIMETRES)),
+            "walls that overlap, or a wider gap",
+        ),
     ]
 }
 
@@ -225,8 +256,7 @@ fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
 /// Free flight is right where molecules do not meet either: their mean free path over the smallest passage, or the size
 /// of the vessel.
 fn free_molecules(scene: &Scene, measured: &Measured, openings: &[OpeningPlan]) -> Option<Option<Warning>> {
-    let smallest = openings.iter().map(|o| o.length).chain(measured.smallest_gap).fold(f64::INFINITY, f64::min);
-    let length = smallest.min(libm::cbrt(measured.gas_volume));
+    let length = smallest_passage(measured, openings).min(libm::cbrt(measured.gas_volume));
     let dense = |chamber: &Chamber| chamber.pressure / (GAS_CONSTANT * chamber.temperature);
     let densest = scene.chambers.iter().max_by(|a, b| dense(a).total_cmp(&dense(b)))?;
     let path = kinetics::molecular_mean_free_path(dense(densest));

@@ -54,6 +54,8 @@ fn mass_flow(raw: &At<Vec<At<Numbers<2>>>>, units: UnitSystem) -> Result<Curve, 
     curve(&raw.value, Quantity::Time, units, |at| not_negative(at, Quantity::MassFlow, units))
 }
 
+const SWAPPED: &str = "the second numbers of the points are in order: a point is [time, value], are they swapped?";
+
 /// Points in order of time (or of another quantity), the second number of each read by `ordinate`.
 pub(super) fn curve(
     raw: &[At<Numbers<2>>],
@@ -75,12 +77,20 @@ pub(super) fn curve(
                 show(previous.value),
                 units.symbol(abscissa)
             );
-            return Err(Problem::value(&time_at.span, format!("the {noun} {}", show(time_at.value)), allowed));
+            let problem = Problem::value(&time_at.span, format!("the {noun} {}", show(time_at.value)), allowed);
+            let swapped = abscissa == Quantity::Time && is_swapped(raw);
+            return Err(if swapped { problem.hint(SWAPPED) } else { problem });
         }
         points.push([time, ordinate(value_at)?]);
         earlier = Some(time_at);
     }
     Ok(Curve { points })
+}
+
+/// Whether the second numbers of all points are as times are: in order, from 0 on.
+fn is_swapped(raw: &[At<Numbers<2>>]) -> bool {
+    let second = |point: &At<Numbers<2>>| point.value.0[1].value;
+    second(&raw[0]) == 0.0 && raw.windows(2).all(|pair| second(&pair[0]) < second(&pair[1]))
 }
 
 fn jet(raw: &At<RawJet>, units: UnitSystem) -> Result<Jet, Problem> {

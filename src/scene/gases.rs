@@ -31,15 +31,16 @@ pub(super) fn gas(raw: &At<RawGas>, units: UnitSystem) -> Result<Gas, Problem> {
     Ok(Gas { name: raw_gas.name.value.clone(), molar_mass, heat })
 }
 
+/// What `cp` is.
+const FORM: &str = "one number, or up to three coefficients [a, b, c] of cp = a + b T + c T^2, T in K";
+
 /// The coefficients of a `cp` that depends on temperature, SI.
 fn curve(raw: &RawGas, units: UnitSystem) -> Result<Option<[f64; 3]>, Problem> {
     let (Some(cp), None, None) = (&raw.cp, &raw.cv, &raw.gamma) else { return Ok(None) };
     let NumberOr::Array(given) = &cp.value else { return Ok(None) };
     if given.is_empty() || given.len() > 3 {
-        return Err(Problem::value(
-            &cp.span,
-            format!("an array of {} coefficients", given.len()),
-            "one number, or up to three coefficients [a, b, c] of cp = a + b T + c T^2",
+        return Err(Problem::value(&cp.span, format!("an array of {} coefficients", given.len()), FORM).hint(
+            "Shomate's coefficients are of T/1000: fit three of T, in K, to cp at the temperatures of the scene",
         ));
     }
     let mut coefficients = [0.0; 3];
@@ -57,7 +58,8 @@ fn molar_cv(raw: &At<RawGas>, units: UnitSystem) -> Result<f64, Problem> {
         (None, None, None) => return Err(Problem::value(&raw.span, "none of `cp`, `cv`, `gamma`", KEYS)),
         (Some(cp), None, None) => {
             let at = At { value: constant_of(&cp.value), span: cp.span.clone() };
-            (positive(&at, Quantity::MolarHeat, units)? - GAS_CONSTANT, &cp.span, at.value)
+            let hinted = |problem: Problem| if at.value <= 0.0 { problem.hint(FORM) } else { problem };
+            (positive(&at, Quantity::MolarHeat, units).map_err(hinted)? - GAS_CONSTANT, &cp.span, at.value)
         }
         (None, Some(cv), None) => (positive(cv, Quantity::MolarHeat, units)?, &cv.span, cv.value),
         (None, None, Some(gamma)) => {

@@ -4,10 +4,12 @@
 //! schemars describes them), [`Scene`] is what it means, every default and name resolved. On the way
 //! every number is checked and converted, once. docs/scenes.md describes the format.
 
+mod entries;
 mod errors;
 mod flows;
 mod gases;
 mod holes;
+mod lines;
 mod motions;
 mod names;
 mod numbers;
@@ -36,11 +38,13 @@ use std::path::Path;
 pub use errors::{InvalidScene, Problem, SceneError};
 pub use flows::FASTEST_JET;
 pub use gases::shown_collision_number;
+pub use lines::Lines;
 pub use motions::MOST_MOTIONS;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
 pub use surface_model::*;
 pub use types::*;
 pub use units::Quantity as Dimension;
+pub use words::key_of_other_name;
 pub use write::to_toml;
 
 /// A scene file is a text that people write.
@@ -79,7 +83,9 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 pub fn parse(text: &str, name: &str, base_dir: &Path) -> Result<Scene, SceneError> {
     let raw = structure::read(text).map_err(|problem| SceneError::invalid(name, text, vec![problem]))?;
     let stem = Path::new(name).file_stem().map_or_else(|| name.to_string(), |stem| stem.to_string_lossy().into_owned());
-    validate::validate(&raw, &stem, base_dir).map_err(|problems| SceneError::invalid(name, text, problems))
+    let scene =
+        validate::validate(&raw, &stem, base_dir).map_err(|problems| SceneError::invalid(name, text, problems))?;
+    Ok(Scene { lines: entries::lines(&raw, text), ..scene })
 }
 
 /// The JSON schema of scene files, for editors that complete and check TOML.

@@ -66,7 +66,15 @@ impl<'a> Parts<'a> {
             _ if known.is_empty() => Problem::value(&given.span, found, format!("no `face` of a {shape}")),
             _ => Problem::value(&given.span, found, format!("a face of a {shape}: {}", list(names()))),
         };
-        Err(problem.hint(hint).meant(name, names()))
+        let of_other = |other: &&At<RawWall>| names_of(&other.value).0.iter().any(|(own, _)| *own == name);
+        match self.walls.iter().find(of_other) {
+            Some(other) if raw.shape.value != RawShape::Mesh => {
+                let other = quote(&other.value.name.value);
+                let has = format!("the wall {other} has a face {}, if that wall is meant; else {hint}", quote(name));
+                Err(problem.hint(&has))
+            }
+            _ => Err(problem.hint(hint).meant(name, names())),
+        }
     }
 }
 

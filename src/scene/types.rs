@@ -6,6 +6,7 @@
 
 use std::path::PathBuf;
 
+use super::lines::Lines;
 use super::surface_model::SurfaceModel;
 
 /// The universal gas constant, J/(mol K) (CODATA 2018, exact).
@@ -31,6 +32,8 @@ pub struct Scene {
     pub motions: Vec<Motion>,
     pub model: ModelRequest,
     pub output: OutputRequest,
+    /// Where its entries stand in the file.
+    pub lines: Lines,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

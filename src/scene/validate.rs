@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::errors::{Problem, quote};
+use super::lines::Lines;
 use super::names::Names;
 use super::numbers::{count, positive};
 use super::parts::Parts;
@@ -76,6 +77,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
             motions,
             model,
             output,
+            lines: Lines::default(),
         }),
         _ => Err(problems),
     }

@@ -64,12 +64,22 @@ const HOMES: &[(&[&str], &str)] = &[
 /// A hint for a key that is unknown where `known` are allowed.
 pub(super) fn other_key(unknown: &str, known: &[&str]) -> Option<String> {
     let lower = unknown.to_lowercase();
-    let same = KEYS.iter().find(|(names, key, _)| names.contains(&lower.as_str()) && known.contains(key));
-    if let Some((_, key, more)) = same {
+    if let Some((key, more)) = same(&lower, known) {
         return Some(format!("did you mean `{key}`{more}?"));
     }
     let home = HOMES.iter().find(|(names, _)| names.contains(&lower.as_str()))?;
     Some(format!("`{lower}` {}", home.1))
+}
+
+/// Of the known keys the one that other programs call so, and what else there is to say of it.
+fn same(lower: &str, known: &[&str]) -> Option<(&'static str, &'static str)> {
+    let found = KEYS.iter().find(|(names, key, _)| names.contains(&lower) && known.contains(key));
+    found.map(|(_, key, more)| (*key, *more))
+}
+
+/// Of the known keys the one that other programs call so.
+pub fn key_of_other_name(name: &str, known: &[&str]) -> Option<&'static str> {
+    same(&name.to_lowercase(), known).map(|(key, _)| key)
 }
 
 /// A hint for a value that is unknown where `known` are allowed.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use corpuscle::scene::parse;
+use corpuscle::simulation::Model;
 
 use super::{input, outcome};
 
@@ -61,7 +62,20 @@ const SLIPS: &[[&str; 3]] = &[
     ["end_time = 0.004", "units = \"mm-ms-kg\"\nend_time = 4.0", "did you mean `kg-mm-ms`?"],
     ["shape = \"box\"", "shape = \"cuboid\"", "did you mean `box`?"],
     ["face = \"+z\"", "face = \"z+\"", "did you mean `+z`?"],
+    [
+        "mass_flow = [[0.0, 0.0], [0.002, 1.0], [0.004, 0.5]]",
+        "mass_flow = [[0.0, 0.0], [1.0, 0.002], [0.5, 0.004]]",
+        "a point is [time, value], are they swapped?",
+    ],
+    [
+        "temperature = 300.0\n[[ch",
+        "[[wall.part]]\nface = \"top\"\ntemperature = 300\n[[wall]]\nname = \"can\"\nshape = \"cylinder\"\n\
+      base = [0, 0, 0]\naxis = [0, 0, 1]\nradius = 1\nheight = 1\ngas = \"outside\"\n[[ch",
+        "the wall \"can\" has a face \"top\"",
+    ],
     // Values.
+    ["gamma = 1.4", "cp = -29.1", "three coefficients [a, b, c] of cp = a + b T + c T^2, T in K"],
+    ["gamma = 1.4", "cp = [28.99, 1.85, -9.65, 16.6, 0.0001]", "Shomate's coefficients are of T/1000"],
     ["pressure = 101325.0", "pressure = \"101325\"", "neither quotes nor a unit"],
     ["pressure = 101325.0", "pressure = 0.0", "pressures of chambers are absolute"],
     ["mach = 1.0", "mach = 340", "a speed is a `velocity`"],
@@ -182,4 +196,174 @@ fn a_solid_that_sticks_out_is_told() {
     // .15 of .3 m is within the .25 m of the tank.
     assert!(row(0.4).ends_with("solid, 50 % of it outside of the vessel"), "{}", row(0.4));
     assert!(row(0.2).ends_with("solid") && row(0.251).ends_with("solid"), "{}", row(0.251));
+}
+
+/// A tank of a metre, and what stands in it.
+fn metre(walls: &str, chambers: &str, more: &str) -> String {
+    format!(
+        "end_time = 1e-3\n[[gas]]\nname = \"n2\"\nmolar_mass = 0.028\ngamma = 1.4\n[[gas]]\nname = \"he\"\nmolar_mass = 0.004\n\
+         gamma = 1.6667\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\ngas = \"inside\"\n{walls}\n\
+         {chambers}\n{more}\n[model]\nparticles = 2000\n"
+    )
+}
+
+fn chamber(name: &str, region: &str, state: &str) -> String {
+    let region = if region.is_empty() { String::new() } else { format!("region = {{ {region} }}\n") };
+    format!("[[chamber]]\nname = \"{name}\"\n{region}{state}\n")
+}
+
+const AIR: &str = "pressure = 1e5\ntemperature = 300\ngas = \"n2\"";
+const LEFT: &str = "box = { min = [0, 0, 0], max = [0.5, 1, 1] }";
+
+fn model(text: &str) -> Model {
+    Model::new(parse(text, "scene.toml", Path::new("")).unwrap()).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// Chambers of unlike gas that touch are told with what they differ in; of like gas, and on two sides of a wall, they are not.
+#[test]
+fn chambers_without_a_wall_between_are_told() {
+    let notes = |walls: &str, state: &str| {
+        let chambers = chamber("left", LEFT, state) + &chamber("right", "", AIR);
+        model(&metre(walls, &chambers, "")).notes()
+    };
+    let plate = "[[wall]]\nname = \"plate\"\nshape = \"box\"\nmin = [0.49, -0.1, -0.1]\nmax = [0.51, 1.1, 1.1]\ngas = \"outside\"";
+    for (state, words) in [
+        (
+            "pressure = 3e5\ntemperature = 300\ngas = \"n2\"",
+            "they have 300000 Pa and 100000 Pa: they mix from the first step",
+        ),
+        ("pressure = 1e5\ntemperature = 400\ngas = \"n2\"", "they have 400 K and 300 K"),
+        ("pressure = 1e5\ntemperature = 300\ngas = \"he\"", "they have unlike gas"),
+    ] {
+        let told = notes("", state);
+        let note = told.iter().find(|note| note.starts_with("chambers `left` and `right`: no wall lies between them"));
+        assert!(note.is_some_and(|note| note.contains(words) && note.ends_with("(line 17)")), "{told:?}");
+        let told = notes(plate, state);
+        assert!(told.iter().all(|note| !note.contains("no wall lies between")), "{told:?}");
+    }
+    assert_eq!(notes("", AIR), [""; 0]);
+}
+
+/// A hole with one chamber on both sides is no opening, nor is one that something covers.
+#[test]
+fn a_hole_that_joins_no_two_chambers_is_told() {
+    let shell = "[[wall]]\nname = \"shell\"\nshape = \"box\"\nmin = [0.2, 0.2, 0.2]\nmax = [0.4, 0.4, 0.4]\nthickness = 0.01\n\
+        hole = [{ name = \"slit\", face = \"+x\", center = [0.3, 0.3], size = [0.1, 0.1] }]\n";
+    let lid = "[[wall]]\nname = \"lid\"\nshape = \"box\"\nmin = [0.405, 0.2, 0.2]\nmax = [0.43, 0.4, 0.4]\ngas = \"outside\"\n";
+    let inner = chamber("inner", "box = { min = [0.2, 0.2, 0.2], max = [0.4, 0.4, 0.4] }", AIR);
+    let rest = chamber("rest", "", AIR);
+    let notes = |walls: &str, chambers: &str| {
+        let mut notes = model(&metre(walls, chambers, "")).notes();
+        notes.retain(|note| note.starts_with("hole `slit` of wall `shell`: "));
+        notes
+    };
+    assert!(notes(shell, &rest)[0].contains("on both its sides is that of chamber `rest`, so it is no opening"));
+    let both = inner + &rest;
+    assert_eq!(notes(shell, &both), [""; 0]);
+    assert!(notes(&format!("{shell}{lid}"), &both)[0].contains("no gas lies before one of its sides"));
+}
+
+/// A slit beside a plate that was meant to close: a note with both walls and a place, and where it is narrower than what collides
+/// across it a warning in place of the note. A plate that reaches into the walls has none.
+#[test]
+fn a_gap_beside_a_plate_is_told_with_its_walls() {
+    let told = |top: f64, particles: u64| {
+        let plate = format!(
+            "[[wall]]\nname = \"plate\"\nshape = \"box\"\nmin = [0.49, -0.1, -0.1]\nmax = [0.51, 1.1, {top}]\ngas = \"outside\""
+        );
+        let chambers = chamber("left", LEFT, AIR) + &chamber("right", "", AIR);
+        let text = metre(&plate, &chambers, "").replace("particles = 2000", &format!("particles = {particles}"));
+        let model = model(&text);
+        (model.notes(), model.plan.warnings)
+    };
+    let (notes, _) = told(0.985, 10_000_000);
+    let walls = "the narrowest gap, 0.015 m between walls `tank` and `plate` near (0.";
+    assert!(
+        notes.iter().any(|note| note.starts_with(walls) && note.contains("if they were meant to touch")),
+        "{notes:?}"
+    );
+    let (notes, warnings) = told(0.999, 20_000);
+    let walls = "the smallest passage, 1 mm between walls `tank` and `plate` near (";
+    let warned =
+        |text: &String| text.starts_with(walls) && text.contains("let the walls overlap if they were meant to touch");
+    assert!(
+        warnings.iter().any(warned) && notes.iter().all(|note| !note.contains("narrowest gap")),
+        "{warnings:?} {notes:?}"
+    );
+    let (notes, warnings) = told(1.1, 20_000);
+    assert!(warnings.iter().chain(&notes).all(|text| !text.contains("the walls overlap")), "{warnings:?} {notes:?}");
+}
+
+/// A wall that moves beside the vessel; one that comes in, one that is wholly in the gas and one that recedes are none.
+#[test]
+fn a_wall_that_moves_without_gas_is_told() {
+    let doubts = |[low, high]: [f64; 2], far: f64| {
+        let piston = format!(
+            "[[wall]]\nname = \"piston\"\nshape = \"box\"\nmin = [{low}, -0.1, -0.1]\nmax = [{high}, 1.1, 1.1]\ngas = \"outside\""
+        );
+        let motion =
+            format!("[[motion]]\nwall = \"piston\"\ndirection = [1, 0, 0]\ndisplacement = [[0, 0], [1e-3, {far}]]");
+        let mut doubts = model(&metre(&piston, &chamber("all", "", AIR), &motion)).plan.inventory.doubts;
+        doubts.retain(|doubt| doubt.contains("no gas before it at any time of the run"));
+        doubts
+    };
+    let told = doubts([-0.5, -0.3], 0.1);
+    assert!(told[0].starts_with("motion of wall `piston`: ") && told[0].ends_with("(line 28)"), "{told:?}");
+    for (place, far) in [([-0.5, -0.3], 0.5), ([-0.2, 0.1], 0.1), ([-0.2, 0.1], -0.1), ([0.4, 0.5], 0.1)] {
+        assert_eq!(doubts(place, far), [""; 0], "{place:?}");
+    }
+}
+
+/// A surface that another wall covers for all of the run; one that a piston uncovers is none.
+#[test]
+fn a_covered_surface_is_told() {
+    let doubts = |far: f64| {
+        let piston = "[[wall]]\nname = \"piston\"\nshape = \"box\"\nmin = [-0.2, -0.1, -0.1]\nmax = [0.1, 1.1, 1.1]\ngas = \"outside\"";
+        let more = format!(
+            "[[motion]]\nwall = \"piston\"\ndirection = [1, 0, 0]\ndisplacement = [[0, 0], [1e-3, {far}]]\n\
+             [[surface]]\nname = \"left\"\nwall = \"tank\"\nface = \"-x\"\n[[surface]]\nname = \"all\"\nwall = \"tank\"\n"
+        );
+        let mut doubts = model(&metre(piston, &chamber("all", "", AIR), &more)).plan.inventory.doubts;
+        doubts.retain(|doubt| doubt.starts_with("surface "));
+        doubts
+    };
+    let told = doubts(0.1);
+    assert!(told.len() == 1 && told[0].contains("surface `left`: no gas lies before it"), "{told:?}");
+    assert_eq!(doubts(-0.15), [""; 0]);
+}
+
+/// Keys of scenes, and what other programs call them, given as options; and a scene without a verb.
+#[test]
+fn a_command_line_that_cannot_be_read_is_explained() {
+    for (arguments, words) in [
+        (
+            vec!["run", "two.toml", "--end-time", "5"],
+            &["`end_time` is a key of the scene: set it in the file, before its tables", "--steps N, or --stop-after"]
+                [..],
+        ),
+        (vec!["run", "two.toml", "--end-time=5"], &["`end_time` is a key of the scene"]),
+        (vec!["run", "two.toml", "--t-end", "5"], &["`end_time` is a key of the scene"]),
+        (vec!["run", "two.toml", "--dt", "5"], &["`time_step` is a key of the scene: set it in the file, in [model]"]),
+        (
+            vec!["plan", "two.toml", "--method", "cell"],
+            &["`method` is a key of the scene: set it in the file, in [model]"],
+        ),
+        (vec!["run", "two.toml", "--rows", "5"], &["`rows`", "in [output]"]),
+        (
+            vec!["check", "two.toml", "--particles", "5"],
+            &["in [model]. The verbs with an option --particles are `run`"],
+        ),
+        (vec!["run", "two.toml", "--np", "5"], &["`particles` is a key", "The option is --particles"]),
+        (vec!["resume", "two", "--seed", "5"], &["`seed` is a key", "an option --seed are `run`"]),
+        (vec!["two.toml"], &["did you mean `corpuscle run two.toml`, or `corpuscle check two.toml`?"]),
+    ] {
+        let (code, _, err) = outcome(&arguments);
+        assert_eq!(code, 2, "{err}");
+        assert!(words.iter().all(|words| err.contains(words)) && !err.contains("similar"), "{arguments:?}: {err}");
+    }
+    // What is like an option of the verb is clap's to tell.
+    let (_, _, err) = outcome(&["run", "two.toml", "--particle-budgets", "5"]);
+    assert!(err.contains("--particle-budget"), "{err}");
+    let (_, _, err) = outcome(&["rum"]);
+    assert!(err.contains("'run'") && !err.contains("did you mean"), "{err}");
 }

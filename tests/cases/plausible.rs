@@ -102,6 +102,46 @@ const SLIPS: &[Slip] = &[
         [AIR, "molar_mass = 0.02897\ncp = [26.9, 5.9, 0.0]"],
         &["gas `air`: molar cp 1796.9", "at 300 K (20 R)"],
     ),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = [28.98641, 1.853978, -9.647459]"],
+        &["gas `air`: molar cp -867686 J/(mol K)", "(5/2 R to 20 R)", "T in K", "of T/1000, as Shomate's are?"],
+    ),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = [26.9, 5.9, 0.0]"],
+        &["at 300 K (20 R)", "`cp = [26.9, 0.0059, 0]`", "(line 3)"],
+    ),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = [-29.1, 5.9e-3, 0.0]"],
+        &["gas `air`: molar cp -27.33 J/(mol K)", "20.7862 to 166.289", "look at their signs and powers of ten"],
+    ),
+    slip(
+        TANK,
+        [AIR, "molar_mass = 0.02897\ncp = [928.6, 0.2, 0.0]"],
+        &["gas `air`: molar cp 988.6", "is it per kilogram? Multiply all coefficients by the molar mass"],
+    ),
+    slip(
+        CAN,
+        ["[[0, 300], [3, 700], [50, 500]]", "[[0, 300], [0.003, 700], [0.05, 500]]"],
+        &["orifice `inflator`: its temperature ends at 0.05 ms", "until 50 ms, 1000 times that", "(line 37)"],
+    ),
+    slip(
+        CAN,
+        ["discharge = 0.7", "discharge = [[0, 0.1], [0.05, 0.7]]"],
+        &["vent `burst disc`: its discharge is over at 0.05 ms", "1200 times that", "(line 46)"],
+    ),
+    slip(
+        TANK,
+        ["particles = 2000", "particles = 2000\ntime_step = 1e-9"],
+        &["the model: time_step 1e-9 s is", "times shorter than the 1.", "4,000,000 steps in place of", "(line 50)"],
+    ),
+    slip(
+        CAN,
+        ["radius = 80", "radius = 0.080"],
+        &["probe `mid`: longest side of its region 0.16 mm, usual is 1 to 10000 mm: is it in m?"],
+    ),
     slip(TANK, [PRESSURE, "pressure = 250.0\n"], &["250 Pa", "in kPa or hPa (mbar)?"]),
     slip(TANK, [PRESSURE, "pressure = 400.0\n"], &["400 Pa", "in hPa (mbar) or kPa?"]),
     slip(

@@ -43,6 +43,9 @@ pub fn launch(
         for warning in &told {
             tracing::warn!("{warning}");
         }
+        for note in &model.plan.inventory.notes {
+            tracing::info!("note: {note}");
+        }
         if let Some(choice) = &model.choice {
             tracing::info!("{}", choice.summary());
         }

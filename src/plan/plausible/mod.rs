@@ -4,6 +4,8 @@
 //! A scene may mean it, so these are warnings. What is meant now and then is let pass: a chamber of near vacuum beside gas of
 //! ordinary pressure or before an inflow, free flight at any pressure, a vent into vacuum.
 
+mod heat;
+mod named;
 mod places;
 mod range;
 mod shapes;
@@ -15,52 +17,23 @@ use super::Measured;
 use super::amounts::Contents;
 use super::text::{as_written, significant};
 use crate::scene::{
-    Course, Dimension, GAS_CONSTANT, Gas, HeatCapacity, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape,
-    SurfaceId, UnitSystem, Vent, VentFlow, Wall, WallHeat,
+    Course, Dimension, GAS_CONSTANT, Gas, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape, SurfaceId, UnitSystem,
+    Vent, VentFlow, Wall, WallHeat,
 };
+use named::Named;
 use range::{Kind, Range, largest, most, range_of};
 use shapes::longest;
 
-pub use times::{long_run, many_steps};
-use units::{atmosphere_in, likely, question};
+pub use times::{long_run, many_steps, short_step};
+use units::{likely, question};
 
-/// How a value of a scene is named: whose it is, and by which key.
-struct Named<'a> {
-    subject: String,
-    key: &'a str,
-    units: UnitSystem,
+/// All that is beyond its range by the scene alone, in its order, with its line: known also where no plan can be made of it, often for
+/// that reason.
+pub fn by_scene(scene: &Scene) -> Vec<String> {
+    of_scene(scene).into_iter().map(|doubt| scene.lines.told(doubt)).collect()
 }
 
-impl Named<'_> {
-    fn value(&self, si: f64, dimension: Dimension) -> String {
-        let unit = self.units.symbol(dimension);
-        format!("{}: {} {} {unit}", self.subject, self.key, as_written(si / self.units.factor(dimension)))
-            .trim_end()
-            .into()
-    }
-
-    /// A warning if the value, SI, is beyond the range of its kind.
-    fn check(&self, kind: Kind, si: f64) -> Option<String> {
-        let range = range_of(kind);
-        let question = question(&likely(range, si, self.units));
-        (!range.holds(si)).then(|| self.beyond(range, si, &question))
-    }
-
-    fn beyond(&self, range: &Range, si: f64, rest: &str) -> String {
-        format!("{}, usual is {}{rest}", self.value(si, range.dimension), range.words(self.units))
-    }
-
-    /// The digits of an atmosphere in another unit.
-    fn atmosphere(&self, si: f64) -> Option<String> {
-        let unit = atmosphere_in(si / self.units.factor(Dimension::Pressure), self.units)?;
-        let range = range_of(Kind::Pressure);
-        let (value, usual) = (self.value(si, Dimension::Pressure), range.words(self.units));
-        Some(format!("{value} has the digits of an atmosphere, usual is {usual}: is it in {unit}?"))
-    }
-}
-
-/// All that is beyond its range by the scene alone, in its order: known also where no plan can be made of it, often for that reason.
-pub fn of_scene(scene: &Scene) -> Vec<String> {
+fn of_scene(scene: &Scene) -> Vec<String> {
     let named = |subject: String, key: &'static str| Named { subject, key, units: scene.units };
     let mut found =
         vec![systems::other_system(scene), named("the run".into(), "end_time").check(Kind::EndTime, scene.end_time)];
@@ -167,19 +140,7 @@ fn chamber_pressure(scene: &Scene, named: &Named<'_>, pressure: f64) -> Option<S
 
 fn of_gas(scene: &Scene, gas: &Gas) -> Vec<Option<String>> {
     let named = |key| Named { subject: format!("gas `{}`", gas.name), key, units: scene.units };
-    // Where the gas may be, K.
-    let temperature = scene.chambers.iter().map(|chamber| chamber.temperature).fold(300.0, f64::max).min(1500.0);
-    let cp = gas.heat.molar_cv(temperature) + GAS_CONSTANT;
-    let heat = range_of(Kind::MolarHeat);
-    let at = match gas.heat {
-        HeatCapacity::Constant(_) => String::new(),
-        HeatCapacity::Curve(_) => format!(" at {} K", significant(temperature)),
-    };
-    let rest = format!("{at} (20 R): is it per kilogram? Multiply it by the molar mass then");
-    vec![
-        named("molar_mass").check(Kind::MolarMass, gas.molar_mass),
-        (!heat.holds(cp)).then(|| named("molar cp").beyond(heat, cp, &rest)),
-    ]
+    vec![named("molar_mass").check(Kind::MolarMass, gas.molar_mass), heat::doubt(scene, gas, &named("molar cp"))]
 }
 
 fn of_orifice(scene: &Scene, orifice: &Orifice) -> Vec<Option<String>> {

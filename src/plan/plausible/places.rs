@@ -1,4 +1,4 @@
-//! Where walls and gas are: solids that no gas meets, gas space that is empty though no wall holds the gas off it.
+//! Where walls and gas are: solids and moving walls that no gas meets, gas space that is empty though no wall holds the gas off it.
 
 use super::Measured;
 use crate::plan::measured::IN_HOLES;
@@ -19,7 +19,22 @@ pub fn doubts(scene: &Scene, measured: &Measured) -> Vec<String> {
             100.0 * found.outside.min(1.0)
         )
     });
-    out.chain(empty_space(scene, measured)).collect()
+    let dry = measured.dry_motions.iter().map(|&wall| {
+        format!(
+            "motion of wall `{}`: the wall has no gas before it at any time of the run, so its motion changes nothing: is the wall in \
+             the right place?",
+            scene.walls[wall].name
+        )
+    });
+    let unseen = measured.dry_surfaces.iter().map(|&surface| {
+        let own = &scene.surfaces[surface];
+        format!(
+            "surface `{}`: no gas lies before it at any time of the run, so its columns are 0: does another wall cover this part of wall \
+             `{}`? Measure on that wall then",
+            own.name, scene.walls[own.wall].name
+        )
+    });
+    out.chain(dry).chain(unseen).chain(empty_space(scene, measured)).collect()
 }
 
 fn empty_space(scene: &Scene, measured: &Measured) -> Option<String> {

@@ -1,9 +1,11 @@
-//! Radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
+//! Regions that are too small for a probe, and radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
 //! radius, a vent through exactly four times the disc that it is given.
 
-use super::range::largest;
+use super::named::Named;
+use super::range::{Kind, largest, range_of};
+use super::units::{likely, question};
 use crate::plan::text::as_written;
-use crate::scene::{Dimension, GasSide, Region, Scene, Shape, Vent};
+use crate::scene::{Dimension, GasSide, Probe, Region, Scene, Shape, Vent};
 
 /// How near to 1 the ratio of two lengths is that were meant to be the same number.
 const SAME: f64 = 1e-6;
@@ -43,7 +45,22 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
         ))
     });
     let vents = scene.vents.iter().filter_map(|vent| wide_vent(scene, vent));
-    doubled.chain(vents).chain(two_insides(scene)).chain(molecules(scene)).collect()
+    let small = scene.probes.iter().filter_map(|probe| small_region(scene, probe));
+    doubled.chain(small).chain(vents).chain(two_insides(scene)).chain(molecules(scene)).collect()
+}
+
+/// A probe is a part of a vessel, of which none is as small.
+fn small_region(scene: &Scene, probe: &Probe) -> Option<String> {
+    let longest = match &probe.region {
+        Region::Box { min, max } => largest((0..3).map(|axis| max[axis] - min[axis])),
+        Region::Sphere { radius, .. } => 2.0 * radius,
+        Region::Cylinder { radius, height, .. } => height.max(2.0 * radius),
+    };
+    let range = range_of(Kind::Extent);
+    let named =
+        Named { subject: format!("probe `{}`", probe.name), key: "longest side of its region", units: scene.units };
+    let question = question(&likely(range, longest, scene.units));
+    (longest < range.least && !range.holds(longest)).then(|| named.beyond(range, longest, &question))
 }
 
 /// Gas inside of several walls is only where all of them enclose it.

@@ -8,8 +8,12 @@ use crate::scene::{Course, Curve, Dimension, GAS_CONSTANT, Method, Scene, VentFl
 
 /// How many times the length of a run a curve may go on.
 const FAR_BEYOND: f64 = 100.0;
-/// How many times as long as a mass flow a run may be: a thousand is a unit, a spark of 10 us in 1 ms a hundred.
+/// How many times as long as a curve a run may be: a thousand is a unit, a spark of 10 us in 1 ms a hundred.
 const LONG_AFTER: f64 = 500.0;
+/// How many times as long as its temperature's curve a mass flow may be: both are of one inflator.
+const LONG_BESIDE: f64 = 100.0;
+/// How many times as long as a step that is asked for the plan's own may be.
+const LONG_STEP: f64 = 100.0;
 /// Transits of sound from which on a run of particles is long: pressures are uniform after some tens.
 const MANY_TRANSITS: f64 = 1000.0;
 
@@ -28,17 +32,21 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
         let subject = format!("orifice `{}`", orifice.name);
         found.extend(late(scene, &subject, "mass flow", last(&orifice.mass_flow)));
         found.extend(late(scene, &subject, "temperature", last(&orifice.temperature)));
-        found.extend(early(scene, &subject, last(&orifice.mass_flow)));
+        found.extend(early(scene, &subject, "mass flow", &orifice.mass_flow));
+        found.extend(short_beside(scene, &subject, &orifice.temperature, last(&orifice.mass_flow)));
     }
     for vent in &scene.vents {
         if let VentFlow::Discharge(curve) = &vent.flow {
-            found.extend(late(scene, &format!("vent `{}`", vent.name), "discharge", last(curve)));
+            let subject = format!("vent `{}`", vent.name);
+            found.extend(late(scene, &subject, "discharge", last(curve)));
+            found.extend(early(scene, &subject, "discharge", curve));
         }
     }
     for motion in &scene.motions {
         let (Course::Velocity(curve) | Course::Displacement(curve)) = &motion.course;
         let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
         found.extend(late(scene, &subject, "curve", last(curve)));
+        found.extend(early(scene, &subject, "curve", curve));
     }
     found
 }
@@ -54,13 +62,46 @@ fn late(scene: &Scene, subject: &str, what: &str, ends: f64) -> Option<String> {
     })
 }
 
-fn early(scene: &Scene, subject: &str, ends: f64) -> Option<String> {
-    (ends > 0.0 && LONG_AFTER * ends < scene.end_time).then(|| {
+/// Of a curve that changes with time.
+fn early(scene: &Scene, subject: &str, what: &str, curve: &Curve) -> Option<String> {
+    let ends = last(curve);
+    (curve.points.len() > 1 && ends > 0.0 && LONG_AFTER * ends < scene.end_time).then(|| {
         format!(
-            "{subject}: its mass flow is over at {}, and `end_time` {} is {} times that: are its times, or is `end_time`, in another unit?",
+            "{subject}: its {what} is over at {}, and `end_time` {} is {} times that: are its times, or is `end_time`, in another unit?",
             shown(scene, ends),
             shown(scene, scene.end_time),
             significant(scene.end_time / ends)
+        )
+    })
+}
+
+/// A temperature that changes with time is one of the gas that flows meanwhile.
+fn short_beside(scene: &Scene, subject: &str, temperature: &Curve, flows_until: f64) -> Option<String> {
+    let ends = last(temperature);
+    (temperature.points.len() > 1 && ends > 0.0 && LONG_BESIDE * ends < flows_until).then(|| {
+        format!(
+            "{subject}: its temperature ends at {}, and its mass flow goes on until {}, {} times that, at a constant temperature: are the \
+             times of both in the unit of the scene?",
+            shown(scene, ends),
+            shown(scene, flows_until),
+            significant(flows_until / ends)
+        )
+    })
+}
+
+/// A step that is asked for and is far shorter than the plan's own, both s.
+pub fn short_step(scene: &Scene, asked: f64, own: f64) -> Option<String> {
+    (LONG_STEP * asked < own * (1.0 + 1e-9)).then(|| {
+        let steps = |step: f64| grouped((scene.end_time / step).ceil() as u64);
+        format!(
+            "the model: time_step {} is {} times shorter than the {} {} that the plan would choose, so the run has {} steps in place of \
+             about {}: is it in another unit? Leave it out to have the plan's own",
+            shown(scene, asked),
+            significant(own / asked),
+            significant(own / scene.units.factor(Dimension::Time)),
+            scene.units.symbol(Dimension::Time),
+            steps(asked),
+            steps(own)
         )
     })
 }

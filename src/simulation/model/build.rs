@@ -85,6 +85,11 @@ impl Model {
         plan
     }
 
+    /// What is no warning, of the walls and of the scene.
+    pub fn notes(&self) -> Vec<String> {
+        [self.vessel.notes(self.scene.units), self.plan.inventory.notes.clone()].concat()
+    }
+
     /// The walls as they are at a time, s.
     pub fn vessel_at(&self, time: f64) -> std::borrow::Cow<'_, Vessel> {
         if self.moving.is_empty() {

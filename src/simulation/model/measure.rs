@@ -1,8 +1,8 @@
 //! What the plan needs to know of the walls.
 
+use super::contact::{Sides, dry_motions, dry_surfaces, no_openings};
 use super::moving::{Moving, extent};
-use super::outlook::is_open_to_empty;
-use super::places::{along, chamber_of};
+use super::outlook::{borders, is_open_to_empty};
 use super::surface_models::SurfaceModels;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
 use crate::plan::{Measured, MeasuredVent, MeasuredWall};
@@ -19,6 +19,7 @@ pub fn measured(
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     let Narrowest { gap, body } = vessel.narrowest();
+    let openings = found_openings(scene, vessel);
     let empty = vessel.gas_volume() - chamber_volumes.iter().sum::<f64>();
     Measured {
         open_to_empty: empty > 1e-3 * vessel.gas_volume() && is_open_to_empty(scene, vessel),
@@ -27,7 +28,11 @@ pub fn measured(
         chamber_volumes,
         bounds_min,
         bounds_max,
-        openings: found_openings(scene, vessel),
+        touching: borders(scene, vessel, &openings),
+        no_openings: no_openings(scene, vessel),
+        dry_motions: dry_motions(scene, vessel, moving),
+        dry_surfaces: dry_surfaces(scene, vessel, moving),
+        openings,
         smallest_gap: gap,
         thinnest_body: body,
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),
@@ -54,10 +59,7 @@ pub fn found_openings(scene: &Scene, vessel: &Vessel) -> Vec<Opening> {
         .holes
         .iter()
         .filter_map(|hole| {
-            // A little beyond either face of the wall.
-            let reach = 0.5 * hole.thickness + 1e-3 * hole.area.sqrt();
-            let side = |sign: f64| chamber_of(scene, vessel, along(hole.center, hole.normal, sign * reach));
-            let (a, b) = (side(-1.0)?, side(1.0)?);
+            let Sides([Some(a), Some(b)]) = Sides::of(scene, vessel, hole) else { return None };
             (a != b).then(|| Opening {
                 name: hole.name.clone(),
                 between: [a, b],

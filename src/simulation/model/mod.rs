@@ -2,6 +2,7 @@
 //! no device.
 
 pub(super) mod build;
+mod contact;
 pub(super) mod error;
 pub(super) mod facing;
 pub(super) mod flow_only;

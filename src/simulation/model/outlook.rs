@@ -1,5 +1,5 @@
 //! What a forecast needs to know of the vessel ([`Outlook`]): measured only for scenes that wish an accuracy or have a
-//! budget.
+//! budget, but for which chambers touch.
 
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, surface_mode
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         surfaces: surfaces.collect(),
         probes: probes.collect(),
-        borders: borders(scene, vessel, measured),
+        borders: measured.touching.clone(),
         heated: heated
             .map(|placed| SeenHeat { surface: placed.surface, chamber: placed.chamber, area: placed.area })
             .collect(),
@@ -51,7 +51,7 @@ pub fn source(scene: &Scene, vessel: &Vessel, orifice: &Orifice) -> Option<usize
 }
 
 /// Pairs of chambers that are open to each other over more than the holes of walls between them.
-fn borders(scene: &Scene, vessel: &Vessel, measured: &Measured) -> Vec<[usize; 2]> {
+pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize; 2]> {
     let mut open: Vec<([usize; 2], f64)> = Vec::new();
     for (index, chamber) in scene.chambers.iter().enumerate() {
         let Some(region) = &chamber.region else { continue };
@@ -70,9 +70,9 @@ fn borders(scene: &Scene, vessel: &Vessel, measured: &Measured) -> Vec<[usize; 2
         }
     }
     let holes = |pair: [usize; 2]| -> f64 {
-        let declared = scene.openings.iter().filter(|own| measured.openings.iter().all(|found| found.name != own.name));
+        let declared = scene.openings.iter().filter(|own| found.iter().all(|found| found.name != own.name));
         let joins = |opening: &&Opening| opening.between == pair || opening.between == [pair[1], pair[0]];
-        measured.openings.iter().chain(declared).filter(joins).map(|opening| opening.area).sum()
+        found.iter().chain(declared).filter(joins).map(|opening| opening.area).sum()
     };
     open.into_iter().filter(|&(pair, area)| area > OPEN * holes(pair)).map(|(pair, _)| pair).collect()
 }

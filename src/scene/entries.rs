@@ -1,0 +1,44 @@
+//! Where the entries of a scene stand in its text.
+
+use std::ops::Range;
+
+use super::lines::Lines;
+use super::raw::RawScene;
+use super::raw_values::At;
+
+pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
+    let ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+    let line = |span: &Range<usize>| 1 + ends.partition_point(|&end| end < span.start);
+    let mut entries: Vec<(String, usize)> = Vec::new();
+    let mut add = |kind: &str, name: &At<String>, span: &Range<usize>| {
+        entries.push((format!("{kind} `{}`", name.value), line(span)));
+    };
+    raw.gas.iter().for_each(|at| add("gas", &at.value.name, &at.span));
+    for wall in &raw.wall {
+        add("wall", &wall.value.name, &wall.span);
+        wall.value.hole.iter().for_each(|hole| add("hole", &hole.value.name, &hole.span));
+    }
+    for chamber in &raw.chamber {
+        add("chamber", &chamber.value.name, &chamber.span);
+        add("chambers", &chamber.value.name, &chamber.span);
+    }
+    raw.orifice.iter().for_each(|at| add("orifice", &at.value.name, &at.span));
+    raw.probe.iter().for_each(|at| add("probe", &at.value.name, &at.span));
+    raw.surface.iter().for_each(|at| add("surface", &at.value.name, &at.span));
+    raw.vent.iter().for_each(|at| add("vent", &at.value.name, &at.span));
+    raw.motion.iter().for_each(|at| add("motion of wall", &at.value.wall, &at.span));
+    for wall in &raw.wall {
+        let part = |part: &At<_>| line(&part.span);
+        entries.extend(
+            wall.value
+                .part
+                .iter()
+                .map(|at| (format!("wall `{}/{}`", wall.value.name.value, at.value.face.value), part(at))),
+        );
+    }
+    entries.push(("the run".into(), line(&raw.end_time.span)));
+    let keys = [("diameter", &raw.model.diameter), ("time_step", &raw.model.time_step)];
+    let given = keys.iter().filter_map(|(key, at)| Some((format!("the model: {key}"), line(&at.as_ref()?.span))));
+    entries.extend(given);
+    Lines(entries)
+}
