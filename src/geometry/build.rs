@@ -18,8 +18,9 @@ impl Vessel {
         for (index, wall) in walls.iter().enumerate() {
             let subject = subject(wall);
             let cavity = is_cavity(wall, &subject)?;
-            let mut mesh = mesh_of(&wall.shape, index as u32, &subject)?;
-            check_closed(&subject, &mesh.vertices, &mesh.triangles)?;
+            let of_wall = |error: GeometryError| error.of_wall(&wall.shape);
+            let mut mesh = mesh_of(&wall.shape, index as u32, &subject).map_err(of_wall)?;
+            check_closed(&subject, &mesh.vertices, &mesh.triangles).map_err(of_wall)?;
             let volume = signed_volume(&mesh.vertices, &mesh.triangles);
             let (min, max) = bounds_of(&mesh.vertices);
             let size = (max - min).max_element();
@@ -56,7 +57,8 @@ impl Vessel {
         let mut vessel = Vessel::unmeasured(&vertices, triangles, holes, infos);
         vessel.find_inside_out(walls)?;
         for (index, wall) in walls.iter().enumerate().filter(|(_, wall)| matches!(wall.shape, Shape::Mesh { .. })) {
-            vessel.walls[index].overlaps = vessel.find_crossings(index, &subject(wall))?;
+            let found = vessel.find_crossings(index, &subject(wall));
+            vessel.walls[index].overlaps = found.map_err(|error| error.of_wall(&wall.shape))?;
         }
         vessel.measure()?;
         Ok(vessel)
@@ -80,7 +82,8 @@ impl Vessel {
         });
         match found.into_iter().flatten().next() {
             Some((wall, place)) => {
-                Err(GeometryError::InsideOut { wall: subject(&walls[wall]), place: Places::one(place) })
+                let error = GeometryError::InsideOut { wall: subject(&walls[wall]), place: Places::one(place) };
+                Err(error.of_wall(&walls[wall].shape))
             }
             None => Ok(()),
         }

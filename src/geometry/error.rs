@@ -3,11 +3,13 @@
 
 use std::fmt;
 
-use crate::scene::UnitSystem;
+use crate::scene::{Shape, UnitSystem};
 use glam::DVec3;
 
 /// How many offenders an error lists.
 const LISTED: usize = 3;
+/// How near to 1 the ratio of two units is that are the same.
+const SAME: f64 = 1e-9;
 /// Names of parts that are listed.
 const MOST_NAMES: usize = 24;
 
@@ -21,11 +23,13 @@ struct Listed {
     /// Between the points of a place.
     between: &'static str,
     units: UnitSystem,
+    /// m per unit of the mesh file that the places are of.
+    file: Option<f64>,
 }
 
 impl Places {
     pub(super) fn of(places: impl Iterator<Item = Vec<DVec3>>, between: &'static str) -> Places {
-        Places(Box::new(Listed { places: places.take(LISTED).collect(), between, units: UnitSystem::Si }))
+        Places(Box::new(Listed { places: places.take(LISTED).collect(), between, units: UnitSystem::Si, file: None }))
     }
 
     /// Tells them in the unit of length of these units.
@@ -41,12 +45,22 @@ impl Places {
 
 impl fmt::Display for Places {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Listed { places, between, units } = &*self.0;
+        let Listed { places, between, units, file } = &*self.0;
         let (factor, symbol) = units.length();
-        let point = |p: &DVec3| format!("({})", p.to_array().map(|x| short(x / factor)).join(", "));
         let between = if between.is_empty() { " ".to_string() } else { format!(" {between} ") };
-        let place = |points: &Vec<DVec3>| points.iter().map(point).collect::<Vec<_>>().join(&between);
-        write!(f, "in {symbol}: {}", places.iter().map(place).collect::<Vec<_>>().join("; "))
+        let listed = |places: &[Vec<DVec3>], factor: f64| {
+            let point = |p: &DVec3| format!("({})", p.to_array().map(|x| short(x / factor)).join(", "));
+            let place = |points: &Vec<DVec3>| points.iter().map(point).collect::<Vec<_>>().join(&between);
+            places.iter().map(place).collect::<Vec<_>>().join("; ")
+        };
+        write!(f, "in {symbol}: {}", listed(places, factor))?;
+        match file {
+            // The first is enough to find it there.
+            Some(file) if (file / factor - 1.0).abs() > SAME => {
+                write!(f, ", in the numbers of the file: {}", listed(&places[..places.len().min(1)], *file))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -163,8 +177,23 @@ pub enum GeometryError {
 impl GeometryError {
     /// Tells places in the unit of length of these units.
     pub fn told_in(mut self, units: UnitSystem) -> GeometryError {
+        if let Some(places) = self.places() {
+            places.0.units = units;
+        }
+        self
+    }
+
+    /// Tells places also as they stand in the wall's file, if it is of one.
+    pub(super) fn of_wall(mut self, shape: &Shape) -> GeometryError {
+        if let (Shape::Mesh { scale, .. }, Some(places)) = (shape, self.places()) {
+            places.0.file = Some(*scale);
+        }
+        self
+    }
+
+    fn places(&mut self) -> Option<&mut Places> {
         use GeometryError::*;
-        match &mut self {
+        match self {
             NotFinite { first: places, .. }
             | Degenerate { first: places, .. }
             | OpenEdges { first: places, .. }
@@ -174,7 +203,7 @@ impl GeometryError {
             | Sheet { first: places, .. }
             | InsideOut { place: places, .. }
             | OutsideGrid { place: places, .. }
-            | DegenerateOnGrid { place: places, .. } => places.0.units = units,
+            | DegenerateOnGrid { place: places, .. } => Some(places),
             Unreadable { .. }
             | Empty { .. }
             | NoPart { .. }
@@ -184,9 +213,8 @@ impl GeometryError {
             | Hole { .. }
             | Unbounded
             | NoGas
-            | TooMany { .. } => {}
+            | TooMany { .. } => None,
         }
-        self
     }
 
     pub(super) fn no_part(wall: &str, part: &str, known: Vec<String>) -> GeometryError {

@@ -309,7 +309,11 @@ fn a_wall_that_moves_without_gas_is_told() {
     };
     let told = doubts([-0.5, -0.3], 0.1);
     assert!(told[0].starts_with("motion of wall `piston`: ") && told[0].ends_with("(line 28)"), "{told:?}");
-    for (place, far) in [([-0.5, -0.3], 0.5), ([-0.2, 0.1], 0.1), ([-0.2, 0.1], -0.1), ([0.4, 0.5], 0.1)] {
+    // Flush with the vessel's wall, and away from it.
+    assert_eq!(doubts([-0.2, 0.0], -0.1).len(), 1);
+    for (place, far) in
+        [([-0.5, -0.3], 0.5), ([-0.2, 0.0], 0.1), ([-0.2, 0.1], 0.1), ([-0.2, 0.1], -0.1), ([0.4, 0.5], 0.1)]
+    {
         assert_eq!(doubts(place, far), [""; 0], "{place:?}");
     }
 }

@@ -33,7 +33,8 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
         found.extend(late(scene, &subject, "mass flow", last(&orifice.mass_flow)));
         found.extend(late(scene, &subject, "temperature", last(&orifice.temperature)));
         found.extend(early(scene, &subject, "mass flow", &orifice.mass_flow));
-        found.extend(short_beside(scene, &subject, &orifice.temperature, last(&orifice.mass_flow)));
+        let flows_until = last(&orifice.mass_flow).min(scene.end_time);
+        found.extend(short_beside(scene, &subject, &orifice.temperature, flows_until));
     }
     for vent in &scene.vents {
         if let VentFlow::Discharge(curve) = &vent.flow {

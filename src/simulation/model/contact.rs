@@ -47,36 +47,43 @@ fn is_covered(vessel: &Vessel, hole: &FoundHole) -> bool {
 
 /// The walls that move and have no gas before them at any time.
 pub fn dry_motions(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<usize> {
-    let walls = scene.motions.iter().map(|motion| motion.wall);
-    walls.filter(|&wall| is_dry(scene, vessel, moving, |triangle| triangle.wall as usize == wall)).collect()
+    let is_dry = |&wall: &usize| {
+        never(scene, vessel, moving, |vessel| {
+            // A face that lies in that of the vessel has gas before it, but none that it moves: behind it are both solids.
+            meets_gas(vessel, |triangle| triangle.wall as usize == wall, |behind| vessel.solid_depth(behind) <= 1)
+        })
+    };
+    scene.motions.iter().map(|motion| motion.wall).filter(is_dry).collect()
 }
 
 /// The surfaces of the scene that have no gas before them at any time.
 pub fn dry_surfaces(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<usize> {
-    let dry = |index: &usize| {
-        let surface = &scene.surfaces[*index];
-        let own = |triangle: &Triangle| surface.face.is_none() || triangle.face == surface.face;
-        is_dry(scene, vessel, moving, |triangle| triangle.wall as usize == surface.wall && own(triangle))
+    let is_dry = |&index: &usize| {
+        let surface = &scene.surfaces[index];
+        let own = |triangle: &Triangle| {
+            triangle.wall as usize == surface.wall && (surface.face.is_none() || triangle.face == surface.face)
+        };
+        never(scene, vessel, moving, |vessel| meets_gas(vessel, own, |_| true))
     };
-    (0..scene.surfaces.len()).filter(dry).collect()
+    (0..scene.surfaces.len()).filter(is_dry).collect()
 }
 
-/// Whether no gas lies before these triangles, at none of some moments of the run.
-fn is_dry(scene: &Scene, vessel: &Vessel, moving: &Moving, own: impl Fn(&Triangle) -> bool) -> bool {
-    if moving.is_empty() {
-        return !meets_gas(vessel, &own);
-    }
-    (0..=MOMENTS).all(|moment| {
-        let time = scene.end_time * f64::from(moment) / f64::from(MOMENTS);
-        !meets_gas(&moving.vessel_at(vessel, time), &own)
-    })
+/// Whether it is so of the walls at none of some moments of the run.
+fn never(scene: &Scene, vessel: &Vessel, moving: &Moving, is_so: impl Fn(&Vessel) -> bool) -> bool {
+    let later = |moment: u32| scene.end_time * f64::from(moment) / f64::from(MOMENTS);
+    let moments = if moving.is_empty() { 0 } else { MOMENTS };
+    !is_so(vessel) && (1..=moments).all(|moment| !is_so(&moving.vessel_at(vessel, later(moment))))
 }
 
-fn meets_gas(vessel: &Vessel, own: impl Fn(&Triangle) -> bool) -> bool {
+/// Whether gas lies before a place of these triangles, and what is behind it is as it should be.
+fn meets_gas(vessel: &Vessel, own: impl Fn(&Triangle) -> bool, behind: impl Fn([f64; 3]) -> bool) -> bool {
     vessel.triangles.iter().filter(|triangle| own(triangle)).any(|triangle| {
         let [a, b, c] = triangle.vertices.map(|vertex| DVec3::from(vessel.vertices[vertex as usize]));
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let lift = BEFORE * longest * (b - a).cross(c - a).normalize_or_zero();
-        parts().any(|(u, v)| vessel.is_gas((a + u * (b - a) + v * (c - a) + lift).to_array()))
+        parts().any(|(u, v)| {
+            let place = a + u * (b - a) + v * (c - a);
+            vessel.is_gas((place + lift).to_array()) && behind((place - lift).to_array())
+        })
     })
 }

@@ -69,21 +69,33 @@ fn corners_in_the_middle_of_edges_are_accepted() {
     assert!(vessel.walls[0].mended.is_none() && near(1e3 * vessel.gas_volume(), 1.0));
 }
 
-/// In the scene's unit, with few digits.
+/// In the scene's unit, with few digits; where the file has another one, in its own numbers too.
 #[test]
 fn leaks_are_told_in_the_units_of_the_scene() {
     let triangles = &cube([0.0; 3], [100.0 / 3.0; 3])[1..];
     let mesh = Mesh::new("leak.stl", solid("", triangles));
     let text = mesh.scene_text("inside", "").replacen("end_time", "units = \"kg-mm-ms\"\nend_time", 1);
     let path = mesh.folder.path().join("mm.toml");
-    std::fs::write(&path, text.replace("pressure = 1e5", "pressure = 1e-4")).unwrap();
-    let (code, _, error) = crate::outcome(&["check", path.to_str().unwrap()]);
-    assert_eq!(code, 2);
-    let error = error.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+    let told = |scale: &str| {
+        let text = text
+            .replace("pressure = 1e5", "pressure = 1e-4")
+            .replace("shape = \"mesh\"", &format!("shape = \"mesh\"\n{scale}"));
+        std::fs::write(&path, text).unwrap();
+        let (code, _, error) = crate::outcome(&["check", path.to_str().unwrap()]);
+        assert_eq!(code, 2);
+        error.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+    };
+    let error = told("");
     assert!(
-        error.contains("3 edges") && error.contains("in mm: (0, 0, 0) to (") && error.contains("(0, 33.333, 0)"),
+        error.contains("3 edges")
+            && error.contains("in mm: (0, 0, 0) to (")
+            && error.contains("(0, 33.333, 0)")
+            && !error.contains("of the file"),
         "{error}"
     );
+    let error = told("scale = 10");
+    let own = "in the numbers of the file: (0, 0, 0) to (";
+    assert!(error.contains("(0, 333.33, 0)") && error.contains(own) && error.contains("33.333"), "{error}");
 }
 
 #[test]
