@@ -110,7 +110,7 @@ const SLIPS: &[Slip] = &[
     slip(
         TANK,
         [AIR, "molar_mass = 0.02897\ncp = [26.9, 5.9, 0.0]"],
-        &["at 300 K (20 R)", "`cp = [26.9, 0.0059, 0]`", "(line 3)"],
+        &["at 300 K (20 R)", "`cp = [26.9, 0.0059, 0]`, without what D and E add: fit three", "(line 3)"],
     ),
     slip(
         TANK,

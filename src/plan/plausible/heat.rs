@@ -32,7 +32,8 @@ pub fn doubt(scene: &Scene, gas: &Gas, named: &Named<'_>) -> Option<String> {
     let molar_mass = gas.molar_mass;
     let rest = match of_thousandths(coefficients) {
         of_kelvin if is_gas(value(of_kelvin, temperature)) => format!(
-            ": cp = a + b T + c T^2 has T in K; are these coefficients of T/1000, as Shomate's are? Then they are {}",
+            ": cp = a + b T + c T^2 has T in K; are these coefficients of T/1000, as Shomate's are? Those of T are {}, \
+             without what D and E add: fit three to cp at the temperatures of the scene if that counts",
             listed(scene, of_kelvin)
         ),
         _ if is_gas(cp * molar_mass) => ": is it per kilogram? Multiply all coefficients by the molar mass then".into(),
