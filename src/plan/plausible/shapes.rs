@@ -1,5 +1,5 @@
-//! Regions that are too small for a probe, and radii that are diameters, where the scene itself tells: a region with the axis or the centre of a wall and exactly twice its
-//! radius, a vent through exactly four times the disc that it is given.
+//! Regions that are too small for a probe, and radii that are diameters, where the scene itself tells: a region with the
+//! axis or the centre of a wall and exactly twice its radius, a vent through exactly four times the disc that it is given.
 
 use super::named::Named;
 use super::range::{Kind, largest, range_of};
