@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut seconds = vec![Vec::new(); models.len()];
     for turn in 0..=REPEATS {
         for ((_, model, whole), seconds) in models.iter().zip(&mut seconds) {
-            let setup = if *whole { Setup::whole(model, &device)? } else { Setup::for_many(model, &device, 1)? };
+            let setup = if *whole { Setup::whole(model, &device)? } else { Setup::new(model, &device, 1, None)? };
             // The first turn pays for the compilation of the kernels.
             let options = Options { stop_after_steps: Some(if turn > 0 { steps } else { 1 }), ..Options::default() };
             let simulation = Simulation::among(model, &device, &setup, &solo, options)?;

@@ -1,12 +1,107 @@
-//! uses: step.wgsl lists.wgsl bounced.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl newborn.wgsl gas.wgsl lists.wgsl walls.wgsl add64.wgsl philox.wgsl modes.wgsl surface_models.wgsl binned.wgsl
+//! binds: surface_sums as sums
 //! phase: advect
-// Flies the particles that meet walls to the end of the step (bounced.wgsl).
+// Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
+// as the wall's surface model has it, diffusely with the temperature of the wall or with their speed, or out through a
+// vent. A wall that moves does so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
-// Reads `bouncing`, and what such a flight wants; writes what it changes. One thread per entry of `bouncing`, which writes its own particle;
-// random numbers are keyed on (step, hit, id), and sums of integers do not depend on order.
+// Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions
+// `particles`), the walls, `surface_models` and `vents`; writes `particles` (NOBODY for one that has left), counts it in
+// its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces, the surface models, the vents and the
+// moving walls that the scene has. One thread per entry of `bouncing`, which writes its own particle; random numbers are
+// keyed on (step, hit, id), and sums of integers do not depend on order.
+
+override ROUNDS_OF_PAIRS: bool = true;
+override SPIN: bool = true;
+override SURFACES: bool = true;
+override SURFACE_MODELS: bool = true;
+override VENTS: bool = true;
+// Bounces in one step after which a flight ends at the wall; such flights are counted.
+override MOST_BOUNCES: u32 = 32;
+// Impulse over reference mass to tally units.
+override IMPULSE_SCALE: f32 = 1.0;
+
+// Energy over reference mass to tally units.
+override ENERGY_SCALE: f32 = 1.0;
+// Where the tallies of surface models and vents start in `sums`.
+override SURFACE_MODELS_AT: u32 = 0;
+override VENTS_AT: u32 = 0;
+// And where those of moving walls do.
+override WORKS_AT: u32 = 0;
+// There are copies of all of these, each of so many words, that workgroups take in turn, and the host adds up: a GPU does atomic operations on
+// one word, or on its neighbours, one after the other.
+override COPIES: u32 = 1;
+override COPY_WORDS: u32 = 0;
+
+const ENERGY_RANGE: f32 = 4.29e9;
 
 var<uniform> step: Step;
+var<uniform> gases: array<Gas, 16>;
+var<storage, read> step_state: array<u32>;
+var<storage, read_write> particles: array<Packed>;
+var<storage, read> sorted: array<Packed>;
 var<storage, read> bouncing: array<u32>;
+var<storage, read_write> sums: array<atomic<u32>>;
+
+// Where the copy of this thread's workgroup starts.
+var<private> copy: u32;
+
+fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
+    let scaled = vec4<f32>(impulse, -dot(impulse, normal)) * IMPULSE_SCALE;
+    if (any(abs(scaled) >= vec4<f32>(1073741824.0))) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    let whole = vec4<i32>(round(scaled));
+    for (var axis = 0u; axis < 4u; axis++) {
+        let word = bitcast<u32>(whole[axis]);
+        add64(copy + surface * SURFACE_WORDS + SURFACE_IMPULSE + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
+    }
+    add64(copy + surface * SURFACE_WORDS + SURFACE_HITS, 1u, 0u);
+}
+
+// Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
+fn tally_energy(slot: u32, energy: f32) {
+    let scaled = round(energy * ENERGY_SCALE);
+    if (!(abs(scaled) < ENERGY_RANGE)) {
+        atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+        return;
+    }
+    let size = u32(abs(scaled));
+    if (size == 0u) {
+        return;
+    }
+    var once = vec2<u32>(size, 0u);
+    var left = vec2<u32>(size * step.tallies_left, multiply_high(size, step.tallies_left));
+    if (scaled < 0.0) {
+        once = negated(once);
+        left = negated(left);
+    }
+    add64(copy + slot + WALL_ENERGY, once.x, once.y);
+    if ((left.x | left.y) != 0u) {
+        add64(copy + slot + WALL_TALLIED, left.x, left.y);
+    }
+}
+
+fn energy_of(particle: Particle, mass: f32) -> f32 {
+    return 0.5 * mass * dot(particle.velocity, particle.velocity) + particle.spin;
+}
+
+// Whether a particle that hits vent `v` leaves through it, which is tallied.
+fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
+    let slot = VENTS_AT + vents[v].index * VENT_WORDS;
+    let probability = vents[v].beta * mass * speed;
+    add64(copy + slot + VENT_HITS, 1u, 0u);
+    if (probability > 1.0) {
+        add64(copy + slot + VENT_CLIPPED, 1u, 0u);
+    }
+    if (unit_interval(word) >= probability) {
+        return false;
+    }
+    tally_energy(slot, energy_of(particle, mass));
+    atomicAdd(&sums[copy + slot + VENT_LEFT + gas_of(particle.tag)], 1u);
+    return true;
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn bounce(thread: Thread) {
@@ -14,5 +109,133 @@ fn bounce(thread: Thread) {
     if (entry >= atomicLoad(&counters[LIST_BOUNCE])) {
         return;
     }
-    bounce_off(bouncing[entry], entry);
+    let s = bouncing[entry];
+    copy = (entry / WORKGROUP) % COPIES * COPY_WORDS;
+    var particle: Particle;
+    var time = 0.0;
+    if (COLLISIONS) {
+        particle = particle_of(sorted[s]);
+    } else {
+        particle = particle_of(particles[s]);
+    }
+    if (ROUNDS_OF_PAIRS) {
+        // Where the particle will be.
+        time = bitcast<f32>(particles[s].position_tag.x);
+    } else {
+        time = birth_time(id_of(particle.tag));
+    }
+    let gas = gases[kind_of(particle.tag)];
+    var bounces = 0u;
+    var end = step.dt;
+    // Velocity of the wall that was hit last.
+    var carried = vec3<f32>(0.0);
+    var overshoot = 0.0;
+    var ended = false;
+    // bench: hit
+    loop {
+        let hit = first_hit(particle.position, particle.velocity, time, step.dt);
+        overshoot = max(overshoot, hit.overshoot);
+        // bench: last
+        if (hit.triangle == NOBODY) {
+            ended = true;
+            break;
+        }
+        if (bounces == MOST_BOUNCES) {
+            atomicAdd(&counters[TRUNCATED], 1u);
+            end = time;
+            ended = true;
+            break;
+        }
+        bounces++;
+        let triangle = triangles[hit.triangle];
+        let old = particle.velocity;
+        if (MOVING) {
+            carried = vec3<f32>(0.0);
+            if (triangle.motion != NOBODY) {
+                carried = motion_of(triangle.motion).velocity;
+            }
+        }
+        // In the frame of the wall.
+        let relative = old - carried;
+        var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
+        var kept = true;
+        if (SURFACE_MODELS && triangle.surface_model != NOBODY) {
+            let surface_model = surface_models[triangle.surface_model];
+            let draw = wall_draw(particle.tag, bounces, 0u);
+            if (VENTS) {
+                let v = vent_at(surface_model, shifted(particle.position, old, hit.time));
+                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
+                    if (SURFACES && triangle.surface != NOBODY) {
+                        tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
+                    }
+                    particle.tag = NOBODY;
+                    ended = true;
+                    break;
+                }
+            }
+            let chance = unit_interval(draw.y);
+            if (chance < surface_model.accommodation) {
+                kept = false;
+                let away = emitted(triangle.normal, surface_model.thermal / gas.mass, particle.tag, bounces, draw.z);
+                turned = away;
+                var spin = 0.0;
+                if (SPIN && gas.exchange > 0.0) {
+                    let shape = equilibrium_shape(gas_of(particle.tag), gas.inverse_beta, surface_model.thermal, draw.w);
+                    spin = surface_model.thermal * gamma_variate(shape, particle.tag, bounces);
+                }
+                let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
+                tally_energy(SURFACE_MODELS_AT + triangle.surface_model * SURFACE_MODEL_WORDS, kinetic + (particle.spin - spin));
+                particle.spin = spin;
+            } else if (chance - surface_model.accommodation < surface_model.friction * (1.0 - surface_model.accommodation)) {
+                turned = scattered(triangle.normal, particle.tag, bounces, draw.z);
+            }
+        }
+        if (kept) {
+            // Its speed, in the frame of the wall.
+            turned *= sqrt(dot(relative, relative) / dot(turned, turned));
+        }
+        turned += carried;
+        var work = 0.0;
+        if (MOVING && triangle.motion != NOBODY) {
+            work = gas.mass * dot(carried, turned - old);
+            tally_energy(WORKS_AT + triangle.motion * SURFACE_MODEL_WORDS, -work);
+        }
+        if (SPIN && kept && gas.exchange > 0.0) {
+            // What rounding took from the kinetic energy.
+            particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);
+        }
+        if (SURFACES && triangle.surface != NOBODY) {
+            tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
+        }
+        let place = shifted(particle.position, old, hit.time);
+        particle.position = shifted(place, -turned, hit.time);
+        particle.velocity = turned;
+        time = hit.time;
+    }
+    cut_short = cut_short || !ended;
+    atomicAdd(&counters[BOUNCES], bounces);
+    tell_cut_short();
+    if (overshoot > 0.0) {
+        atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
+    }
+    if (VENTS && particle.tag == NOBODY) {
+        particles[s].position_tag.w = NOBODY;
+        if (bins_next()) {
+            bin_nobody(s);
+        }
+        return;
+    }
+    particle.position = shifted(particle.position, particle.velocity, end);
+    if (MOVING && end < step.dt) {
+        // A flight that was cut short ends at its wall, which goes on.
+        particle.position = shifted(particle.position, carried, step.dt - end);
+    }
+    let cell = particle.position >> vec3<u32>(CELL_BITS);
+    if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {
+        atomicAdd(&counters[OUTSIDE], 1u);
+    }
+    particles[s] = packed_of(particle);
+    if (bins_next()) {
+        bin_next(s, particle.position, particle.velocity);
+    }
 }

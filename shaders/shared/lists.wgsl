@@ -9,7 +9,7 @@ const GROUP_LIMIT: u32 = 65535;
 var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read_write> dispatches: array<atomic<u32>>;
 
-// (A kernel dispatched over one list may append to another, so `settle` and `settle_chosen`, which are dispatched over pairs and by no list, `pack`, over
+// (A kernel dispatched over one list may append to another, so `settle`, which is dispatched over pairs, `pack`, over
 // the border, and `order`, `neighbours` and `receive`, whose lists are dispatched like those that choose, are given the buffer `rechoose_dispatches` by this name, and `choose` the buffer `on_demand_dispatches`.)
 //
 // Makes sure that a list's dispatch has this workgroup.

@@ -11,8 +11,18 @@ fn starts_of(counts: vec4<u32>, before: u32) -> Starts {
     return Starts(before + vec4<u32>(0u, counts.x, two, three), before + three + counts.w);
 }
 
-// Where the particles of so many fours' cells start, four fours at a time, of which `before_first` are before the first, in place of how many there are in each cell.
-fn write_starts_of_fours(begin: u32, end: u32, before_first: u32) {
+// Where the particles of a chunk's cells start, of which `before_first` are before it and `own` in it, in place of how many
+// there are in each cell.
+fn write_starts_of_chunk(chunk: u32, before_first: u32, own: u32) {
+    let begin = chunk * (CHUNK / 4u);
+    let end = begin + CHUNK / 4u;
+    if (own == 0u) {
+        // bench: empty
+        for (var four = begin; four < end; four++) {
+            cell_start[four] = vec4<u32>(before_first);
+        }
+        return;
+    }
     var before = before_first;
     // Four fours are read before any is written: a read would wait for what was written before it.
     // bench: started
@@ -31,18 +41,4 @@ fn write_starts_of_fours(begin: u32, end: u32, before_first: u32) {
         cell_start[four + 3u] = starts3.starts;
         before = starts3.next;
     }
-}
-
-// Those of a chunk, of which `before` are before it and `own` in it.
-fn write_starts_of_chunk(chunk: u32, before: u32, own: u32) {
-    let begin = chunk * (CHUNK / 4u);
-    let end = begin + CHUNK / 4u;
-    if (own == 0u) {
-        // bench: empty
-        for (var four = begin; four < end; four++) {
-            cell_start[four] = vec4<u32>(before);
-        }
-        return;
-    }
-    write_starts_of_fours(begin, end, before);
 }

@@ -1,4 +1,4 @@
-//! uses: sharded_lists.wgsl merged.wgsl
+//! uses: step.wgsl sharded_lists.wgsl
 // Lets particles choose in a round, or again in the next one: each once (local.wgsl). The outermost ghosts never do: they
 // have not all their neighbours here.
 
@@ -17,7 +17,7 @@ fn choosers_from(round: u32, count: u32, thread: u32) -> u32 {
 }
 
 fn chooser_place(number: u32, round: u32, thread: u32) -> u32 {
-    return first_place_of(round) + entry_place(number, LIST_RECHOOSE + round, thread, step.total);
+    return entry_place(number, LIST_RECHOOSE + round, thread, step.total);
 }
 
 // Marks the first `count` of four; for each 1 if it is to be entered. (One after the other without a loop: each wants an answer, and can

@@ -215,7 +215,7 @@ pub struct ParticleBuffers {
     pub bins: wgpu::Buffer,
     /// Of the exchange `border`, of the method `cell` `slots`, else from the sort on `incomplete`; afterwards the `pairs` of the rounds, half as many.
     pub slots: wgpu::Buffer,
-    /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins. (Twice, where kernels are merged.)
+    /// With room for the parts of lists (`counters::FREE_ENTRIES`), as `slots` have. One after the other `crowded` and `order_by_id`, or `rechoose` of each round and `bouncing`: a list is done with before the next begins.
     pub scratch: wgpu::Buffer,
     pub sorted: wgpu::Buffer,
     pub midpoints: wgpu::Buffer,
@@ -247,7 +247,6 @@ impl ParticleBuffers {
         let exchange = if features.halo { capacity } else { 4 };
         let tails = if features.rounds { tails.next_multiple_of(8) } else { 0 };
         let late = if features.rounds { exchange } else { 4 };
-        let scratch = (capacity + counters::FREE_ENTRIES) << u32::from(features.merged && features.rounds);
         Ok(ParticleBuffers {
             capacity,
             tails,
@@ -258,7 +257,7 @@ impl ParticleBuffers {
                 "slots",
                 if features.halo { 2 * binned } else { binned } + 2 * counters::FREE_ENTRIES,
             )?,
-            scratch: device.storage::<u32>("scratch", scratch)?,
+            scratch: device.storage::<u32>("scratch", capacity + counters::FREE_ENTRIES)?,
             sorted: device.storage::<GpuParticle>("sorted", binned)?,
             midpoints: device.storage::<u32>("midpoints", chosen)?,
             cells: device.storage::<u32>("cells", weighed)?,

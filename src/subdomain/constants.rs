@@ -2,7 +2,7 @@
 //! once, here, from the plan.
 
 use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
-use crate::gpu::{Device, KernelVariant};
+use crate::gpu::Device;
 use crate::plan::Plan;
 use crate::scene::{GAS_CONSTANT, Method};
 
@@ -47,17 +47,6 @@ pub struct Features {
     pub moving: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
-    /// Few particles, on a GPU: kernels that could be one are ([`merges`]).
-    pub merged: bool,
-}
-
-/// The most particles of a plan with merged kernels. Of the plan: runs of it have the same pipelines on any number of devices.
-pub const MOST_MERGED: u64 = 1 << 15;
-
-/// Whether kernels that could be one are (`shaders/shared/merged.wgsl`). A GPU takes some microseconds for any dispatch; a software device would have its
-/// threads wait for rare work.
-pub fn merges(plan: &Plan, variant: KernelVariant) -> bool {
-    variant == KernelVariant::Gpu && plan.particles <= MOST_MERGED
 }
 
 /// The most particle-steps of a run on a software device with [`RUNTIME_CONSTANTS`]: up to here they save more in compilation than they cost in steps
@@ -142,7 +131,6 @@ impl Features {
         self.collisions && !self.rounds
     }
 
-    /// On a device with many particles, or a software device.
     pub fn of(plan: &Plan, patches: Patches, divided: bool, among_others: bool) -> Features {
         Features {
             collisions: plan.method != Method::None,
@@ -157,7 +145,6 @@ impl Features {
             vents: patches.vents > 0,
             moving: patches.motions > 0,
             halo: among_others && plan.method != Method::None,
-            merged: false,
         }
     }
 
@@ -230,7 +217,6 @@ pub fn constants(
         ("SURFACE_MODELS", flag(features.surface_models)),
         ("VENTS", flag(features.vents)),
         ("HALO", flag(features.halo)),
-        ("MERGED", flag(features.merged)),
         ("SURFACE_MODELS_AT", surface_models_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),

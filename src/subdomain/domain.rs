@@ -5,7 +5,7 @@ use crate::plan::Plan;
 
 use super::buffers::TallyWords;
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, merges, runtime_constants_of, tally_loops};
+use super::constants::{Features, Patches, block_counts, constants, runtime_constants_of, tally_loops};
 use super::domain_buffers::DomainBuffers;
 use super::kernels::Compiled;
 use super::layout::GpuZone;
@@ -34,13 +34,11 @@ pub struct DomainInput<'a> {
 /// Which kernels a domain has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KernelChoice {
-    /// For what the scene has, and its number of particles.
+    /// For what the scene has.
     Fitting,
     /// The same with all numbers of the scene compiled in.
     Fixed,
-    /// As of many particles, also where these are few.
-    ForMany,
-    /// Of many, and for what the scene lacks too.
+    /// For what the scene lacks too.
     AllFeatures,
 }
 
@@ -75,10 +73,7 @@ impl Domain {
         let plan = input.plan;
         let needed = Features::of(plan, input.patches, input.cells.divided > 0, input.among_others);
         let features = match input.kernels {
-            KernelChoice::Fitting | KernelChoice::Fixed => {
-                Features { merged: merges(plan, device.variant()), ..needed }
-            }
-            KernelChoice::ForMany => needed,
+            KernelChoice::Fitting | KernelChoice::Fixed => needed,
             KernelChoice::AllFeatures => needed.with_all(),
         };
         let blocks = block_counts(plan).iter().map(|&n| n as usize).product();

@@ -6,13 +6,9 @@ use super::buffers::{RECORD, few_stretches};
 use super::counters;
 use super::device_gas::Subdomain;
 use super::dispatch::{all, threads};
-use super::kernels::Flights;
 use super::registry::{LIST_BOUNCE, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED, LISTS};
 use super::sizes::{CHUNK, CLEARED_CELLS, MEMBERS, STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
-
-/// The most cells that one workgroup scans, where kernels are merged.
-const FEW_CELLS: u64 = 1 << 16;
 
 impl Subdomain {
     /// Empties the lists of the step before (`shaders/reset.wgsl`).
@@ -44,9 +40,6 @@ impl Subdomain {
             let chunks = threads(device, self.bins() / CHUNK + 1);
             let offset = self.offset(device, step, 0);
             let pass = &mut rec.phase("scan");
-            if let Some(scan) = kernels.scan_merged.as_ref().filter(|_| self.bins() <= FEW_CELLS) {
-                return scan.dispatch(pass, offset, [1, 1, 1]);
-            }
             kernels.scan_sums.dispatch(pass, offset, chunks);
             if !few_stretches(self.bins()) {
                 kernels.scan_stretches.dispatch(pass, offset, [1, 1, 1]);
@@ -108,8 +101,7 @@ impl Subdomain {
         self.cells().all
     }
 
-    /// Kernels over lists are dispatched over the entries that these have, as on any device, also where it is a GPU and the lists are short. (Not so
-    /// where kernels are merged.)
+    /// Kernels over lists are dispatched over the entries that these have, as on any device, also where it is a GPU and the lists are short.
     pub fn dispatch_by_lengths(&mut self) {
         self.short_lists = 0;
     }
@@ -123,8 +115,7 @@ impl Subdomain {
         (arguments, item): (&wgpu::Buffer, u32),
         places: u64,
     ) {
-        // (A merged kernel may write what it would take its size from.)
-        if places <= self.short_lists || self.domain.features.merged {
+        if places <= self.short_lists {
             kernel.dispatch(pass, offset, threads(device, places));
         } else {
             kernel.dispatch_indirect(pass, offset, arguments, item);
@@ -156,14 +147,9 @@ impl Subdomain {
         let entering = u64::from(step.next.unwrap_or(0));
         let groups = threads(device, u64::from(step.total) + entering);
         let pass = &mut rec.phase("advect");
-        match &self.kernels.flights {
-            Flights::Merged(fly) => fly.dispatch(pass, offset, groups),
-            Flights::Split { advect, bounce } => {
-                advect.dispatch(pass, offset, groups);
-                let arguments = (&self.fixed.dispatches, LIST_BOUNCE);
-                self.over_list(bounce, (device, pass), offset, arguments, step.total.into());
-            }
-        }
+        self.kernels.advect.dispatch(pass, offset, groups);
+        let arguments = (&self.fixed.dispatches, LIST_BOUNCE);
+        self.over_list(&self.kernels.bounce, (device, pass), offset, arguments, step.total.into());
         if !self.place.is_alone() {
             self.count = step.total;
         }

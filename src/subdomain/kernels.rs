@@ -13,7 +13,8 @@ pub struct Kernels<K> {
     pub cells: Option<CellKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
     pub reset: K,
-    pub flights: Flights<K>,
+    pub advect: K,
+    pub bounce: K,
     pub tally: K,
     pub blocks: K,
 }
@@ -25,8 +26,6 @@ pub struct SortKernels<K> {
     pub scan_stretches: K,
     pub scan_cells: K,
     pub clear_cells: K,
-    /// In place of these three where few cells are scanned.
-    pub scan_merged: Option<K>,
 }
 
 /// Collisions of neighbours, in rounds.
@@ -42,22 +41,10 @@ pub struct CollisionKernels<K> {
     /// The same kernel, for the pass over the ghosts that were asked.
     pub choose_on_demand: K,
     pub match_pairs: K,
-    pub settle: Settle<K>,
+    pub settle: K,
     pub lost: K,
     /// On a device alone.
     pub recall: Option<K>,
-}
-
-/// To the end of the step.
-pub enum Flights<K> {
-    Merged(K),
-    Split { advect: K, bounce: K },
-}
-
-/// The collisions of a round: with the match of those that have chosen, or of the list that this has made.
-pub enum Settle<K> {
-    Merged(K),
-    Split(K),
 }
 
 /// Collisions within cells.
@@ -97,7 +84,6 @@ impl<K> Kernels<K> {
                 scan_stretches: make("scan_stretches")?,
                 scan_cells: make("scan_cells")?,
                 clear_cells: make("clear_cells")?,
-                scan_merged: if features.merged { Some(make("scan_merged")?) } else { None },
             })
         } else {
             None
@@ -124,11 +110,7 @@ impl<K> Kernels<K> {
                 choose: make("choose")?,
                 choose_on_demand: make("choose_on_demand")?,
                 match_pairs: make("match_pairs")?,
-                settle: if features.merged {
-                    Settle::Merged(make("settle_chosen")?)
-                } else {
-                    Settle::Split(make("settle")?)
-                },
+                settle: make("settle")?,
                 lost: make("lost")?,
                 recall: if features.halo { None } else { Some(make("recall")?) },
             })
@@ -160,11 +142,8 @@ impl<K> Kernels<K> {
             cells,
             exchange,
             reset: make("reset")?,
-            flights: if features.merged {
-                Flights::Merged(make("fly")?)
-            } else {
-                Flights::Split { advect: make("advect")?, bounce: make("bounce")? }
-            },
+            advect: make("advect")?,
+            bounce: make("bounce")?,
             tally: make("tally")?,
             blocks: make("blocks")?,
         })

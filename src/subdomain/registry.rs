@@ -142,7 +142,7 @@ registry! {
         ZONE_KINETIC = 8,
         ZONE_SPIN = 10,
         ZONE_WORDS = 12,
-        /// A surface (`shaders/shared/bounced.wgsl`): three components of the impulse, the normal impulse, hits.
+        /// A surface (`shaders/bounce.wgsl`): three components of the impulse, the normal impulse, hits.
         SURFACE_IMPULSE = 0,
         SURFACE_NORMAL = 6,
         SURFACE_HITS = 8,
@@ -310,7 +310,6 @@ pub const REUSED: &[&[Use]] = &[
         Use { names: &["incomplete"], runs: Runs::Rounds, from: "sort", to: "neighbours", idle: &["complete_lists"] },
         Use { names: &["pairs"], runs: Runs::Rounds, from: "settle", to: "lost", idle: &[] },
     ],
-    // Where kernels are merged it has room for two of these lists, one behind the other.
     &[
         Use { names: &["crowded"], runs: Runs::Cell, from: "sort", to: "sort", idle: &[] },
         Use { names: &["order_by_id"], runs: Runs::Cell, from: "collide", to: "collide", idle: &[] },

@@ -3,7 +3,7 @@
 use crate::gpu::{BoundKernel, Recording};
 
 use super::device_gas::Subdomain;
-use super::kernels::{CollisionKernels, Settle};
+use super::kernels::CollisionKernels;
 use super::registry::{LIST_ON_DEMAND, LIST_PAIRS, LIST_RECHOOSE};
 use super::step_slot::StepSlot;
 
@@ -17,15 +17,17 @@ impl Subdomain {
 
     pub fn settle(&self, rec: &mut Recording<'_>, step: &StepSlot, round: u32) {
         if let Some(kernels) = &self.kernels.collisions {
-            let settle = match &kernels.settle {
-                Settle::Merged(settle) => return self.choosing(settle, rec, "settle", step, round),
-                Settle::Split(settle) => settle,
-            };
             self.choosing(&kernels.match_pairs, rec, "settle", step, round);
             let offset = self.offset(rec.device(), step, round);
             let (device, places) = (rec.device(), self.places(u64::from(step.total / 2)));
             let pass = &mut rec.phase("settle");
-            self.over_list(settle, (device, pass), offset, (&self.fixed.dispatches, LIST_PAIRS + round), places);
+            self.over_list(
+                &kernels.settle,
+                (device, pass),
+                offset,
+                (&self.fixed.dispatches, LIST_PAIRS + round),
+                places,
+            );
         }
     }
 

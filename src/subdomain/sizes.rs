@@ -17,7 +17,7 @@ pub const FEW_STRETCHES: u64 = 64;
 
 /// Cells that a thread clears (`shaders/clear_cells.wgsl`).
 pub const CLEARED_CELLS: u64 = 16;
-/// Copies of the tallies of walls (`shaders/shared/bounced.wgsl`).
+/// Copies of the tallies of walls (`shaders/bounce.wgsl`).
 pub const SURFACE_COPIES: usize = 16;
 /// Entries of the table of moving walls, of which each step has `MOST_MOTIONS` (`shaders/shared/motions.wgsl`).
 pub const MOTION_ENTRIES: usize = 128;

@@ -5,7 +5,7 @@ use super::constants::Patches;
 use super::counters::{self, Counters};
 use super::registry::*;
 
-/// The tallies of the walls, of which there are copies (`shaders/shared/bounced.wgsl`). All are numbers of two words, but for the
+/// The tallies of the walls, of which there are copies (`shaders/bounce.wgsl`). All are numbers of two words, but for the
 /// counts of particles that left through vents, a word each: two of them add up like one number, since there are fewer than 2^32 particles.
 fn sum_of_copies(copies: &[u32], patches: Patches) -> Vec<u32> {
     let mut sums = vec![0; patches.words()];

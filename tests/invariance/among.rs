@@ -100,8 +100,6 @@ pub struct World<'a> {
     model: &'a Model,
     one: Vec<(Setup, Device)>,
     several: (Setup, Device),
-    /// On a GPU, which need not round alike in the kernels for many particles: one rank with these, and several.
-    many: Option<[(Setup, Device); 2]>,
 }
 
 /// The variants of kernels of one rank, in turn, and of several. What these are compared with has the variant that the device takes first. A software device rounds alike in
@@ -116,56 +114,15 @@ fn variants(adapter: &AdapterDescription) -> (Vec<KernelVariant>, KernelVariant)
 }
 
 impl<'a> World<'a> {
-    /// On a software device with the kernels for many particles, on a GPU with both.
     pub fn new(model: &'a Model) -> World<'a> {
-        World::by(
-            model,
-            |_| true,
-            |device, ranks| {
-                if device.adapter().is_cpu() {
-                    Setup::for_many(model, device, ranks)
-                } else {
-                    Setup::new(model, device, ranks, None)
-                }
-            },
-        )
-    }
-
-    /// With those that a GPU has for few particles, also on a software device, in the variant for GPUs alone. (Mesa's lavapipe of 22.3 does with all particles what is
-    /// for the few that meet walls there.)
-    pub fn of_few(model: &'a Model) -> World<'a> {
-        let world = World::by(
-            model,
-            |variant| variant == KernelVariant::Gpu,
-            |device, ranks| Setup::new(model, device, ranks, None),
-        );
-        let World { one, several, .. } = &world;
-        assert!(!one.is_empty() && one.iter().chain([several]).all(|(setup, _)| setup.domain.features().merged));
-        world
-    }
-
-    /// One rank has those of its variants that are `wanted`.
-    fn by(
-        model: &'a Model,
-        wanted: impl Fn(KernelVariant) -> bool,
-        setup: impl Fn(&Device, usize) -> Result<Setup, SimulationError>,
-    ) -> World<'a> {
         let first = Device::open(None).expect("an adapter");
         let (of_one, of_several) = variants(first.adapter());
         let made = |ranks, variant| {
             let device = Device::open_in(None, variant).expect("an adapter");
-            (setup(&device, ranks).expect("a set-up"), device)
+            (Setup::new(model, &device, ranks, None).expect("a set-up"), device)
         };
-        let for_many = |ranks| {
-            let device = Device::open_in(None, of_several).expect("an adapter");
-            (Setup::for_many(model, &device, ranks).expect("a set-up"), device)
-        };
-        World {
-            model,
-            one: of_one.into_iter().filter(|&variant| wanted(variant)).map(|variant| made(1, variant)).collect(),
-            several: made(2, of_several),
-            many: (!first.adapter().is_cpu()).then(|| [for_many(1), for_many(2)]),
-        }
+        let one = of_one.into_iter().map(|variant| made(1, variant)).collect();
+        World { model, one, several: made(2, of_several) }
     }
 
     /// What rank 0 sees; all ranks must see the same rows and counts.
@@ -176,11 +133,6 @@ impl<'a> World<'a> {
 
     pub fn try_run(&self, way: &Way, wrap: Option<&Wrap>) -> Result<Run, String> {
         if way.ranks > 1 {
-            if let Some([one, several]) = self.many.as_ref().filter(|_| way.ranks.is_multiple_of(2)) {
-                let runs =
-                    [self.try_run_on(one, &Way { ranks: 1, ..*way }, wrap)?, self.try_run_on(several, way, wrap)?];
-                assert_same("kernels for many", &Bits::of(&runs[0]), &Bits::of(&runs[1]));
-            }
             return self.try_run_on(&self.several, way, wrap);
         }
         let mut runs = Vec::new();

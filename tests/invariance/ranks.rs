@@ -1,6 +1,5 @@
 //! Among ranks.
 
-use corpuscle::gpu::KernelVariant;
 use corpuscle::partition::By;
 use corpuscle::ranks::Pace;
 use corpuscle::scene::Method;
@@ -15,7 +14,7 @@ use crate::scenes::{
     burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, switching, tank, thin, tube,
     venting, venting_freely,
 };
-use crate::whole_run::{Run, device, run};
+use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
 fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
@@ -68,10 +67,6 @@ fn all_ways() -> Vec<Way> {
     ways
 }
 
-fn variants_of_the_device() -> Vec<KernelVariant> {
-    device().adapter().variants()
-}
-
 fn rebalanced(run: &Run) -> usize {
     run.outcome.rebalances
 }
@@ -89,30 +84,6 @@ fn tank_has_the_same_bits_on_any_number_of_ranks() {
     assert!(coarsest > 1.5 * finest, "the step does not change");
     assert!(rebalanced(&runs[2]) > 1, "the cuts do not move");
     assert!(runs[0].outcome.collisions > 1000);
-}
-
-/// By the kernels that a GPU has for few particles.
-fn same_by_merged_kernels(models: &[Model]) {
-    if !variants_of_the_device().contains(&KernelVariant::Gpu) {
-        return;
-    }
-    // Two intervals.
-    let stop = Some(64);
-    for model in models {
-        let alone = Bits::of(&run(model, Options { stop_after_steps: stop, ..Options::default() }));
-        let world = World::of_few(model);
-        let depth = if model.plan.method == Method::Cell { 1 } else { 2 };
-        let asked = Way { batch: Some(1), ghosts: Some(Ghosts::OnDemand), ..Way::new(3, Forced { seed: 1 }, depth) };
-        for way in [Way::new(1, Dynamic, depth), asked] {
-            assert_same(&way.name(), &alone, &Bits::of(&world.run(&Way { stop, ..way })));
-        }
-    }
-}
-
-/// With inflow, at vents and warm walls, in a burst and in cells.
-#[test]
-fn few_particles_on_a_gpu_have_the_same_bits_on_any_number_of_ranks() {
-    same_by_merged_kernels(&[venting(), burst(), by(Method::Cell, gas_box())]);
 }
 
 /// Where walls are is a function of the time alone.

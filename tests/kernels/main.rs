@@ -20,7 +20,6 @@ mod halo;
 mod lists;
 mod local;
 mod match_pairs;
-mod merged;
 mod moved;
 mod neighbour_lists;
 mod neighbours;
@@ -61,7 +60,6 @@ fn every_kernel_has_its_test() {
         "complete_lists",
         "fill_outbox",
         "fill_updates",
-        "fly",
         "lost",
         "match_pairs",
         "message_starts",
@@ -74,11 +72,9 @@ fn every_kernel_has_its_test() {
         "receive",
         "reset",
         "scan_cells",
-        "scan_merged",
         "scan_stretches",
         "scan_sums",
         "settle",
-        "settle_chosen",
         "start_flights",
         "tally",
         "weigh",

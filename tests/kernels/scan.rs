@@ -65,29 +65,6 @@ fn scan_sums_adds_each_chunk_and_each_stretch() {
     }
 }
 
-/// All in one: starts in place of the counts, and PRESENT.
-#[test]
-fn scan_merged_does_all_of_the_scan() {
-    let mut stream = Stream::new(8);
-    for (variant, cells) in variants().into_iter().flat_map(|variant| CELLS.map(|cells| (variant, cells))) {
-        let mut rig = rig(cells);
-        rig.variant = variant;
-        let mut counts = counts(&mut stream, cells);
-        counts[cells - 1] = 3;
-        let all = with_end(&counts);
-        rig.put("cell_start", &[&all[..], &[9; 4]].concat());
-        rig.run_groups("scan_merged", [1, 1, 1]);
-        let starts = prefix(&counts);
-        let found: Vec<u32> = rig.get("cell_start", all.len() + 4);
-        assert_eq!(found[..=cells], starts, "{variant:?} {cells}");
-        assert!(found[cells..all.len()].iter().all(|&start| start == starts[cells]));
-        assert_eq!(found[all.len()..], [9; 4], "nothing behind them");
-        assert_eq!(rig.step_state(PRESENT), starts[cells]);
-        // The check can fail: the last count matters.
-        assert_ne!(starts[cells], starts[cells - 1]);
-    }
-}
-
 #[test]
 fn scan_stretches_is_an_exclusive_prefix_sum() {
     let mut stream = Stream::new(5);

@@ -33,8 +33,8 @@ pub struct Options<'a> {
     /// Neighbour lists begin with room for thin gas, whatever the density, which grows on the way, on a device alone by no more than it must: for
     /// tests of that.
     pub lists_start_short: bool,
-    /// On a GPU, too, kernels over short lists are dispatched by the lengths of these, as those over long ones, unless kernels are
-    /// merged: for tests of that.
+    /// On a GPU, too, kernels over short lists are dispatched by the lengths of these, as those over long ones: for
+    /// tests of that.
     pub dispatch_by_lengths: bool,
     /// What is not given of it is tried out.
     pub halo: HaloOptions,

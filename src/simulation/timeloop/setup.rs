@@ -70,14 +70,6 @@ impl Setup {
         Setup::build(model, device, 1, InitialParticles::Sampled(Initial::default()), KernelChoice::AllFeatures)
     }
 
-    /// With the kernels of many particles also where these are few: for tests of those.
-    ///
-    /// # Errors
-    /// As [`Setup::new`].
-    pub fn for_many(model: &Model, device: &Device, ranks: usize) -> Result<Setup, SimulationError> {
-        Setup::build(model, device, ranks, InitialParticles::Sampled(Initial::default()), KernelChoice::ForMany)
-    }
-
     /// For a run that goes on: all particles of that moment instead of the initial ones.
     ///
     /// # Errors

@@ -26,14 +26,13 @@ use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count, and
 /// `arrange_crowded` where it has all of the crowded cells.
-const COUNTED: [&str; 22] = [
+const COUNTED: [&str; 21] = [
     "bin",
     "arrange",
     "arrange_crowded",
     "scan_sums",
     "scan_stretches",
     "scan_cells",
-    "scan_merged",
     "order",
     "start_flights",
     "neighbours",
@@ -115,10 +114,6 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
     Some(match phase {
-        "scan" if work.merged => {
-            let turn = |name| counted.turn("scan_merged", name);
-            turn("counted")? * (cells / 32.0) + turn("started")? * (cells / 16.0)
-        }
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
             let filled = work.chunks * CHUNK as f64 / 4.0;
@@ -262,11 +257,6 @@ mod tests {
                 assert!(own.all() > 0.0 && own.floating >= 0.0, "{method:?} {phase}: {own:?}");
             }
             assert_eq!(operations("exchange", method, &work, &counted), None);
-            // One kernel adds each count up once, where several come back to sums.
-            let full = Work { cell_steps: 64.0, chunks: 1.0, ..work };
-            let scan = |work: &Work| operations("scan", method, work, &counted).unwrap().all();
-            let merged = scan(&Work { merged: true, ..full });
-            assert!(merged > 0.0 && merged < scan(&full), "{method:?}: {merged}");
         }
     }
 

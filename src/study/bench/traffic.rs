@@ -33,10 +33,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let entered = work.newborns * NEWBORN;
     Some(match phase {
         // Counts in, and the starts out in their place; sums of stretches of cells out.
-        "scan" => {
-            let sums = if work.merged { 0.0 } else { 1.0 / CHUNK as f64 };
-            cells * (2.0 + sums) * WORD
-        }
+        "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,
         // State, cell and place in it, and where the cell starts in; state out; of the method `cell` the slots of crowded cells, and
         // where threads put these in order their entries.
         "sort" => {
@@ -62,8 +59,8 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
         "choose" => work.choosers * choice,
         // Of all that have chosen; pairs out; of those that collide states and flights in and out, layers, and lengths and entries of lists in.
         "settle" => {
-            let pairs = if work.merged { 0.0 } else { 2.0 * WORD };
-            work.choosers * matched + collisions * (pairs + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD)
+            let collided = 2.0 * WORD + 4.0 * (PARTICLE + FLIGHT) + 2.0 * (2.0 + entries) * WORD;
+            work.choosers * matched + collisions * collided
         }
         "lost" => work.lost_choosers * (choice + matched),
         // Where the cells start; of cells with two or more their volume and their states in; those that collide out; of crowded ones
@@ -161,10 +158,8 @@ mod tests {
         );
         let collided = Work { particle_steps: 1.0, collisions: 1.0, ..Work::default() };
         assert_eq!(bytes("settle", rounds, &collided), Some(8.0 + 192.0 + 16.0));
-        assert_eq!(bytes("settle", rounds, &Work { merged: true, ..collided }), Some(192.0 + 16.0));
         let scanned = Work { cell_steps: 64.0, ..Work::default() };
-        let merged = Work { merged: true, ..scanned };
-        assert_eq!([&scanned, &merged].map(|work| bytes("scan", rounds, work)), [516.0, 512.0].map(Some));
+        assert_eq!(bytes("scan", rounds, &scanned), Some(516.0));
         let crowded = Work { crowded: 1.0, ..Work::default() };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
         assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));

@@ -3,7 +3,7 @@
 use crate::geometry::Grid;
 use crate::gpu::KernelVariant;
 use crate::simulation::{Done, Model, Outcome};
-use crate::subdomain::{GpuParticle, MEMBERS, few_stretches, merges};
+use crate::subdomain::{GpuParticle, MEMBERS, few_stretches};
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -28,8 +28,6 @@ pub struct Work {
     /// Particles in cells of more; whether a thread for each puts them in order (`shaders/shared/crowds.gpu.wgsl`).
     pub crowded: f64,
     pub by_threads: bool,
-    /// Pairs collide where they are matched, and few cells are scanned in one (`shaders/shared/merged.wgsl`).
-    pub merged: bool,
     /// Entries of the neighbour lists, and particles that have any.
     pub candidates: f64,
     pub listed: f64,
@@ -83,7 +81,6 @@ impl Work {
             few: few * steps,
             crowded: crowded * steps,
             by_threads: variant == KernelVariant::Gpu,
-            merged: merges(plan, variant),
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
             listed: lists[1] * particle_steps,
