@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::output::{
     Checkpoint, CheckpointWriter, Claim, Content, HistoryWriter, Manifest, Moment, Origin, OutputFolder, OutputState,
-    PLAN_FILE, SCENE_FILE, SnapshotWriter, grouped, latest,
+    PLAN_FILE, RunContext, SCENE_FILE, SnapshotWriter, grouped, latest,
 };
 use crate::scene::{parse, to_toml};
 use crate::simulation::{Model, RefineReport, Refined, RunState, particles_of, refine as split};
@@ -99,7 +99,8 @@ fn write(refined: &Refined, parent: &Checkpoint, folder: &OutputFolder) -> Resul
     let file = writer.particles(0, bytemuck::cast_slice(particles))?;
     let count = particles.len() as u64;
     let moment = Moment { step: 0, time: report.time, particles: count, ids: count };
-    Ok(writer.commit(vec![file], &moment, &origin, state, &OutputState { history, snapshots })?)
+    let output = &OutputState { history, snapshots };
+    Ok(writer.commit(vec![file], &moment, RunContext { origin: &origin, state, output })?)
 }
 
 fn summary(report: &RefineReport, times: u64) -> String {

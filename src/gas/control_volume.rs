@@ -129,6 +129,14 @@ pub struct Vented {
     pub isentropic: f64,
 }
 
+/// A stretch of time without kinks, s.
+struct SmoothSpan {
+    start: f64,
+    end: f64,
+    /// Of each source, whether it flows in it.
+    flowing: Vec<bool>,
+}
+
 impl ControlVolume {
     /// The chambers at each of `times` (s, from 0, in order), starting from `initial` (one per chamber) at
     /// time 0. Outer index: time.
@@ -164,7 +172,7 @@ impl ControlVolume {
         let mut states = Vec::with_capacity(times.len());
         for &time in times {
             while let Some(end) = kinks.next_if(|&kink| kink <= time) {
-                self.advance(&mut contents, now, end, &mut step, &mut open);
+                self.advance(&mut contents, [now, end], &mut step, &mut open);
                 now = end;
             }
             let chambers = (0..self.volumes.len()).map(|chamber| self.state(&contents, chamber, time)).collect();
@@ -222,19 +230,16 @@ impl ControlVolume {
 
     /// Integrates over a stretch without kinks; `step` is the step to try, kept from stretch to stretch.
     /// A vent opens between two steps, of which the one before is so short that it is at most [`LEAST_STEP`] of the stretch late.
-    fn advance(&self, contents: &mut Vec<f64>, start: f64, end: f64, step: &mut f64, open: &mut [bool]) {
-        let flowing: Vec<bool> = self
-            .sources
-            .iter()
-            .map(|source| value_inside(&source.orifice.mass_flow, 0.5 * (start + end)) > 0.0)
-            .collect();
+    fn advance(&self, contents: &mut Vec<f64>, [start, end]: [f64; 2], step: &mut f64, open: &mut [bool]) {
+        let flows = |source: &Source| value_inside(&source.orifice.mass_flow, 0.5 * (start + end)) > 0.0;
+        let span = SmoothSpan { start, end, flowing: self.sources.iter().map(flows).collect() };
         let least = LEAST_STEP * (end - start);
         let mut now = start;
         while now < end {
             let last = *step >= end - now;
             let tried = if last { end - now } else { *step };
             self.open_vents(now, contents, open);
-            let rate = |time: f64, y: &[f64]| self.rate(time, y, &flowing, open, [start, end]);
+            let rate = |time: f64, y: &[f64]| self.rate(time, y, open, &span);
             let whole = runge_kutta(contents, now, tried, &rate);
             let half = runge_kutta(contents, now, 0.5 * tried, &rate);
             let halves = runge_kutta(&half, now + 0.5 * tried, 0.5 * tried, &rate);
@@ -285,10 +290,11 @@ impl ControlVolume {
     }
 
     /// Time derivative of the unknowns.
-    fn rate(&self, time: f64, contents: &[f64], flowing: &[bool], open: &[bool], stretch: [f64; 2]) -> Vec<f64> {
+    fn rate(&self, time: f64, contents: &[f64], open: &[bool], span: &SmoothSpan) -> Vec<f64> {
         let stride = self.stride();
         let mut rate = vec![0.0; contents.len()];
-        for (Source { chamber, orifice }, _) in self.sources.iter().zip(flowing).filter(|(_, flowing)| **flowing) {
+        for (Source { chamber, orifice }, _) in self.sources.iter().zip(&span.flowing).filter(|(_, flowing)| **flowing)
+        {
             let moles = value_held(&orifice.mass_flow, time) / thermo::molar_mass(&orifice.mixture, &self.gases);
             let temperature = value_held(&orifice.temperature, time);
             for &(gas, fraction) in &orifice.mixture.0 {
@@ -310,7 +316,7 @@ impl ControlVolume {
         }
         self.lose(time, contents, open, &mut rate);
         // Where the velocity of a wall jumps a stretch ends: at its end it is that before the jump.
-        let [start, end] = stretch;
+        let SmoothSpan { start, end, .. } = *span;
         let within = time.min(end - 1e-9 * (end - start));
         for chamber in 0..self.volumes.len() {
             let growth: f64 = self.swept.iter().map(|swept| swept.rate(chamber, within)).sum();

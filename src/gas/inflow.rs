@@ -63,6 +63,16 @@ pub struct Inflow {
     enthalpy: f64,
 }
 
+/// What the gas that flows in is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct InflowParticles<'a> {
+    pub gases: &'a [Species],
+    pub moles_per_particle: f64,
+    pub seed: u64,
+    /// Of the first to enter.
+    pub first_id: u32,
+}
+
 /// What has entered so far, beside what the scene says: with it a new inflow of the same scene goes on to the bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InflowState {
@@ -111,17 +121,10 @@ pub struct Unrepresented {
 }
 
 impl Inflow {
-    /// The inflow of a run from time 0 to `end_time` (s) as particles of `moles_per_particle` with ids from
-    /// `first_id`. Flows must not be negative; `first_id` + [`total`](Self::total) must fit 32 bits (held by
-    /// `scene::load` and by the plan).
-    pub fn new(
-        orifices: &[Orifice],
-        gases: &[Species],
-        moles_per_particle: f64,
-        seed: u64,
-        first_id: u32,
-        end_time: f64,
-    ) -> Self {
+    /// The inflow of a run from time 0 to `end_time` (s). Flows must not be negative; `first_id` +
+    /// [`total`](Self::total) must fit 32 bits (held by `scene::load` and by the plan).
+    pub fn new(orifices: &[Orifice], end_time: f64, particles: InflowParticles<'_>) -> Self {
+        let InflowParticles { gases, moles_per_particle, seed, first_id } = particles;
         let mut streams = Vec::new();
         let mut sources = Vec::new();
         for (source, orifice) in orifices.iter().enumerate() {
@@ -304,7 +307,10 @@ impl Inflow {
         let position = source.point_on_disc(&mut draws);
         let (local, static_temperature) = match source.orifice.jet {
             None => (effusing_velocity(temperature, species, &mut draws), temperature),
-            Some(jet) => source.jet_velocity(jet, temperature, species, &self.gases, &mut draws),
+            Some(jet) => {
+                let flow = JetFlow::of(jet, temperature, &source.orifice.mixture, &self.gases);
+                (flow.velocity(species, &mut draws), flow.temperature)
+            }
         };
         let thermal_energy = self.moles_per_particle * GAS_CONSTANT * static_temperature;
         let mut spin_energy = species.draw_spin(thermal_energy, static_temperature, &mut draws);
@@ -377,38 +383,45 @@ fn temperature_at_mach(stagnation: f64, mach: f64, mixture: &Mixture, gases: &[S
     thermo::root(excess, slope, stagnation)
 }
 
+/// A jet at a moment.
+struct JetFlow {
+    /// m/s.
+    drift: f64,
+    /// Static, K.
+    temperature: f64,
+    cone_angle: f64,
+}
+
+impl JetFlow {
+    fn of(jet: Jet, stagnation: f64, mixture: &Mixture, gases: &[Species]) -> JetFlow {
+        // The plan has refused a jet that is too fast at some time.
+        let [drift, temperature] = jet_state(jet.speed, stagnation, mixture, gases).unwrap_or([0.0, stagnation]);
+        JetFlow { drift, temperature, cone_angle: jet.cone_angle }
+    }
+
+    /// Of a particle, in the orifice's axes, m/s.
+    fn velocity(&self, gas: &Species, draws: &mut Draws) -> [f64; 3] {
+        let &JetFlow { drift, temperature, cone_angle } = self;
+        let cosine = 1.0 - draws.uniform() * (1.0 - libm::cos(cone_angle));
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let around = 2.0 * std::f64::consts::PI * draws.uniform();
+        let c0 = (GAS_CONSTANT * temperature / gas.molar_mass).sqrt();
+        // A cone wider than a half space would drift into the wall: such directions graze instead.
+        let normal = c0 * draws.drifting_flux_speed((drift * cosine / c0).max(0.0));
+        [
+            normal,
+            drift * sine * libm::cos(around) + c0 * draws.normal(),
+            drift * sine * libm::sin(around) + c0 * draws.normal(),
+        ]
+    }
+}
+
 impl Source {
     fn point_on_disc(&self, draws: &mut Draws) -> [f64; 3] {
         let radius = (self.orifice.area / std::f64::consts::PI * draws.uniform()).sqrt();
         let angle = 2.0 * std::f64::consts::PI * draws.uniform();
         let offset = self.to_global([0.0, radius * libm::cos(angle), radius * libm::sin(angle)]);
         std::array::from_fn(|axis| self.orifice.position[axis] + offset[axis])
-    }
-
-    /// Velocity in the orifice's axes, m/s, and the jet's static temperature, K.
-    fn jet_velocity(
-        &self,
-        jet: Jet,
-        stagnation: f64,
-        gas: &Species,
-        gases: &[Species],
-        draws: &mut Draws,
-    ) -> ([f64; 3], f64) {
-        // The plan has refused a jet that is too fast at some time.
-        let [drift, temperature] =
-            jet_state(jet.speed, stagnation, &self.orifice.mixture, gases).unwrap_or([0.0, stagnation]);
-        let cosine = 1.0 - draws.uniform() * (1.0 - libm::cos(jet.cone_angle));
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        let around = 2.0 * std::f64::consts::PI * draws.uniform();
-        let c0 = (GAS_CONSTANT * temperature / gas.molar_mass).sqrt();
-        // A cone wider than a half space would drift into the wall: such directions graze instead.
-        let normal = c0 * draws.drifting_flux_speed((drift * cosine / c0).max(0.0));
-        let velocity = [
-            normal,
-            drift * sine * libm::cos(around) + c0 * draws.normal(),
-            drift * sine * libm::sin(around) + c0 * draws.normal(),
-        ];
-        (velocity, temperature)
     }
 
     fn to_global(&self, local: [f64; 3]) -> [f64; 3] {

@@ -30,7 +30,7 @@ pub use discharge::{
     BETWEEN, COEFFICIENT_LIMITS, CONTINUUM_COEFFICIENT, Side, coefficient_into_vacuum, continuum_by_excess,
     continuum_coefficient, exchange, isentropic, published, specified,
 };
-pub use inflow::{Inflow, InflowState, InflowStateError, Newborn, Unrepresented, jet_mach, jet_state};
+pub use inflow::{Inflow, InflowParticles, InflowState, InflowStateError, Newborn, Unrepresented, jet_mach, jet_state};
 pub use initial::{Correction, FillError, Filling, InitialGas};
 pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;

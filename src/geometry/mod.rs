@@ -42,7 +42,7 @@ pub use gaps::{Narrowest, Passage};
 pub use grid::{Grid, GridError};
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};
-pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, TriangleGrid};
+pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, MovingWalls, TriangleGrid};
 pub use vessel::{Overlaps, Triangle, Vessel, WallInfo};
 pub use wall_mesh::{FoundHole, Mended};
 

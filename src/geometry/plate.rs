@@ -66,6 +66,15 @@ pub(super) fn outlines(holes: &[Hole], subject: &str) -> Result<Vec<HoleOutline>
     holes.iter().map(outline).collect()
 }
 
+/// The holes of a wall.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WallHoles<'a> {
+    pub outlines: &'a [HoleOutline],
+    /// The wall's index, and its name in errors.
+    pub wall: u32,
+    pub subject: &'a str,
+}
+
 /// Right-handed axes of a sheet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
@@ -99,32 +108,32 @@ impl Frame {
 /// Two rectangles over one another, from the level of `lower` to that of `upper` along the frame's normal.
 pub(super) struct Plate {
     pub frame: Frame,
-    /// Level, m, and the vertices of the rectangle, counter-clockwise seen from above.
-    pub lower: (f64, [u32; 4]),
-    pub upper: (f64, [u32; 4]),
-    pub lower_face: Option<Face>,
-    pub upper_face: Option<Face>,
+    pub lower: Sheet,
+    pub upper: Sheet,
     /// Of the walls of the holes.
     pub side_face: Option<Face>,
 }
 
+/// One of its two sides.
+pub(super) struct Sheet {
+    /// m.
+    pub level: f64,
+    /// The vertices of the rectangle, counter-clockwise seen from above.
+    pub corners: [u32; 4],
+    pub face: Option<Face>,
+}
+
 impl Plate {
     /// Adds the lower sheet (normal downwards), the upper one and the walls of the holes.
-    pub fn add_to(
-        &self,
-        mesh: &mut WallMesh,
-        holes: &[HoleOutline],
-        wall: u32,
-        subject: &str,
-    ) -> Result<(), GeometryError> {
+    pub fn add_to(&self, mesh: &mut WallMesh, holes: WallHoles<'_>) -> Result<(), GeometryError> {
+        let WallHoles { outlines, wall, subject } = holes;
         // The lower rectangle is the smaller one where they differ: a hole must end in the cavity.
-        let rectangle = self.lower.1.map(|k| self.frame.plane(mesh.vertices[k as usize]));
-        check_apart(&rectangle, holes, subject)?;
-        let rings: Vec<Vec<DVec2>> = holes.iter().map(|h| h.points.clone()).collect();
-        let low = self.sheet(mesh, self.lower, &rings, self.lower_face, true, subject)?;
-        let high = self.sheet(mesh, self.upper, &rings, self.upper_face, false, subject)?;
+        let rectangle = self.lower.corners.map(|k| self.frame.plane(mesh.vertices[k as usize]));
+        check_apart(&rectangle, outlines, subject)?;
+        let low = self.sheet(mesh, &self.lower, holes, true)?;
+        let high = self.sheet(mesh, &self.upper, holes, false)?;
         let mut first = 0;
-        for hole in holes {
+        for hole in outlines {
             let n = hole.points.len();
             for i in 0..n {
                 let (a, b) = (first + i, first + (i + 1) % n);
@@ -134,9 +143,9 @@ impl Plate {
             mesh.holes.push(FoundHole {
                 name: hole.name.clone(),
                 wall,
-                center: self.frame.point(hole.center, (self.lower.0 + self.upper.0) / 2.0).to_array(),
+                center: self.frame.point(hole.center, (self.lower.level + self.upper.level) / 2.0).to_array(),
                 normal: self.frame.n.to_array(),
-                thickness: self.upper.0 - self.lower.0,
+                thickness: self.upper.level - self.lower.level,
                 area: area(&hole.points),
                 perimeter: perimeter(&hole.points),
             });
@@ -148,15 +157,15 @@ impl Plate {
     fn sheet(
         &self,
         mesh: &mut WallMesh,
-        (level, corners): (f64, [u32; 4]),
-        rings: &[Vec<DVec2>],
-        face: Option<Face>,
+        sheet: &Sheet,
+        holes: WallHoles<'_>,
         downwards: bool,
-        subject: &str,
     ) -> Result<Vec<u32>, GeometryError> {
+        let &Sheet { level, corners, face } = sheet;
+        let rings: Vec<Vec<DVec2>> = holes.outlines.iter().map(|hole| hole.points.clone()).collect();
         let rectangle = corners.map(|k| self.frame.plane(mesh.vertices[k as usize]));
-        let triangles = triangulate(&rectangle, rings).ok_or_else(|| GeometryError::Shape {
-            wall: subject.into(),
+        let triangles = triangulate(&rectangle, &rings).ok_or_else(|| GeometryError::Shape {
+            wall: holes.subject.into(),
             what: "the holes of a face lie too close together".into(),
         })?;
         let rim: Vec<u32> = rings.iter().flatten().map(|p| mesh.vertex(self.frame.point(*p, level))).collect();

@@ -5,7 +5,7 @@
 //! polygon of a hole the area of its circle.
 
 use super::GeometryError;
-use super::plate::{Frame, HoleOutline, Plate, outlines};
+use super::plate::{Frame, HoleOutline, Plate, Sheet, WallHoles, outlines};
 use super::round::{cylinder, sphere};
 use super::wall_mesh::WallMesh;
 use crate::scene::{Face, Shape};
@@ -37,7 +37,7 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
                 Some(thickness) => {
                     positive("thickness", *thickness)?;
                     let cut = outlines(holes, subject)?;
-                    hollow_box(*min, *max, *thickness, &cut, wall, subject)
+                    hollow_box([*min, *max], *thickness, WallHoles { outlines: &cut, wall, subject })
                 }
             }
         }
@@ -70,7 +70,7 @@ pub(super) fn mesh_of(shape: &Shape, wall: u32, subject: &str) -> Result<WallMes
             let frame = Frame::new(DVec3::from(*center), DVec3::from(*normal), DVec3::from(*u)).ok_or_else(|| {
                 GeometryError::Shape { wall: subject.into(), what: "u must not be along the normal".into() }
             })?;
-            plate(frame, *size, *thickness, &cut, wall, subject)
+            plate(frame, *size, *thickness, WallHoles { outlines: &cut, wall, subject })
         }
         Shape::Mesh { path, scale, parts } => {
             positive("scale", *scale)?;
@@ -114,14 +114,7 @@ fn plain_box(min: [f64; 3], max: [f64; 3]) -> WallMesh {
 
 /// The shell around the cavity `min`..`max`. The faces of the box are those of the cavity: a surface of a box
 /// measures what the gas in the cavity does to it.
-fn hollow_box(
-    min: [f64; 3],
-    max: [f64; 3],
-    thickness: f64,
-    holes: &[HoleOutline],
-    wall: u32,
-    subject: &str,
-) -> Result<WallMesh, GeometryError> {
+fn hollow_box([min, max]: [[f64; 3]; 2], thickness: f64, holes: WallHoles<'_>) -> Result<WallMesh, GeometryError> {
     let mut mesh = WallMesh::default();
     let cavity = box_corners(&mut mesh, min, max);
     let outside = box_corners(&mut mesh, min.map(|x| x - thickness), max.map(|x| x + thickness));
@@ -134,38 +127,34 @@ fn hollow_box(
                 Frame { origin: DVec3::ZERO, u: DVec3::AXES[u], v: DVec3::AXES[v], n: DVec3::AXES[axis] * sign };
             let level = sign * if positive { max[axis] } else { min[axis] };
             // A hole's two axes are in x, y, z order, the frame's may be the other way round.
-            let holes: Vec<HoleOutline> = holes
+            let outlines: Vec<HoleOutline> = holes
+                .outlines
                 .iter()
                 .filter(|h| h.face == face)
                 .map(|h| if u < v { h.clone() } else { h.transposed() })
                 .collect();
             Plate {
                 frame,
-                lower: (level, corners.map(|k| cavity[k])),
-                upper: (level + thickness, corners.map(|k| outside[k])),
-                lower_face: Some(face),
-                upper_face: Some(Face::Outside),
+                lower: Sheet { level, corners: corners.map(|k| cavity[k]), face: Some(face) },
+                upper: Sheet {
+                    level: level + thickness,
+                    corners: corners.map(|k| outside[k]),
+                    face: Some(Face::Outside),
+                },
                 side_face: None,
             }
-            .add_to(&mut mesh, &holes, wall, subject)?;
+            .add_to(&mut mesh, WallHoles { outlines: &outlines, ..holes })?;
         }
     }
-    match holes.iter().find(|h| !matches!(h.face, Face::Box { axis, .. } if axis < 3)) {
-        Some(hole) => Err(hole.misplaced(subject, "names no face of a box")),
+    match holes.outlines.iter().find(|h| !matches!(h.face, Face::Box { axis, .. } if axis < 3)) {
+        Some(hole) => Err(hole.misplaced(holes.subject, "names no face of a box")),
         None => Ok(mesh),
     }
 }
 
-fn plate(
-    frame: Frame,
-    size: [f64; 2],
-    thickness: f64,
-    holes: &[HoleOutline],
-    wall: u32,
-    subject: &str,
-) -> Result<WallMesh, GeometryError> {
-    if let Some(hole) = holes.iter().find(|h| h.face != Face::Plane) {
-        return Err(hole.misplaced(subject, "names a face of a box, but the wall is a plane"));
+fn plate(frame: Frame, size: [f64; 2], thickness: f64, holes: WallHoles<'_>) -> Result<WallMesh, GeometryError> {
+    if let Some(hole) = holes.outlines.iter().find(|h| h.face != Face::Plane) {
+        return Err(hole.misplaced(holes.subject, "names a face of a box, but the wall is a plane"));
     }
     let mut mesh = WallMesh::default();
     let mut level = |h: f64| {
@@ -179,12 +168,10 @@ fn plate(
     }
     Plate {
         frame,
-        lower: (-0.5 * thickness, low),
-        upper: (0.5 * thickness, high),
-        lower_face: Some(Face::Back),
-        upper_face: Some(Face::Front),
+        lower: Sheet { level: -0.5 * thickness, corners: low, face: Some(Face::Back) },
+        upper: Sheet { level: 0.5 * thickness, corners: high, face: Some(Face::Front) },
         side_face: Some(Face::Rim),
     }
-    .add_to(&mut mesh, holes, wall, subject)?;
+    .add_to(&mut mesh, holes)?;
     Ok(mesh)
 }

@@ -130,7 +130,7 @@ impl Vessel {
             let [u, v] = r2(i);
             let (y, z) = (min[0] + u * size[0], min[1] + v * size[1]);
             match interval(&clipped, y, z) {
-                Some(part) => [self.gas_length(y, z, part, others, line), part.1 - part.0],
+                Some(part) => [self.gas_length([y, z], part, others, line), part.1 - part.0],
                 None => [0.0; 2],
             }
         });
@@ -141,7 +141,7 @@ impl Vessel {
     }
 
     /// Length of gas along a line within `part`, outside `others`.
-    fn gas_length(&self, y: f64, z: f64, part: (f64, f64), others: &[&Region], line: &mut Line) -> f64 {
+    fn gas_length(&self, [y, z]: [f64; 2], part: (f64, f64), others: &[&Region], line: &mut Line) -> f64 {
         self.gas_along(y, z, line);
         let Line { gas, spare, .. } = line;
         for other in others {

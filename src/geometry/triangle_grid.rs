@@ -145,28 +145,36 @@ impl Body {
     }
 }
 
+/// The walls of a vessel that move.
+pub struct MovingWalls<'a> {
+    /// The vessel without them.
+    pub still: &'a Vessel,
+    pub count: usize,
+    /// The number of a wall among them.
+    pub number: &'a dyn Fn(usize) -> Option<usize>,
+}
+
 impl TriangleGrid {
     /// `margin` (m) grows every cell. Fails where a triangle lies outside the grid or loses its area to rounding.
     pub fn build(vessel: &Vessel, grid: &Grid, margin: f64) -> Result<TriangleGrid, GeometryError> {
-        TriangleGrid::build_still(vessel, vessel, grid, margin, 0, |_| None)
+        let none = MovingWalls { still: vessel, count: 0, number: &|_| None };
+        TriangleGrid::build_still(vessel, grid, margin, &none)
     }
 
-    /// The same for a vessel with walls that move (how many, and the number of a wall among them): each of these is a body
-    /// of its own, and cells have the class that they have in the vessel `still` without them.
+    /// The same for a vessel with walls that move: each of these is a body of its own, and cells have the class that
+    /// they have without them.
     pub fn build_still(
         vessel: &Vessel,
-        still: &Vessel,
         grid: &Grid,
         margin: f64,
-        bodies: usize,
-        body: impl Fn(usize) -> Option<usize>,
+        moving: &MovingWalls<'_>,
     ) -> Result<TriangleGrid, GeometryError> {
         let triangles = (0..vessel.triangles.len())
             .map(|source| fix(vessel, grid, source))
             .collect::<Result<Vec<FixedTriangle>, GeometryError>>()?;
         let footprints: Vec<Footprint> = triangles.iter().map(|t| Footprint::new(t, grid, margin)).collect();
         let of = |wanted: Option<usize>| {
-            let own = |(k, _): &(usize, _)| body(vessel.triangles[*k].wall as usize) == wanted;
+            let own = |(k, _): &(usize, _)| (moving.number)(vessel.triangles[*k].wall as usize) == wanted;
             footprints.iter().enumerate().filter(own).collect::<Vec<(usize, &Footprint)>>()
         };
         let still_walls = of(None);
@@ -178,8 +186,8 @@ impl TriangleGrid {
                 });
             }
         })?;
-        let bodies = (0..bodies).map(|k| Body::new(&of(Some(k)))).collect::<Result<_, _>>()?;
-        let class = classify(still, grid, &start);
+        let bodies = (0..moving.count).map(|k| Body::new(&of(Some(k)))).collect::<Result<_, _>>()?;
+        let class = classify(moving.still, grid, &start);
         Ok(TriangleGrid { triangles, start, list, class, bodies })
     }
 

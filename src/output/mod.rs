@@ -36,7 +36,7 @@ pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
     Adapter, Checkpoint, CheckpointError, CheckpointWriter, FileRecord, Manifest, Moment, Origin, OutputState,
-    RECORD_BYTES, forget_after, latest, run_folder,
+    RECORD_BYTES, RunContext, forget_after, latest, run_folder,
 };
 pub use environment::{AdapterRecord, Environment, host_name};
 pub use error::OutputError;

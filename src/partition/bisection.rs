@@ -56,6 +56,15 @@ struct Previous {
     parts: Vec<usize>,
 }
 
+/// A box, and the parts that it is for: `parts` from the number `first` on.
+struct Branch {
+    extent: CellBox,
+    first: usize,
+    parts: usize,
+    /// The node of the tree in force that was it.
+    previous: Option<usize>,
+}
+
 /// What a box is going to be, but for the plane.
 struct Open {
     first: usize,
@@ -98,8 +107,12 @@ impl Bisection {
         };
         let before = bisection.previous.as_ref().map(|_| 0);
         bisection.nodes.push(Node::Open(0));
-        bisection.settle(0, root, 0, parts, before);
+        bisection.settle(0, Branch { extent: root, first: 0, parts, previous: before });
         Ok(bisection)
+    }
+
+    pub fn root(&self) -> CellBox {
+        self.root
     }
 
     /// The open boxes of this level; none when all is cut.
@@ -142,8 +155,10 @@ impl Bisection {
                 Some(cut) => (Some(cut.low), Some(cut.high)),
                 None => (None, None),
             };
-            self.settle(low, below, open.first, open.low_parts, old_low);
-            self.settle(low + 1, above, open.first + open.low_parts, open.parts - open.low_parts, old_high);
+            let (first, parts) = (open.first, open.low_parts);
+            self.settle(low, Branch { extent: below, first, parts, previous: old_low });
+            let (first, parts) = (open.first + open.low_parts, open.parts - open.low_parts);
+            self.settle(low + 1, Branch { extent: above, first, parts, previous: old_high });
         }
         Ok(())
     }
@@ -157,12 +172,13 @@ impl Bisection {
     }
 
     /// Makes a new node a part, or puts it among the open ones.
-    fn settle(&mut self, node: usize, extent: CellBox, first: usize, parts: usize, previous: Option<usize>) {
+    fn settle(&mut self, node: usize, branch: Branch) {
+        let Branch { extent, first, parts, .. } = branch;
         if parts == 1 {
             self.nodes[node] = Node::Part(first);
             return;
         }
-        let (axis, open) = self.direction(&extent, first, parts, previous);
+        let (axis, open) = self.direction(&branch);
         self.nodes[node] = Node::Open(self.wanted.len());
         self.wanted.push(Slice { extent, axis, offset: self.planes(), node });
         self.open.push(open);
@@ -170,7 +186,8 @@ impl Bisection {
 
     /// The axis and what is on either side. Those of the old cut while the box is along its axis no shorter than 0.7 of
     /// the longest.
-    fn direction(&self, extent: &CellBox, first: usize, parts: usize, previous: Option<usize>) -> (usize, Open) {
+    fn direction(&self, branch: &Branch) -> (usize, Open) {
+        let &Branch { ref extent, first, parts, previous } = branch;
         let way = |axis: usize, low_parts: usize, previous: Option<usize>| {
             let allowed = allowed(extent, axis, low_parts, parts - low_parts)?;
             Some((axis, Open { first, parts, low_parts, allowed, previous }))

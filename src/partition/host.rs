@@ -33,7 +33,8 @@ pub fn bisect_shared<E: From<PartitionError>>(
     own: &[[u32; 3]],
     sum: impl FnMut(Vec<u64>) -> Result<Vec<u64>, E>,
 ) -> Result<Tree, E> {
-    Ok(levels(root, shares, None, own.len(), |at| (own[at], 1), sum)?.0)
+    let bisection = Bisection::new(root, shares, None, TOLERANCE)?;
+    Ok(levels(bisection, own.len(), |at| (own[at], 1), sum)?.0)
 }
 
 /// The tree for the weights of points 0..count, and the part of each. `point` gives the cell and the weight of one.
@@ -44,21 +45,18 @@ pub fn decompose(
     count: usize,
     point: impl Fn(usize) -> ([u32; 3], u64) + Sync,
 ) -> Result<(Tree, Vec<u32>), PartitionError> {
-    levels(root, shares, previous, count, point, Ok)
+    levels(Bisection::new(root, shares, previous, TOLERANCE)?, count, point, Ok)
 }
 
 fn levels<E: From<PartitionError>>(
-    root: CellBox,
-    shares: &[f64],
-    previous: Option<&Tree>,
+    mut bisection: Bisection,
     count: usize,
     point: impl Fn(usize) -> ([u32; 3], u64) + Sync,
     mut sum: impl FnMut(Vec<u64>) -> Result<Vec<u64>, E>,
 ) -> Result<(Tree, Vec<u32>), E> {
-    let mut bisection = Bisection::new(root, shares, previous, TOLERANCE)?;
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     let size = count.div_ceil(threads).max(POINTS_PER_THREAD);
-    check(root, count, size, &point)?;
+    check(bisection.root(), count, size, &point)?;
     let mut places = vec![0_u32; count];
     let mut level = Level::first(&bisection);
     loop {

@@ -8,7 +8,8 @@ use super::limits::Quantity;
 use super::longest::{Basis, asked_and_own, possible_step};
 use super::population::{Population, openings, silent_orifices, wanted};
 use super::resolution::{
-    Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY, default_occupancy,
+    ExpectedGas, Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY,
+    default_occupancy,
 };
 use super::text::significant;
 use super::warnings::{Decided, warnings};
@@ -40,7 +41,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
     }
     let wanted_occupancy = scene.model.occupancy.unwrap_or_else(|| default_occupancy(method));
-    let wanted = wanted(scene, measured, &amounts, method, wanted_occupancy, &mut reasons);
+    let (wanted, why) = wanted(scene, measured, &amounts, method, wanted_occupancy);
+    reasons.push(why);
     let population = Population::count(scene, &species, &amounts, wanted)?;
     let (initial_particles, injected_particles) = (population.initial_total(), population.injected_total());
     let particles = initial_particles + injected_particles;
@@ -59,7 +61,8 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let basis = Basis { method, request: &scene.model, measured, states, extreme, particles, end_time: scene.end_time };
     let (request, shortened) = possible_step(&basis)?;
     let steps = asked_and_own(&basis)?;
-    let resolution = Resolution::choose(method, &request, states, extreme, scene.end_time, &mut reasons)?;
+    let gas = ExpectedGas { states, extreme };
+    let resolution = Resolution::choose(method, &request, gas, scene.end_time, &mut reasons)?;
     let diameter_cap = diameter_cap(scene, method, resolution.diameter, number_density, &mut reasons)?;
     let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
 

@@ -270,16 +270,19 @@ pub struct Warning {
     pub text: String,
 }
 
+/// What was found of a quantity.
+#[derive(Debug, Clone, Copy)]
+pub struct Judged<'a> {
+    /// What has it.
+    pub subject: &'a str,
+    pub value: f64,
+    pub remedy: &'a str,
+}
+
 impl Warning {
-    /// None within the bound.
-    pub fn beyond(
-        quantity: Quantity,
-        bound: Bound,
-        subject: &str,
-        value: f64,
-        effect: &str,
-        remedy: &str,
-    ) -> Option<Warning> {
+    /// None within the bound; `effect` is what happens beyond it.
+    pub fn beyond(quantity: Quantity, bound: Bound, effect: &str, found: Judged<'_>) -> Option<Warning> {
+        let Judged { subject, value, remedy } = found;
         let text = || {
             let found = significant(value);
             format!("{subject}: {} {found}, {}: {effect}; {remedy}", quantity.name(), bound.words())
@@ -290,7 +293,7 @@ impl Warning {
     /// By the table; none where it has no such limit, too.
     pub fn by_table(quantity: Quantity, method: Method, subject: &str, value: f64, remedy: &str) -> Option<Warning> {
         let Limit { bound, effect, .. } = limit(quantity, method)?;
-        Warning::beyond(quantity, *bound, subject, value, effect, remedy)
+        Warning::beyond(quantity, *bound, effect, Judged { subject, value, remedy })
     }
 }
 

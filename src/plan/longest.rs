@@ -5,7 +5,7 @@
 //! ends above the step that the gas needs. No result of such a step means anything, so a shorter one is taken, and the
 //! plan says so.
 
-use super::resolution::{Extreme, FASTEST_PAIR, MeanState, Resolution};
+use super::resolution::{ExpectedGas, Extreme, FASTEST_PAIR, MeanState, Resolution};
 use super::text::significant;
 use super::{Measured, PlanError};
 use crate::gas::kinetics;
@@ -61,7 +61,8 @@ pub fn possible_step(basis: &Basis<'_>) -> Result<(ModelRequest, Option<String>)
 /// As the plan would choose them without a `time_step`.
 fn unasked(basis: &Basis<'_>) -> Result<Resolution, PlanError> {
     let request = ModelRequest { time_step: None, ..basis.request.clone() };
-    Resolution::choose(basis.method, &request, basis.states, basis.extreme, basis.end_time, &mut Vec::new())
+    let gas = ExpectedGas { states: basis.states, extreme: basis.extreme };
+    Resolution::choose(basis.method, &request, gas, basis.end_time, &mut Vec::new())
 }
 
 /// The step that is asked for and that the plan would choose, s, if one is asked for.

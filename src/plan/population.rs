@@ -6,7 +6,7 @@ use super::limits::{Quantity, limit};
 use super::resolution::cell_edge;
 use super::text::{grouped, significant};
 use super::{Measured, PlanError, Reason};
-use crate::gas::{Inflow, Species, Unrepresented, kinetics};
+use crate::gas::{Inflow, InflowParticles, Species, Unrepresented, kinetics};
 use crate::scene::{Method, Orifice, Scene};
 
 /// Wanted noise of the pressure on a wall, and the time over which it is averaged, s.
@@ -33,19 +33,9 @@ fn wanted_knudsen(method: Method, occupancy: f64) -> f64 {
 /// N_stat = 5.1 V / (cbar A T_w eps^2) and N_res = V / d^3, d = Kn l / .79 (specification, section 6).
 ///
 /// The area is not a part of the scene: A = V^(2/3) / 16, a sixteenth of the face of a cube of the gas
-/// volume (.0096 m2 for 60 L).
-pub fn wanted(
-    scene: &Scene,
-    measured: &Measured,
-    amounts: &Amounts,
-    method: Method,
-    occupancy: f64,
-    reasons: &mut Vec<Reason>,
-) -> u64 {
-    let mut give = |count: u64, why: String| {
-        reasons.push(Reason { quantity: "particles".into(), value: grouped(count), why });
-        count
-    };
+/// volume (.0096 m2 for 60 L). Also why.
+pub fn wanted(scene: &Scene, measured: &Measured, amounts: &Amounts, method: Method, occupancy: f64) -> (u64, Reason) {
+    let give = |count: u64, why: String| (count, Reason { quantity: "particles".into(), value: grouped(count), why });
     if let Some(count) = scene.model.particles {
         return give(count, "asked for; initial and injected gas together at the end".into());
     }
@@ -114,7 +104,8 @@ impl Population {
                 return Err(PlanError::EmptyChamber { chamber, moles, moles_per_particle, needed });
             }
         }
-        let inflow = Inflow::new(&scene.orifices, species, moles_per_particle, scene.seed, 0, scene.end_time);
+        let particles = InflowParticles { gases: species, moles_per_particle, seed: scene.seed, first_id: 0 };
+        let inflow = Inflow::new(&scene.orifices, scene.end_time, particles);
         let warnings = unrepresented(scene, amounts, moles_per_particle, &initial, &inflow);
         let population = Self { moles_per_particle, initial, injected: inflow.total_by_gas(), warnings };
         let particles = population.initial_total() + population.injected_total();

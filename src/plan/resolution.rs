@@ -62,6 +62,14 @@ pub struct MeanState {
 #[derive(Debug, Clone, Copy)]
 pub struct Extreme(pub f64);
 
+/// What the run is thought to hold.
+#[derive(Debug, Clone, Copy)]
+pub struct ExpectedGas {
+    /// The mean states at the start and the end; sizes follow that at the end.
+    pub states: [MeanState; 2],
+    pub extreme: Extreme,
+}
+
 pub struct Resolution {
     pub diameter: f64,
     pub rounds: u32,
@@ -76,24 +84,19 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// `states`: the mean states at the start and the end; sizes follow that at the end.
+    /// For a run of this length, s.
     pub fn choose(
         method: Method,
         request: &ModelRequest,
-        states: [MeanState; 2],
-        extreme: Extreme,
+        gas: ExpectedGas,
         end_time: f64,
         reasons: &mut Vec<Reason>,
     ) -> Result<Self, PlanError> {
         match method {
             // Control volumes have no particles, and need no resolution.
-            Method::None | Method::ControlVolume => {
-                Ok(Self::free_flight(request, states[1], extreme, end_time, reasons))
-            }
-            Method::Cell => Ok(Self::within_cells(request, states, extreme, end_time, reasons)),
-            Method::ClosestApproach | Method::HardSphere => {
-                Self::in_rounds(method, request, states, extreme, end_time, reasons)
-            }
+            Method::None | Method::ControlVolume => Ok(Self::free_flight(request, gas, end_time, reasons)),
+            Method::Cell => Ok(Self::within_cells(request, gas, end_time, reasons)),
+            Method::ClosestApproach | Method::HardSphere => Self::in_rounds(method, request, gas, end_time, reasons),
         }
     }
 
@@ -117,11 +120,11 @@ impl Resolution {
     fn in_rounds(
         method: Method,
         request: &ModelRequest,
-        states: [MeanState; 2],
-        extreme: Extreme,
+        gas: ExpectedGas,
         end_time: f64,
         reasons: &mut Vec<Reason>,
     ) -> Result<Self, PlanError> {
+        let ExpectedGas { states, extreme } = gas;
         let mut because = |quantity: &str, value: String, why: String| {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
@@ -193,13 +196,8 @@ impl Resolution {
     }
 
     /// The method `cell`: a cell of a few particles, steps in which almost none crosses more than that, x <= 2.
-    fn within_cells(
-        request: &ModelRequest,
-        states: [MeanState; 2],
-        extreme: Extreme,
-        end_time: f64,
-        reasons: &mut Vec<Reason>,
-    ) -> Self {
+    fn within_cells(request: &ModelRequest, gas: ExpectedGas, end_time: f64, reasons: &mut Vec<Reason>) -> Self {
+        let ExpectedGas { states, extreme } = gas;
         let mut because = |quantity: &str, value: String, why: String| {
             reasons.push(Reason { quantity: quantity.into(), value, why });
         };
@@ -253,15 +251,9 @@ impl Resolution {
         }
     }
 
-    fn free_flight(
-        request: &ModelRequest,
-        state: MeanState,
-        extreme: Extreme,
-        end_time: f64,
-        reasons: &mut Vec<Reason>,
-    ) -> Self {
-        let cell = kinetics::mean_spacing(state.number_density);
-        let speed = FAST_PARTICLE * extreme.0.sqrt();
+    fn free_flight(request: &ModelRequest, gas: ExpectedGas, end_time: f64, reasons: &mut Vec<Reason>) -> Self {
+        let cell = kinetics::mean_spacing(gas.states[1].number_density);
+        let speed = FAST_PARTICLE * gas.extreme.0.sqrt();
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time"),
             None => (cell / speed, "99.9 % of the particles fly no further than a cell"),

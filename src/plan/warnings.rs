@@ -1,6 +1,6 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
-use super::limits::{Bound, Limit, Quantity, Warning, limit, step_limit};
+use super::limits::{Bound, Judged, Limit, Quantity, Warning, limit, step_limit};
 use super::notes::between;
 use super::population::more_particles;
 use super::resolution::Resolution;
@@ -238,7 +238,7 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
     if x <= limit * (1.0 + 1e-9) {
         return None;
     }
-    Warning::beyond(Quantity::Step, bound, "the time step", x, &effect, remedy)
+    Warning::beyond(Quantity::Step, bound, &effect, Judged { subject: "the time step", value: x, remedy })
 }
 
 /// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path.

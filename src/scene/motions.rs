@@ -4,7 +4,7 @@ use super::errors::Problem;
 use super::flows::curve;
 use super::names::Names;
 use super::numbers::{bounded, direction, show};
-use super::raw::{RawMotion, RawSide, RawVent, RawWall};
+use super::raw::{RawMotion, RawScene, RawSide};
 use super::raw_values::{At, NumberOr};
 use super::types::{Course, Curve, Motion, UnitSystem};
 use super::units::Quantity;
@@ -12,28 +12,22 @@ use super::units::Quantity;
 /// Walls that move, at most: the device knows the places of so many.
 pub const MOST_MOTIONS: usize = 4;
 
-/// `earlier` are the motions before this one in the file.
-pub(super) fn motion(
-    raw: &At<RawMotion>,
-    earlier: &[At<RawMotion>],
-    walls: &Names,
-    raw_walls: &[At<RawWall>],
-    vents: &[At<RawVent>],
-    units: UnitSystem,
-) -> Result<Motion, Problem> {
+/// The motion of this number in the file.
+pub(super) fn motion(scene: &RawScene, index: usize, walls: &Names, units: UnitSystem) -> Result<Motion, Problem> {
+    let raw = &scene.motion[index];
     let motion = &raw.value;
     let name = &motion.wall;
     let wall = walls.find(name)?;
-    if earlier.iter().any(|other| other.value.wall.value == name.value) {
+    if scene.motion[..index].iter().any(|other| other.value.wall.value == name.value) {
         return Err(Problem::value(&name.span, "a second motion of the same wall", "one motion for each wall"));
     }
-    if matches!(raw_walls[wall].value.gas.as_ref().map(|side| side.value), Some(RawSide::Inside)) {
+    if matches!(scene.wall[wall].value.gas.as_ref().map(|side| side.value), Some(RawSide::Inside)) {
         let found = format!("the wall {:?}, which encloses the gas", name.value);
         return Err(Problem::value(&name.span, found, "a body with the gas outside of it").hint(
             "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls",
         ));
     }
-    if vents.iter().any(|vent| vent.value.wall.value == name.value) {
+    if scene.vent.iter().any(|vent| vent.value.wall.value == name.value) {
         let found = format!("the wall {:?}, which has a vent", name.value);
         return Err(Problem::value(&name.span, found, "a wall without vents, or the vent on a wall at rest"));
     }

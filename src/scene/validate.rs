@@ -51,9 +51,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
     let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &parts));
     let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &parts, units));
-    let motions = each(&raw.motion, &mut problems, |motion, index| {
-        motions::motion(motion, &raw.motion[..index], &wall_names, &raw.wall, &raw.vent, units)
-    });
+    let motions = each(&raw.motion, &mut problems, |_, index| motions::motion(raw, index, &wall_names, units));
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {

@@ -71,10 +71,10 @@ pub struct Feedback {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gas::Inflow;
+    use crate::gas::{Inflow, InflowParticles};
     use crate::plan::Plan;
     use crate::simulation::accounting::audit::Account;
-    use crate::simulation::accounting::averages::{Averages, Layout};
+    use crate::simulation::accounting::averages::{Averages, Layout, Sampled};
     use crate::simulation::control::clock::Clock;
     use crate::simulation::control::ladder::Ladder;
     use crate::simulation::control::surface_states::VentTarget;
@@ -148,8 +148,9 @@ mod tests {
             let mut averages = averages(&plan);
             let mut rows = Vec::new();
             for interval in 1..=9 {
-                averages.add(&tallies(&plan, interval), 1e-6 / interval as f64, 32, 4, &wanted(interval));
-                averages.add_room(1e-6 / interval as f64, 4, &[1e-3 / interval as f64, 2e-3, 1e-4]);
+                let sampled = Sampled { dt: 1e-6 / interval as f64, steps: 32, samples: 4 };
+                averages.add(&tallies(&plan, interval), sampled, &wanted(interval));
+                averages.add_room(sampled, &[1e-3 / interval as f64, 2e-3, 1e-4]);
                 if interval % 4 == 0 {
                     rows.push(averages.row(1e-5 * interval as f64, 2000));
                 }
@@ -179,7 +180,7 @@ mod tests {
         let layout = Layout { volumes: vec![1e-3], chambers: 1, ..Layout::default() };
         let other = Averages::new(&plan, layout, 0).state();
         let mut own = averages(&plan);
-        own.add(&tallies(&plan, 3), 1e-6, 32, 4, &wanted(3));
+        own.add(&tallies(&plan, 3), Sampled { dt: 1e-6, steps: 32, samples: 4 }, &wanted(3));
         let before = own.state();
         assert!(own.restore(&other).unwrap_err().to_string().contains("sums over zones"));
         let mut short = before.clone();
@@ -204,7 +205,12 @@ mod tests {
             ladder: Ladder::new(&plan, Vec::new()).state(),
             averages: averages(&plan).state(),
             account: account.state().clone(),
-            inflow: Inflow::new(&[], &[], 1.0, 1, 0, 1.0).state(),
+            inflow: Inflow::new(
+                &[],
+                1.0,
+                InflowParticles { gases: &[], moles_per_particle: 1.0, seed: 1, first_id: 0 },
+            )
+            .state(),
             feedback: vec![Feedback {
                 demand: Demand { collision: 0.1 + 0.2, fast_level: 3, hot: true, shares: vec![1, 32768] },
                 seen: SeenGas::default(),

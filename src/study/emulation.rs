@@ -21,15 +21,16 @@ pub struct State<'a> {
     pub name: String,
     /// Its plan's `steps_per_interval` is the length of the intervals that are measured.
     pub model: &'a Model,
+    pub setup: &'a Setup,
     /// What the run has done by then; `None` at its start.
     pub run: Option<&'a RunState>,
     /// Steps of the run that it stands for.
     pub steps: f64,
 }
 
-/// How a state is measured.
-#[derive(Debug, Clone, Copy)]
-pub struct Effort {
+/// What measures states, and how.
+pub struct Emulator<'a> {
+    pub device: &'a Device,
     /// Intervals that are measured, after those that bring the state about.
     pub intervals: usize,
     pub by: By,
@@ -76,36 +77,61 @@ const REBALANCES: u32 = 4;
 /// Intervals until a rebalance's first loads are read, and until the cuts are those asked for.
 const LATE: usize = 2;
 
-/// # Errors
-/// If the device fails, or there are more subdomains than cells.
-pub fn emulate(
-    state: &State<'_>,
-    device: &Device,
-    setup: &Setup,
-    devices: usize,
-    strategy: Strategy,
-    effort: &Effort,
-) -> Result<Emulated, StudyError> {
-    let (mode, settling) = match strategy {
-        Strategy::Off => (BalanceMode::Off, LATE),
-        Strategy::Initial => (BalanceMode::Initial, LATE),
-        Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
-    };
-    let balance = BalanceOptions { mode, by: effort.by, ..BalanceOptions::default() };
-    let options = Options { balance, halo: effort.halo, discard_particles: true, ..Options::default() };
-    let intervals = settling + effort.intervals;
-    let mut ranks = Vec::new();
-    for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {
-        let done = one(state, device, setup, comm, options, intervals);
-        if let Err(error) = &done {
-            comm.fail(&error.to_string(), 1);
+impl Emulator<'_> {
+    /// # Errors
+    /// If the device fails, or there are more subdomains than cells.
+    pub fn emulate(&self, state: &State<'_>, devices: usize, strategy: Strategy) -> Result<Emulated, StudyError> {
+        let (mode, settling) = match strategy {
+            Strategy::Off => (BalanceMode::Off, LATE),
+            Strategy::Initial => (BalanceMode::Initial, LATE),
+            Strategy::Dynamic => (BalanceMode::AtOnce { times: REBALANCES }, LATE * (REBALANCES as usize + 1)),
+        };
+        let balance = BalanceOptions { mode, by: self.by, ..BalanceOptions::default() };
+        let options = Options { balance, halo: self.halo, discard_particles: true, ..Options::default() };
+        let intervals = settling + self.intervals;
+        let mut ranks = Vec::new();
+        for rank in in_process(devices, Pace::OneAtATime, |comm: &dyn Communicator| {
+            let done = self.one(state, comm, options, intervals);
+            if let Err(error) = &done {
+                comm.fail(&error.to_string(), 1);
+            }
+            done
+        })? {
+            ranks.push(rank?);
         }
-        done
-    })? {
-        ranks.push(rank?);
+        let steps = state.model.plan.steps_per_interval as usize;
+        shared_out(&ranks, strategy, steps, settling).ok_or_else(|| StudyError::TooShort { state: state.name.clone() })
     }
-    let steps = state.model.plan.steps_per_interval as usize;
-    shared_out(&ranks, strategy, steps, settling).ok_or_else(|| StudyError::TooShort { state: state.name.clone() })
+
+    /// One rank.
+    fn one(
+        &self,
+        state: &State<'_>,
+        comm: &dyn Communicator,
+        options: Options<'_>,
+        intervals: usize,
+    ) -> Result<Watched, SimulationError> {
+        let watch = Stopwatch::new(comm);
+        let mut records = Records::default();
+        let outcome = {
+            let mut simulation = Simulation::among(state.model, self.device, state.setup, &watch, options)?;
+            if let Some(run) = state.run {
+                simulation = simulation.resume(run)?;
+            }
+            simulation.begin(&mut records)?;
+            for _ in 0..intervals {
+                watch.mark();
+                if !simulation.advance(&mut records)? {
+                    break;
+                }
+            }
+            // What follows is no interval's.
+            watch.mark();
+            simulation.finish(&mut records)?
+        };
+        let passes = outcome.phases.rows.iter().map(|(_, _, count)| count).sum::<u64>() as f64;
+        Ok(Watched { events: watch.events(), balance: records.0, passes: passes / outcome.steps.max(1) as f64 })
+    }
 }
 
 /// What a rank has seen.
@@ -126,36 +152,6 @@ impl Observer for Records {
         self.0.push(record.clone());
         Ok(())
     }
-}
-
-fn one(
-    state: &State<'_>,
-    device: &Device,
-    setup: &Setup,
-    comm: &dyn Communicator,
-    options: Options<'_>,
-    intervals: usize,
-) -> Result<Watched, SimulationError> {
-    let watch = Stopwatch::new(comm);
-    let mut records = Records::default();
-    let outcome = {
-        let mut simulation = match state.run {
-            Some(run) => Simulation::resume(state.model, device, setup, &watch, options, run)?,
-            None => Simulation::among(state.model, device, setup, &watch, options)?,
-        };
-        simulation.begin(&mut records)?;
-        for _ in 0..intervals {
-            watch.mark();
-            if !simulation.advance(&mut records)? {
-                break;
-            }
-        }
-        // What follows is no interval's.
-        watch.mark();
-        simulation.finish(&mut records)?
-    };
-    let passes = outcome.phases.rows.iter().map(|(_, _, count)| count).sum::<u64>() as f64;
-    Ok(Watched { events: watch.events(), balance: records.0, passes: passes / outcome.steps.max(1) as f64 })
 }
 
 /// `None` if no interval was as it should be.

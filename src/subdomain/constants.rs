@@ -164,14 +164,19 @@ pub fn tally_loops(device: &Device, plan: &Plan) -> u32 {
     (groups / FILLING_GROUPS).clamp(1, MOST_TALLY_LOOPS.into()) as u32
 }
 
-pub fn constants(
-    plan: &Plan,
-    features: Features,
-    patches: Patches,
-    walls: &Walls,
-    scales: &Scales,
-    tally_loops: u32,
-) -> Vec<(&'static str, f64)> {
+/// What the kernels of a scene are specialised to.
+pub struct Specialisation<'a> {
+    pub plan: &'a Plan,
+    pub features: Features,
+    pub patches: Patches,
+    pub walls: &'a Walls,
+    /// Particles of a thread of the tally.
+    pub tally_loops: u32,
+}
+
+pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
+    let &Specialisation { plan, features, patches, walls, tally_loops } = of;
+    let scales = Scales::new(plan);
     let grid = &plan.grid;
     let [surface_models_at, vents_at, works_at] = patches.ends();
     let flag = |on: bool| f64::from(u8::from(on));

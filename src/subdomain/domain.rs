@@ -5,14 +5,12 @@ use crate::plan::Plan;
 
 use super::buffers::TallyWords;
 use super::cell_table::CellTable;
-use super::constants::{Features, Patches, block_counts, constants, runtime_constants_of, tally_loops};
+use super::constants::{Features, Patches, Specialisation, block_counts, constants, runtime_constants_of, tally_loops};
 use super::domain_buffers::DomainBuffers;
 use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};
-use super::scales::Scales;
 use super::sizes::SURFACE_COPIES;
-use super::state::{gas_table, mode_table};
 use super::walls::{Drawn, Walls};
 
 /// What a domain is made from.
@@ -83,7 +81,8 @@ impl Domain {
             blocks: blocks * BLOCK_WORDS as usize + plan.ladder_levels as usize,
         };
         let tally_loops = tally_loops(device, plan);
-        let constants = constants(plan, features, input.patches, input.walls, &Scales::new(plan), tally_loops);
+        let specialisation = Specialisation { plan, features, patches: input.patches, walls: input.walls, tally_loops };
+        let constants = constants(&specialisation);
         let runtime = if input.kernels == KernelChoice::Fixed { &[] } else { runtime_constants_of(device, plan) };
         Ok(Domain {
             plan: plan.clone(),
@@ -93,14 +92,7 @@ impl Domain {
             variant: device.variant(),
             tally_loops,
             constants,
-            buffers: DomainBuffers::new(
-                device,
-                input.walls,
-                input.cells,
-                input.zones,
-                &gas_table(plan),
-                &mode_table(plan),
-            )?,
+            buffers: DomainBuffers::new(device, plan, input.walls, input.cells, input.zones)?,
             words,
             patches: input.patches,
             vent_entries: input.vent_entries,

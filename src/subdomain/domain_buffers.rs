@@ -1,10 +1,11 @@
 //! The buffers that all subdomains of a device share.
 
 use crate::gpu::{Device, GpuError};
+use crate::plan::Plan;
 
 use super::cell_table::CellTable;
 use super::layout::{GpuGas, GpuTriangle, GpuZone};
-use super::state::share_table;
+use super::state::{gas_table, mode_table, share_table};
 use super::walls::Walls;
 
 /// The gases, the walls and the zones.
@@ -26,19 +27,19 @@ pub struct DomainBuffers {
 impl DomainBuffers {
     pub fn new(
         device: &Device,
+        plan: &Plan,
         walls: &Walls,
         cells: &CellTable,
         zones: &[GpuZone],
-        gases: &[GpuGas],
-        modes: &[[f32; 4]],
     ) -> Result<DomainBuffers, GpuError> {
+        let (gases, modes) = (gas_table(plan), mode_table(plan));
         let mut table = [GpuGas::default(); 16];
-        table[..gases.len()].copy_from_slice(gases);
+        table[..gases.len()].copy_from_slice(&gases);
         let gas_buffer = device.uniform("gases", size_of_val(&table) as u64)?;
         device.write(&gas_buffer, 0, &table);
-        let mode_buffer = device.uniform("modes", size_of_val(modes) as u64)?;
-        device.write(&mode_buffer, 0, modes);
-        let shares = share_table(gases);
+        let mode_buffer = device.uniform("modes", size_of_val(modes.as_slice()) as u64)?;
+        device.write(&mode_buffer, 0, &modes);
+        let shares = share_table(&gases);
         let share_buffer = device.uniform("mass_shares", size_of_val(shares.as_slice()) as u64)?;
         device.write(&share_buffer, 0, &shares);
         Ok(DomainBuffers {

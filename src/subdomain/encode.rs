@@ -10,6 +10,16 @@ use super::registry::{LIST_BOUNCE, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST
 use super::sizes::{CHUNK, CLEARED_CELLS, MEMBERS, STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
 
+/// A list, and how a kernel is dispatched over it.
+pub(super) struct ListDispatch<'a> {
+    /// Where its length has been told.
+    pub arguments: &'a wgpu::Buffer,
+    /// Its number in them.
+    pub list: u32,
+    /// Places that may have its entries.
+    pub places: u64,
+}
+
 impl Subdomain {
     /// Empties the lists of the step before (`shaders/reset.wgsl`).
     pub fn reset(&self, rec: &mut Recording<'_>) {
@@ -62,8 +72,9 @@ impl Subdomain {
         if let Some(kernels) = &self.kernels.cells {
             let pass = &mut rec.phase("sort");
             kernels.arrange.dispatch(pass, offset, slots);
-            let arguments = (&self.fixed.dispatches, LIST_CROWDED);
-            self.over_list(&kernels.arrange_crowded, (device, pass), offset, arguments, step.total.into());
+            let list =
+                ListDispatch { arguments: &self.fixed.dispatches, list: LIST_CROWDED, places: step.total.into() };
+            self.over_list(&kernels.arrange_crowded, (device, pass), offset, list);
         }
     }
 
@@ -73,8 +84,12 @@ impl Subdomain {
             let offset = self.offset(device, step, 0);
             let pass = &mut rec.phase("neighbours");
             kernels.neighbours.dispatch(pass, offset, all(device, step));
-            let arguments = (&self.fixed.rechoose_dispatches, LIST_INCOMPLETE);
-            self.over_list(&kernels.complete_lists, (device, pass), offset, arguments, step.total.into());
+            let list = ListDispatch {
+                arguments: &self.fixed.rechoose_dispatches,
+                list: LIST_INCOMPLETE,
+                places: step.total.into(),
+            };
+            self.over_list(&kernels.complete_lists, (device, pass), offset, list);
         }
     }
 
@@ -86,8 +101,12 @@ impl Subdomain {
             let pass = &mut rec.phase("collide");
             kernels.collide.dispatch(pass, offset, threads(device, self.bins()));
             // (Each has several particles.)
-            let arguments = (&self.fixed.dispatches, LIST_CROWDS);
-            self.over_list(&kernels.collide_crowded, (device, pass), offset, arguments, (step.total / MEMBERS).into());
+            let list = ListDispatch {
+                arguments: &self.fixed.dispatches,
+                list: LIST_CROWDS,
+                places: (step.total / MEMBERS).into(),
+            };
+            self.over_list(&kernels.collide_crowded, (device, pass), offset, list);
             if let Some(divided) = &kernels.divided {
                 divided.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_DIVIDED);
             }
@@ -106,19 +125,18 @@ impl Subdomain {
         self.short_lists = 0;
     }
 
-    /// Over the entries of a list, `item` of these arguments, that has them among so many places.
+    /// Over the entries of a list.
     pub(super) fn over_list(
         &self,
         kernel: &BoundKernel,
         (device, pass): (&Device, &mut Pass<'_>),
         offset: u32,
-        (arguments, item): (&wgpu::Buffer, u32),
-        places: u64,
+        list: ListDispatch<'_>,
     ) {
-        if places <= self.short_lists {
-            kernel.dispatch(pass, offset, threads(device, places));
+        if list.places <= self.short_lists {
+            kernel.dispatch(pass, offset, threads(device, list.places));
         } else {
-            kernel.dispatch_indirect(pass, offset, arguments, item);
+            kernel.dispatch_indirect(pass, offset, list.arguments, list.list);
         }
     }
 
@@ -148,8 +166,8 @@ impl Subdomain {
         let groups = threads(device, u64::from(step.total) + entering);
         let pass = &mut rec.phase("advect");
         self.kernels.advect.dispatch(pass, offset, groups);
-        let arguments = (&self.fixed.dispatches, LIST_BOUNCE);
-        self.over_list(&self.kernels.bounce, (device, pass), offset, arguments, step.total.into());
+        let list = ListDispatch { arguments: &self.fixed.dispatches, list: LIST_BOUNCE, places: step.total.into() };
+        self.over_list(&self.kernels.bounce, (device, pass), offset, list);
         if !self.place.is_alone() {
             self.count = step.total;
         }

@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointError, CheckpointWriter, HistoryState, Moment, Origin, OutputState,
-    latest,
+    RunContext, latest,
 };
 use corpuscle::subdomain::GpuParticle;
 
@@ -49,7 +49,7 @@ fn write(parent: &Path, step: u64) {
     };
     let file = AppendedState { bytes: step, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: step, file }, snapshots: None };
-    writer.commit(files, &moment, &origin, &step, &output).unwrap();
+    writer.commit(files, &moment, RunContext { origin: &origin, state: &step, output: &output }).unwrap();
 }
 
 /// What the child does; without the variable it is nothing.
@@ -154,7 +154,7 @@ fn ids_are_where_the_device_has_them() {
     let origin = Origin { scene: String::new(), plan: String::new(), meshes: Vec::new(), adapter: Adapter::default() };
     let file = AppendedState { bytes: 0, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
-    let path = writer.commit(files, &moment, &origin, &(), &output).unwrap();
+    let path = writer.commit(files, &moment, RunContext { origin: &origin, state: &(), output: &output }).unwrap();
     let error = Checkpoint::open(&path).unwrap_err();
     let cause = std::error::Error::source(&error).unwrap().to_string();
     assert!(cause.contains("particle 5 is in the checkpoint twice"), "{cause}");

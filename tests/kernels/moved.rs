@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use corpuscle::geometry::{TriangleGrid, Vessel, cell_gas, still_points};
+use corpuscle::geometry::{MovingWalls, TriangleGrid, Vessel, cell_gas, still_points};
 use corpuscle::scene::{GasSide, Shape, Wall};
 use corpuscle::subdomain::{CellTable, GpuFlight, GpuMotion, GpuParticle, GpuStep, MOTION_ENTRIES, Walls};
 
@@ -59,7 +59,8 @@ fn drawn(walls: &[Wall; 2], moved: Vector, velocity: Vector) -> Drawn {
     let rest = vessel.without(|wall| wall == 1).measured().unwrap();
     let margin = Walls::tolerance(&grid);
     let body = |wall: usize| (wall == 1).then_some(0);
-    let triangles = TriangleGrid::build_still(&vessel, &rest, &grid, margin, 1, body).unwrap();
+    let moving = MovingWalls { still: &rest, count: 1, number: &body };
+    let triangles = TriangleGrid::build_still(&vessel, &grid, margin, &moving).unwrap();
     let moves = |source: usize| body(vessel.triangles[source].wall as usize);
     world.walls = Walls::new(&triangles, &grid, &[], &[], |source| moves(source).is_some()).moving(&triangles, moves);
     let quanta: [i32; 3] = moved.map(|way| (way / grid.quantum()).round() as i32);

@@ -6,7 +6,7 @@ use corpuscle::scene::{GasSide, Shape};
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuGas, GpuParticle};
 
 use crate::choose::{Cloud, DT};
-use crate::oracle::collision::{Draws, Gas, closest_approach, collide, meeting};
+use crate::oracle::collision::{Draws, Gas, Meeting, closest_approach, collide, meeting};
 use crate::oracle::random::Stream;
 use crate::oracle::vector::{Vector, along, dot, minus, norm, scaled};
 use crate::oracle::walls::parted;
@@ -165,7 +165,8 @@ fn deviation_of(
     let places = [along(i.x0, i.v, f64::from(time)), along(j.x0, j.v, f64::from(time))];
     let diameter = cloud.diameter(s, t);
     let draws = Draws::of(77, ROUND, [i.id, j.id], key);
-    collide(&mut i, &mut j, [0.0; 3], f64::from(time), diameter, &gases, &draws);
+    let meeting = Meeting { image: [0.0; 3], time: f64::from(time), diameter };
+    collide(&mut i, &mut j, meeting, &gases, &draws);
     // The miss vector errs by 16 u |r|. It turns g' by that over sigma, and by more near b = sigma, where
     // sin chi = 2 sqrt(b2 (1 - b2)) is steep; powers of f32 cost up to 64 u of the energy.
     let b = (norm(miss) / diameter).min(1.0);

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use corpuscle::output::{
-    Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment, Origin, OutputState,
+    Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment, Origin, OutputState, RunContext,
 };
 use corpuscle::ranks::{Communicator, Pace, in_process};
 use corpuscle::simulation::{Initial, InitialParticles, Model};
@@ -100,7 +100,7 @@ fn saved(parent: &Path, number: u32) -> Checkpoint {
     let origin = Origin { scene: String::new(), plan: String::new(), meshes: Vec::new(), adapter: Adapter::default() };
     let file = AppendedState { bytes: 0, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
-    let path = writer.commit(files, &moment, &origin, &1_u64, &output).unwrap();
+    let path = writer.commit(files, &moment, RunContext { origin: &origin, state: &1_u64, output: &output }).unwrap();
     Checkpoint::open(&path).unwrap()
 }
 

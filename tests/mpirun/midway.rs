@@ -5,6 +5,7 @@ use std::path::Path;
 use corpuscle::gpu::Device;
 use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment as Written, Origin, OutputState,
+    RunContext,
 };
 use corpuscle::ranks::{Communicator, Solo};
 use corpuscle::simulation::{
@@ -44,7 +45,8 @@ fn saved(parent: &Path, model: &Model, state: &RunState, particles: &[GpuParticl
     let origin = Origin::new(&model.scene, plan, Adapter::default()).expect("an origin");
     let file = AppendedState { bytes: 0, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
-    let path = writer.commit(files, &moment, &origin, state, &output).expect("a checkpoint");
+    let path =
+        writer.commit(files, &moment, RunContext { origin: &origin, state, output: &output }).expect("a checkpoint");
     Checkpoint::open(&path).expect("a checkpoint")
 }
 
@@ -66,7 +68,7 @@ pub fn go_on(
         ranks => Setup::from_checkpoint(model, device, ranks, saved(folder.path(), model, &state, &particles))?,
     };
     let mut witness = Witness::default();
-    let outcome = Simulation::resume(model, device, &setup, comm, options, &state)?.run(&mut witness)?;
+    let outcome = Simulation::among(model, device, &setup, comm, options)?.resume(&state)?.run(&mut witness)?;
     Ok(Run { rows: witness.rows, snapshots: witness.snapshots, outcome })
 }
 

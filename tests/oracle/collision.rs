@@ -107,17 +107,18 @@ pub fn picked(energy: f64, modes: &[[f64; 3]], draw: f64) -> f64 {
     modes[modes.len() - 1][2]
 }
 
-/// Rules 5 and 6: i (lower id) and j after their collision at `time`. Returns the virial r . (g' - g) over
+/// Where j is seen from i, when the two meet, and how large they are.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    pub image: Vector,
+    pub time: f64,
+    pub diameter: f64,
+}
+
+/// Rules 5 and 6: i (lower id) and j after their collision. Returns the virial r . (g' - g) over
 /// |r| |g|, which the method makes zero.
-pub fn collide(
-    i: &mut Body,
-    j: &mut Body,
-    image: Vector,
-    time: f64,
-    diameter: f64,
-    gases: &[Gas],
-    draws: &Draws,
-) -> f64 {
+pub fn collide(i: &mut Body, j: &mut Body, meeting: Meeting, gases: &[Gas], draws: &Draws) -> f64 {
+    let Meeting { image, time, diameter } = meeting;
     let g = minus(j.v, i.v);
     let miss = along(along(minus(j.x0, i.x0), image, 1.0), g, time);
     let (mass_i, mass_j) = (gases[i.gas].mass, gases[j.gas].mass);

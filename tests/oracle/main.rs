@@ -5,7 +5,7 @@
 #[path = "mod.rs"]
 mod oracle;
 
-use oracle::collision::{Body, Draws, Gas, closest_approach, collide, exchanged};
+use oracle::collision::{Body, Draws, Gas, Meeting, closest_approach, collide, exchanged};
 use oracle::random::{Stream, philox};
 use oracle::simulation::{Boundary, Simulation};
 use oracle::vector::{Vector, along, dot, minus, norm, scaled};
@@ -56,7 +56,8 @@ fn a_collision_conserves_and_has_no_virial() {
         let (old_energy, old_momentum, g) = (energy(&i) + energy(&j), momentum(&i, &j), minus(j.v, i.v));
         let place = along(i.x0, i.v, time);
         let draws = Draws::of(3, 0, [i.id, j.id], [1, 2]);
-        let virial = collide(&mut i, &mut j, [0.0; 3], time, diameter, &gases, &draws);
+        let meeting = Meeting { image: [0.0; 3], time, diameter };
+        let virial = collide(&mut i, &mut j, meeting, &gases, &draws);
         assert!(virial.abs() < 1e-10, "{virial}");
         assert!((energy(&i) + energy(&j) - old_energy).abs() < 1e-12 * old_energy);
         assert!(norm(minus(momentum(&i, &j), old_momentum)) < 1e-12 * norm(old_momentum).max(1.0));

@@ -1,6 +1,6 @@
 //! Whole steps of the closest-approach method (specification, sections 2 and 3) in a box, f64, O(N^2).
 
-use super::collision::{Body, Draws, Gas, collide};
+use super::collision::{Body, Draws, Gas, Meeting, collide};
 use super::pairing::{Candidates, choices, mutual};
 use super::random::Stream;
 use super::vector::{Vector, along, dot, minus, norm};
@@ -174,7 +174,8 @@ impl Simulation {
     fn settle(&mut self, (i, j, image): (usize, usize, Vector), time: f64, round: u32) {
         let (mut first, mut second) = (self.bodies[i], self.bodies[j]);
         let draws = Draws::of(self.steps, round, [first.id, second.id], self.key);
-        let virial = collide(&mut first, &mut second, image, time, self.diameter, &self.gases, &draws);
+        let meeting = Meeting { image, time, diameter: self.diameter };
+        let virial = collide(&mut first, &mut second, meeting, &self.gases, &draws);
         self.virial = self.virial.max(virial.abs());
         first.partner = Some(second.id);
         second.partner = Some(first.id);

@@ -7,8 +7,9 @@ use super::clouds::*;
 /// For each part, the most by which its weight can exceed its target, as a factor, if every cut above it is the best
 /// plane: the side's target and half the heavier plane at the cut, over the side's target.
 pub fn granularity(tree: &Tree, shares: &[f64], points: &Points) -> Vec<f64> {
-    fn walk(tree: &Tree, at: usize, shares: &[f64], points: &Points, bound: f64, into: &mut Vec<f64>) {
-        let Node::Cut { axis, plane, low, high } = tree.nodes()[at] else { return into.push(bound) };
+    // Bounds of the parts below a node, of which the shares are these.
+    fn walk(tree: &Tree, at: usize, shares: &[f64], points: &Points, bound: f64) -> Vec<f64> {
+        let Node::Cut { axis, plane, low, high } = tree.nodes()[at] else { return vec![bound] };
         let weight = |within: &dyn Fn(u32) -> bool| -> u64 {
             points.iter().filter(|(cell, _)| within(cell[axis])).map(|(_, weight)| weight).sum()
         };
@@ -16,13 +17,13 @@ pub fn granularity(tree: &Tree, shares: &[f64], points: &Points) -> Vec<f64> {
         let below = points.iter().copied().filter(|(cell, _)| cell[axis] < plane).collect();
         let above = points.iter().copied().filter(|(cell, _)| cell[axis] >= plane).collect();
         let count = parts_below(tree, low);
-        let first = into.len();
         let share = |parts: &[f64]| parts.iter().sum::<f64>();
-        let (low_share, high_share) = (share(&shares[first..first + count]), share(&shares[first + count..]));
+        let (low_share, high_share) = (share(&shares[..count]), share(&shares[count..]));
         let total = weight(&|_| true) as f64 / (low_share + high_share);
         let more = |share: f64| bound * (1.0 + half_plane / (total * share));
-        walk(tree, low, &shares[..first + count], &below, more(low_share), into);
-        walk(tree, high, shares, &above, more(high_share), into);
+        let mut bounds = walk(tree, low, &shares[..count], &below, more(low_share));
+        bounds.extend(walk(tree, high, &shares[count..], &above, more(high_share)));
+        bounds
     }
     fn parts_below(tree: &Tree, at: usize) -> usize {
         match tree.nodes()[at] {
@@ -30,9 +31,7 @@ pub fn granularity(tree: &Tree, shares: &[f64], points: &Points) -> Vec<f64> {
             _ => 1,
         }
     }
-    let mut bounds = Vec::new();
-    walk(tree, 0, shares, points, 1.0, &mut bounds);
-    bounds
+    walk(tree, 0, shares, points, 1.0)
 }
 
 /// No part exceeds its share by more than the best planes can keep.

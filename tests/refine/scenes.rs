@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use corpuscle::gpu::Device;
 use corpuscle::output::{
-    Adapter, AppendedState, CheckpointWriter, HistoryState, Moment as Written, Origin, OutputState,
+    Adapter, AppendedState, CheckpointWriter, HistoryState, Moment as Written, Origin, OutputState, RunContext,
 };
 use corpuscle::ranks::Solo;
 use corpuscle::simulation::{
@@ -174,7 +174,7 @@ impl Cut {
         let origin = Origin::new(&self.model.scene, plan, Adapter::default()).unwrap();
         let history = HistoryState { rows: 0, file: AppendedState { bytes: 0, crc32: 0 } };
         let output = OutputState { history, snapshots: None };
-        writer.commit(files, &moment, &origin, &self.state, &output).unwrap();
+        writer.commit(files, &moment, RunContext { origin: &origin, state: &self.state, output: &output }).unwrap();
     }
 }
 
@@ -203,6 +203,7 @@ pub fn go_on(model: &Model, particles: &[GpuParticle], state: &RunState, steps: 
     let solo = Solo::new();
     let options = Options { stop_after_steps: Some(steps), ..Options::default() };
     let mut rows = Rows::default();
-    let outcome = Simulation::resume(model, &device, &setup, &solo, options, state).unwrap().run(&mut rows).unwrap();
+    let simulation = Simulation::among(model, &device, &setup, &solo, options).unwrap().resume(state).unwrap();
+    let outcome = simulation.run(&mut rows).unwrap();
     Continued { rows: rows.0, outcome }
 }

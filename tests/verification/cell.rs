@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use corpuscle::simulation::Options;
 use corpuscle::study::verify::collisions::virial_error_of_cells;
-use corpuscle::study::verify::equilibrium::{collision_number, mixture, ratios};
+use corpuscle::study::verify::equilibrium::{Relaxation, collision_number, mixture, ratios};
 
 use crate::equilibrium_box::{EDGE, EquilibriumBox, TEMPERATURE};
 use crate::wall_pressure::pressure_ratio;
@@ -110,7 +110,8 @@ fn spin_and_both_gases_come_to_one_temperature() {
 #[test]
 fn spin_relaxes_in_the_collision_number_asked_for() {
     let asked = 5.0;
-    let (found, error) = collision_number(&device(), "cell", 2.0, asked, 0.1, 0.25).expect("a run");
+    let gas = Relaxation { method: "cell", zeta: 2.0, asked, occupancy: 0.1, step_over_tau: 0.25 };
+    let (found, error) = collision_number(&device(), gas).expect("a run");
     println!("Z {asked}: {found:.3} +- {error:.3}");
     assert!(error <= 0.01 * asked);
     assert!((found - asked).abs() < 0.05 * asked, "Z = {found:.3} +- {error:.3}");

@@ -5,7 +5,7 @@
 //! Pressure and energy checks never see a breach of these: with R = 1 the energies stay 1.5 % apart at
 //! x = .2 (section 2).
 
-use corpuscle::study::verify::equilibrium::{self, ratios, temperatures};
+use corpuscle::study::verify::equilibrium::{self, Relaxation, ratios, temperatures};
 
 use crate::whole_run::{Run, device};
 
@@ -14,7 +14,8 @@ fn mixture(rounds: u32, step_over_tau: f64, steps: u32) -> Run {
 }
 
 fn measured_collision_number(asked: f64, occupancy: f64, step_over_tau: f64) -> (f64, f64) {
-    equilibrium::collision_number(&device(), "closest-approach", 2.0, asked, occupancy, step_over_tau).expect("a run")
+    let gas = Relaxation { method: "closest-approach", zeta: 2.0, asked, occupancy, step_over_tau };
+    equilibrium::collision_number(&device(), gas).expect("a run")
 }
 
 #[test]

@@ -229,8 +229,19 @@ fn holds(name: &str, asked: f64, predicted: f64, (found, error): (f64, f64)) {
     );
 }
 
+/// A scene, what its plan is asked for, and how it is run.
+struct Case<'a> {
+    name: &'a str,
+    text: &'a str,
+    method: &'a str,
+    asked: f64,
+    rows: u32,
+    seeds: u64,
+}
+
 /// Runs of several seeds of a scene, and whether the law holds.
-fn check(name: &str, text: &str, method: &str, asked: f64, rows: u32, seeds: u64) -> Model {
+fn check(case: &Case<'_>) -> Model {
+    let &Case { name, text, method, asked, rows, seeds } = case;
     let request = format!("method = \"{method}\"\naccuracy = {asked}");
     let models: Vec<Model> = (1..=seeds).map(|seed| model(&scene(text, &request, rows, seed))).collect();
     let predicted = forecast(&models[0]);
@@ -243,7 +254,8 @@ fn check(name: &str, text: &str, method: &str, asked: f64, rows: u32, seeds: u64
 
 #[test]
 fn gas_at_rest() {
-    let planned = check("rest", REST, "closest-approach", 0.05, 20, 2);
+    let planned =
+        check(&Case { name: "rest", text: REST, method: "closest-approach", asked: 0.05, rows: 20, seeds: 2 });
     // The check can fail: a sixteenth of the particles is four times as noisy, and the forecast knows that too.
     let few = format!("method = \"closest-approach\"\nparticles = {}\naccuracy = 0.5", planned.plan.particles / 16);
     let few = model(&scene(REST, &few, 20, 1));
@@ -273,7 +285,8 @@ fn uniform_gas_takes_the_steps_of_its_plan() {
 #[test]
 #[ignore = "half a minute: scripts/test.sh --long"]
 fn two_chambers_and_a_hole() {
-    let planned = check("two chambers", TWO, "closest-approach", 0.05, 12, 8);
+    let planned =
+        check(&Case { name: "two chambers", text: TWO, method: "closest-approach", asked: 0.05, rows: 12, seeds: 8 });
     assert!(planned.plan.openings[0].knudsen < 1.0, "{}", planned.plan.openings[0].knudsen);
 }
 
@@ -297,18 +310,18 @@ fn effusion() {
 
 #[test]
 fn a_closed_vessel_is_filled() {
-    check("filling", FILLED, "closest-approach", 0.02, 20, 3);
+    check(&Case { name: "filling", text: FILLED, method: "closest-approach", asked: 0.02, rows: 20, seeds: 3 });
 }
 
 #[test]
 #[ignore = "three minutes: scripts/test.sh --long"]
 fn a_vessel_is_filled_by_little_flow() {
-    check("low flow", LOW, "closest-approach", 0.05, 20, 8);
+    check(&Case { name: "low flow", text: LOW, method: "closest-approach", asked: 0.05, rows: 20, seeds: 8 });
 }
 
 #[test]
 fn a_vessel_vents() {
-    check("vent", VENTED, "closest-approach", 0.06, 20, 6);
+    check(&Case { name: "vent", text: VENTED, method: "closest-approach", asked: 0.06, rows: 20, seeds: 6 });
 }
 
 /// A hole of which only the flow matters is modelled. The limit is that of the whole scene, not of the part that is left.
@@ -344,24 +357,24 @@ fn a_vessel_in_a_room() {
 
 #[test]
 fn a_small_tank() {
-    check("tank", TANK, "closest-approach", 0.35, 10, 3);
+    check(&Case { name: "tank", text: TANK, method: "closest-approach", asked: 0.35, rows: 10, seeds: 3 });
 }
 
 #[test]
 fn blind_a_slab_of_cells() {
-    check("slab", SLAB, "cell", 0.04, 15, 3);
+    check(&Case { name: "slab", text: SLAB, method: "cell", asked: 0.04, rows: 15, seeds: 3 });
 }
 
 #[test]
 #[ignore = "half a minute: scripts/test.sh --long"]
 fn blind_two_holes() {
-    check("two holes", TWO_HOLES, "closest-approach", 0.17, 10, 3);
+    check(&Case { name: "two holes", text: TWO_HOLES, method: "closest-approach", asked: 0.17, rows: 10, seeds: 3 });
 }
 
 #[test]
 #[ignore = "half a minute: scripts/test.sh --long"]
 fn blind_a_hot_inflow() {
-    check("hot inflow", HOT, "closest-approach", 0.03, 10, 3);
+    check(&Case { name: "hot inflow", text: HOT, method: "closest-approach", asked: 0.03, rows: 10, seeds: 3 });
 }
 
 /// The measure of a release: mean |rho - exact| over fiftieths of the length, over the mean density.

@@ -130,7 +130,7 @@ impl<'a> Checkpoints<'a> {
         let at = output::Moment { step, time, particles, ids };
         let output = output().map_err(|error| error.to_string())?;
         let commit = || -> Result<Written, CheckpointError> {
-            let path = writer.commit(files, &at, origin, state, &output)?;
+            let path = writer.commit(files, &at, output::RunContext { origin, state, output: &output })?;
             let bytes = output::Checkpoint::open_checked(&path)?.manifest().file.iter().map(|file| file.bytes).sum();
             Ok(Written { path, step, time, bytes })
         };

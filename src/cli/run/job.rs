@@ -6,7 +6,7 @@ use super::beginning::Beginning;
 use super::checkpoints::Checkpoints;
 use super::ending::{Ending, ending};
 use super::environment::{command, record};
-use super::recorder::{Recorder, Totals};
+use super::recorder::{Reached, Recorder, Totals};
 use super::reference::Reference;
 use super::summary::{continued, summary, totals, warned};
 use super::{chart, timing};
@@ -50,9 +50,10 @@ impl Job<'_> {
             balance: execution.sharing.balance,
             ..Options::default()
         };
+        let simulation = Simulation::among(model, device, setup, comm, options)?;
         let simulation = match &self.from {
-            None => Simulation::among(model, device, setup, comm, options)?,
-            Some(from) => Simulation::resume(model, device, setup, comm, options, &from.state)?,
+            None => simulation,
+            Some(from) => simulation.resume(&from.state)?,
         };
         let mut checkpoints = Checkpoints::new(settings.folder.join(CHECKPOINT_FOLDER), self.interrupt, self.started);
         let Some(folder) = self.folder.as_ref().filter(|_| comm.rank() == 0) else {
@@ -127,7 +128,7 @@ impl Job<'_> {
         forget_after(&folder.checkpoints(), from.step())?;
         let totals =
             Totals { time: from.time(), steps: from.step(), particle_steps: from.state.account.particle_steps };
-        Ok(Recorder::resume(model, reference, folder.path(), shown, &from.output, totals)?)
+        Ok(Recorder::resume(model, reference, folder.path(), shown, Reached { output: &from.output, totals })?)
     }
 
     fn tell(&self, ended: &Ended<'_>, folder: &OutputFolder) -> Result<(), CliError> {

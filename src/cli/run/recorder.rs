@@ -72,7 +72,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes on with the files in `dir` from where a checkpoint found them: what was written after it is dropped, so that
-    /// they end as those of a run without interruption. `totals` are those of the checkpoint.
+    /// they end as those of a run without interruption.
     ///
     /// # Errors
     /// If a file is not the one that the checkpoint knows.
@@ -81,11 +81,11 @@ impl<'a> Recorder<'a> {
         reference: Reference,
         dir: &Path,
         shown: Shown,
-        state: &OutputState,
-        totals: Totals,
+        from: Reached<'_>,
     ) -> Result<Recorder<'a>, OutputError> {
-        let history = HistoryWriter::resume(dir, &columns(&model.scene), &state.history)?;
-        let snapshots = match &state.snapshots {
+        let Reached { output, totals } = from;
+        let history = HistoryWriter::resume(dir, &columns(&model.scene), &output.history)?;
+        let snapshots = match &output.snapshots {
             None => None,
             Some(snapshots) => {
                 let writer = SnapshotWriter::resume(dir, snapshots)?.naming(gas_names(model));
@@ -200,6 +200,13 @@ impl<'a> Recorder<'a> {
             .collect();
         writer.write_among(time, &rows, self.among.is_some().then_some(owners)).map(|_| ())
     }
+}
+
+/// How far a run had got at a checkpoint.
+#[derive(Debug, Clone, Copy)]
+pub struct Reached<'a> {
+    pub output: &'a OutputState,
+    pub totals: Totals,
 }
 
 /// What a run has done so far.
@@ -399,7 +406,8 @@ mod tests {
             draw(&recorder, dir.path(), &model);
             drop(recorder);
             let reference = Reference::new(&model);
-            let mut resumed = Recorder::resume(&model, reference, dir.path(), Shown::No, &state, totals).unwrap();
+            let from = Reached { output: &state, totals };
+            let mut resumed = Recorder::resume(&model, reference, dir.path(), Shown::No, from).unwrap();
             go_on(&mut resumed, cut, 10, &model);
             draw(&resumed, dir.path(), &model);
             assert!(files(dir.path()) == files(whole.path()), "cut {cut}, lost {lost}");

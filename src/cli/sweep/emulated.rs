@@ -4,7 +4,7 @@ use crate::gpu::Device;
 use crate::partition::By;
 use crate::simulation::{Ghosts, HaloOptions, Initial, InitialParticles, Model, Setup};
 use crate::study::Strategy;
-use crate::study::emulation::{Effort, Emulated, State, emulate};
+use crate::study::emulation::{Emulated, Emulator, State};
 use crate::study::modelled::{Costs, Gpu, Network, Point, point};
 use crate::study::state::{Moment, weights};
 
@@ -40,7 +40,7 @@ impl SweepPlan {
         let (network, gpu) = assumed(&self.raw.emulation);
         let by = By::from(self.raw.tuning.balance_by);
         let halo = halo(&self.raw.tuning);
-        let effort = Effort { intervals: self.raw.emulation.intervals as usize, by, halo };
+        let emulator = Emulator { device, intervals: self.raw.emulation.intervals as usize, by, halo };
         let pairs = self.pairs(&self.devices);
         let mut of_pairs: Vec<Emulations> = vec![Vec::new(); pairs.len()];
         let mut particles = Vec::new();
@@ -53,8 +53,11 @@ impl SweepPlan {
             let held = self.raw.runs.weak.then(|| one * group[0] as u64);
             let of_group = self.pairs(group);
             for at in 0..self.moments.len().max(1) {
-                let of_pairs = &mut of_pairs[first..][..of_group.len()];
-                particles.push(self.emulate_state(device, at, held, &of_group, &effort, of_pairs)?);
+                let (count, emulated) = self.emulate_state(&emulator, at, held, &of_group)?;
+                particles.push(count);
+                for (states, own) in of_pairs[first..].iter_mut().zip(emulated) {
+                    states.push(own);
+                }
             }
             first += of_group.len();
         }
@@ -69,16 +72,15 @@ impl SweepPlan {
     }
 
     /// Emulates one state, `held` particles of it if not as many as it has, for these counts and strategies; returns
-    /// how many particles it has.
+    /// how many particles it has, and for each pair what was found and the steps that it stands for.
     fn emulate_state(
         &self,
-        device: &Device,
+        emulator: &Emulator<'_>,
         at: usize,
         held: Option<u64>,
         pairs: &[(usize, Strategy)],
-        effort: &Effort,
-        of_pairs: &mut [Emulations],
-    ) -> Result<u64, CliError> {
+    ) -> Result<(u64, Emulations), CliError> {
+        let device = emulator.device;
         let path = &self.raw.scene.scene;
         let moment = self.moments.get(at);
         let mut scene = moment.map_or(&self.scene, |moment| &moment.model.scene).clone();
@@ -100,16 +102,17 @@ impl SweepPlan {
         };
         let several = pairs.iter().any(|&(devices, _)| devices > 1);
         let shared = several.then(|| set_up(&among, 2)).transpose()?;
-        for (&(devices, strategy), states) in pairs.iter().zip(of_pairs) {
+        let mut found = Vec::with_capacity(pairs.len());
+        for &(devices, strategy) in pairs {
             let model = if devices == 1 { &alone } else { &among };
             let own = if devices == 1 { Some(set_up(model, 1)?) } else { None };
-            let Some(setup) = own.as_ref().or(shared.as_ref()) else { continue };
+            let Some(setup) = own.as_ref().or(shared.as_ref()) else { unreachable!("several devices share a set-up") };
             let run = moment.map(|moment| &moment.run);
-            let state = State { name: name.clone(), model, run, steps };
+            let state = State { name: name.clone(), model, setup, run, steps };
             tracing::info!("{name}: {devices} subdomains, {}", strategy.title());
-            states.push((steps, emulate(&state, device, setup, devices, strategy, effort)?));
+            found.push((steps, emulator.emulate(&state, devices, strategy)?));
         }
-        Ok(among.plan.particles)
+        Ok((among.plan.particles, found))
     }
 }
 

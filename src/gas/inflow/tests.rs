@@ -26,8 +26,13 @@ fn orifice(mixture: Vec<(usize, f64)>, jet: Option<Jet>) -> Orifice {
 
 const NU: f64 = 1e-4;
 
+fn inflow_until(orifices: &[Orifice], end: f64, moles_per_particle: f64, [seed, first_id]: [u32; 2]) -> Inflow {
+    let gases = &gases();
+    Inflow::new(orifices, end, InflowParticles { gases, moles_per_particle, seed: seed.into(), first_id })
+}
+
 fn inflow(orifices: &[Orifice]) -> Inflow {
-    Inflow::new(orifices, &gases(), NU, 11, 100, 0.1)
+    inflow_until(orifices, 0.1, NU, [11, 100])
 }
 
 fn energy(newborn: &Newborn) -> f64 {
@@ -83,7 +88,7 @@ fn mass_is_within_half_a_particle() {
     counts[1] -= 1;
     assert!(off(&counts, 0.1) > 0.5);
     // Nothing enters after the end of the run.
-    let short = Inflow::new(&orifices, &gases(), NU, 11, 0, 0.01);
+    let short = inflow_until(&orifices, 0.01, NU, [11, 0]);
     assert!(short.total() < whole.total() / 2);
 }
 
@@ -94,7 +99,7 @@ fn orifices_alike_take_turns() {
     let small = orifice(vec![(0, 1.0)], None);
     let each = FlowIntegral::new(&small.mass_flow, 0.1).total() / 0.028;
     let orifices = vec![small; 24];
-    let mut inflow = Inflow::new(&orifices, &gases(), each / 0.69, 11, 0, 0.1);
+    let mut inflow = inflow_until(&orifices, 0.1, each / 0.69, [11, 0]);
     assert_eq!(inflow.total(), 17, "24 times .69 is 16.56");
     let without = inflow.without_particle();
     let newborns = inflow.take_until(0.1);
@@ -158,7 +163,7 @@ fn chunks_do_not_matter() {
     assert_eq!(parts, whole);
     assert_eq!(cut, once);
     // The check can fail: another seed gives other velocities.
-    let other = Inflow::new(&orifices, &gases(), NU, 12, 100, 0.1).take_until(0.1);
+    let other = inflow_until(&orifices, 0.1, NU, [12, 100]).take_until(0.1);
     assert_ne!(other, whole);
 }
 
@@ -167,7 +172,7 @@ fn chunks_do_not_matter() {
 fn default_speeds_are_maxwellian() {
     let mut source = orifice(vec![(0, 1.0)], None);
     source.temperature = Curve { points: vec![[0.0, 700.0]] };
-    let newborns = Inflow::new(&[source.clone()], &gases(), 2e-5, 1, 0, 0.1).take_until(0.1);
+    let newborns = inflow_until(&[source.clone()], 0.1, 2e-5, [1, 0]).take_until(0.1);
     let c0 = (GAS_CONSTANT * 700.0 / 0.028f64).sqrt();
     let count = newborns.len() as f64;
     assert!(count > 50_000.0);

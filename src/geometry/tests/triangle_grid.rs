@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::triangle_grid::{EARLIER_Y, EARLIER_Z};
-use crate::geometry::{CLEARANCE_UNIT, CellClass, Clearance, Grid, TriangleGrid, clearances};
+use crate::geometry::{CLEARANCE_UNIT, CellClass, Clearance, Grid, MovingWalls, TriangleGrid, clearances};
 use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::details::intersection_test_aabb_triangle;
@@ -73,7 +73,8 @@ proptest! {
         let at_rest = TriangleGrid::build(&vessel, &grid, margin).unwrap();
         let rest = vessel.without(|wall| wall == 1);
         let moves = |wall: usize| (wall == 1).then_some(0);
-        let built = TriangleGrid::build_still(&vessel, &rest, &grid, margin, 1, moves).unwrap();
+        let moving = MovingWalls { still: &rest, count: 1, number: &moves };
+        let built = TriangleGrid::build_still(&vessel, &grid, margin, &moving).unwrap();
         let body = &built.bodies[0];
         let of_body = |t: &u32| vessel.triangles[*t as usize].wall == 1;
         let [nx, ny, nz] = body.size;

@@ -36,7 +36,7 @@ pub(super) use layout::{is_checkpoint_file, is_checkpoint_folder, is_left_over};
 pub use manifest::{Adapter, FileRecord, Manifest};
 pub use origin::Origin;
 pub use read::Checkpoint;
-pub use write::{CheckpointWriter, Moment, forget_after};
+pub use write::{CheckpointWriter, Moment, RunContext, forget_after};
 
 /// How far the files of a run had got.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -35,6 +35,15 @@ fn state() -> State {
     (5, f64::INFINITY, -(1i128 << 100), "tally".into())
 }
 
+fn commit(
+    writer: CheckpointWriter,
+    files: Vec<FileRecord>,
+    moment: &Moment,
+    origin: &Origin,
+) -> Result<PathBuf, CheckpointError> {
+    writer.commit(files, moment, RunContext { origin, state: &state(), output: &output() })
+}
+
 fn moment(step: u64, particles: u64) -> Moment {
     Moment { step, time: 0.1 * step as f64, particles, ids: particles }
 }
@@ -51,7 +60,7 @@ fn written(parent: &Path, step: u64, counts: &[u32]) -> PathBuf {
             writer.particles(rank, &records(first - count..first)).unwrap()
         })
         .collect();
-    writer.commit(files, &moment(step, first.into()), &origin(), &state(), &output()).unwrap()
+    commit(writer, files, &moment(step, first.into()), &origin()).unwrap()
 }
 
 fn names(folder: &Path) -> Vec<String> {
@@ -232,14 +241,14 @@ fn particles_that_are_twice_or_beyond_there_are_refused() {
         let dir = tempfile::tempdir().unwrap();
         let writer = CheckpointWriter::new(dir.path(), moment.step);
         let files = vec![writer.particles(0, &records(ids.into_iter())).unwrap()];
-        let path = writer.commit(files, &moment, &origin(), &state(), &output()).unwrap();
+        let path = commit(writer, files, &moment, &origin()).unwrap();
         refusal(&path)
     };
     let miscounted = |claimed: u64| {
         let dir = tempfile::tempdir().unwrap();
         let writer = CheckpointWriter::new(dir.path(), 1);
         let file = FileRecord { particles: claimed, ..writer.particles(0, &records(0..3)).unwrap() };
-        refusal(&writer.commit(vec![file], &moment(1, claimed), &origin(), &state(), &output()).unwrap())
+        refusal(&commit(writer, vec![file], &moment(1, claimed), &origin()).unwrap())
     };
     assert!(miscounted(2).contains("it holds more than 64 bytes"), "{}", miscounted(2));
     assert!(miscounted(4).contains("it has 96 bytes of particles, 128 were written"), "{}", miscounted(4));
@@ -257,7 +266,7 @@ fn particles_that_a_rank_did_not_write_are_missed() {
     let dir = tempfile::tempdir().unwrap();
     let writer = CheckpointWriter::new(dir.path(), 3);
     let files = vec![writer.particles(0, &records(0..5)).unwrap()];
-    let error = writer.commit(files, &moment(3, 9), &origin(), &state(), &output()).unwrap_err();
+    let error = commit(writer, files, &moment(3, 9), &origin()).unwrap_err();
     assert_eq!(error.to_string(), "5 particles were handed over for a checkpoint of 9");
     assert!(latest(dir.path()).is_err());
     assert!(CheckpointWriter::new(dir.path(), 3).particles(0, &[0; 33]).is_err());
@@ -359,7 +368,7 @@ fn a_changed_mesh_is_refused() {
     assert_eq!(origin.meshes.len(), 1);
     let writer = CheckpointWriter::new(&parent, 1);
     let files = vec![writer.particles(0, &[]).unwrap()];
-    let path = writer.commit(files, &moment(1, 0), &origin, &state(), &output()).unwrap();
+    let path = commit(writer, files, &moment(1, 0), &origin).unwrap();
     assert_eq!(Checkpoint::open(&path).unwrap().meshes().unwrap(), std::slice::from_ref(&mesh));
     fs::write(&mesh, "solid b").unwrap();
     let error = refusal(&path);

@@ -29,6 +29,15 @@ pub struct Moment {
     pub ids: u64,
 }
 
+/// All of a checkpoint that is not particles.
+#[derive(Debug, Clone, Copy)]
+pub struct RunContext<'a, S> {
+    pub origin: &'a Origin,
+    /// Of the time loop.
+    pub state: &'a S,
+    pub output: &'a OutputState,
+}
+
 /// One checkpoint that is being written. Every rank has its own for the same folder, on a file system that they share.
 #[derive(Debug)]
 pub struct CheckpointWriter {
@@ -68,10 +77,9 @@ impl CheckpointWriter {
         self,
         particles: Vec<FileRecord>,
         moment: &Moment,
-        origin: &Origin,
-        state: &S,
-        output: &OutputState,
+        context: RunContext<'_, S>,
     ) -> Result<PathBuf, CheckpointError> {
+        let RunContext { origin, state, output } = context;
         let found = particles.iter().map(|file| file.particles).sum();
         if found != moment.particles {
             return Err(CheckpointError::Particles { found, expected: moment.particles });

@@ -16,7 +16,7 @@ use crate::plan::forecast::{Candidate, Cause, ColumnForecast, Forecaster, worst}
 use crate::plan::limits::{Quantity, limit};
 use crate::plan::longest::{Basis, possible_step};
 use crate::plan::measured::Measured;
-use crate::plan::resolution::{Extreme, MeanState, Resolution};
+use crate::plan::resolution::{ExpectedGas, Extreme, MeanState, Resolution};
 use crate::plan::warnings::wall_hits;
 use crate::scene::{Method, ModelRequest, Scene, Wish};
 
@@ -234,8 +234,8 @@ impl Chooser<'_> {
         let basis =
             Basis { method, request: &request, measured, states, extreme, particles: particles as u64, end_time: end };
         let (request, _) = possible_step(&basis).ok()?;
-        let choose =
-            |request: &ModelRequest| Resolution::choose(method, request, states, extreme, end, &mut Vec::new()).ok();
+        let gas = ExpectedGas { states, extreme };
+        let choose = |request: &ModelRequest| Resolution::choose(method, request, gas, end, &mut Vec::new()).ok();
         let own = choose(&request)?;
         if family.stretch <= 1.0 {
             return Some((own, false));

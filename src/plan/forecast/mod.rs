@@ -329,10 +329,10 @@ impl<'a> Run<'a> {
             share: volume / course.volumes.iter().sum::<f64>(),
         };
         let factor = if self.method == Method::None { 5.0 / 3.0 } else { here.gamma() };
-        let heat = course.control.walls.iter().filter(|wall| wall.chamber == group).map(|wall| {
-            let transfer = wall.heat.transfer;
-            noise::heat_rate(transfer, wall.area, volume, here.moles, here.spin_dof, here.thermal_speed())
-        });
+        let (moles, spin_dof) = (here.moles, here.spin_dof);
+        let gas = noise::HeatedGas { volume, moles, spin_dof, thermal_speed: here.thermal_speed() };
+        let walls = course.control.walls.iter().filter(|wall| wall.chamber == group);
+        let heat = walls.map(|wall| noise::heat_rate(wall.heat.transfer, wall.area, &gas));
         let vents = course.control.vents.iter().filter(|vent| vent.chamber == group).count() as f64;
         let share = vents / course.control.vents.len().max(1) as f64;
         noise::of_spin(particles, here.spin_dof, memory, time, window)

@@ -101,8 +101,19 @@ pub fn of_heat(particles: f64, spin_dof: f64, rate: f64, time: f64, window: f64)
     2.0 / ((3.0 + spin_dof) * particles) * averaged(1.0 / rate, window) * grown(time, 1.0 / rate)
 }
 
-/// 1/s: heat through a wall over the heat capacity of the gas. `volume` is that of the gas, `moles` what it holds.
-pub fn heat_rate(transfer: HeatTransfer, area: f64, volume: f64, moles: f64, spin_dof: f64, thermal_speed: f64) -> f64 {
+/// Uniform gas.
+pub struct HeatedGas {
+    /// m3.
+    pub volume: f64,
+    pub moles: f64,
+    pub spin_dof: f64,
+    /// m/s.
+    pub thermal_speed: f64,
+}
+
+/// 1/s: heat through a wall of this area over the heat capacity of the gas.
+pub fn heat_rate(transfer: HeatTransfer, area: f64, gas: &HeatedGas) -> f64 {
+    let &HeatedGas { volume, moles, spin_dof, thermal_speed } = gas;
     let mean_speed = (8.0 / PI).sqrt() * thermal_speed;
     let most = 0.25 * mean_speed * area / volume * (2.0 + 0.5 * spin_dof) / (0.5 * (3.0 + spin_dof));
     match transfer {
@@ -183,7 +194,9 @@ mod tests {
     /// A coefficient as large as all hits can carry is the accommodation 1.
     #[test]
     fn a_wall_exchanges_at_most_what_hits_carry() {
-        let rate = |transfer| heat_rate(transfer, 0.06, 1e-3, 0.04, 2.0, 300.0);
+        let rate = |transfer| {
+            heat_rate(transfer, 0.06, &HeatedGas { volume: 1e-3, moles: 0.04, spin_dof: 2.0, thermal_speed: 300.0 })
+        };
         assert_eq!(rate(HeatTransfer::Accommodation(1.0)), rate(HeatTransfer::Coefficient(1e9)));
         assert!(near(rate(HeatTransfer::Accommodation(0.5)), 0.5 * rate(HeatTransfer::Coefficient(1e9)), 1e-12));
         assert!(rate(HeatTransfer::Coefficient(10.0)) < rate(HeatTransfer::Coefficient(20.0)));

@@ -28,6 +28,17 @@ pub struct Account {
     counted: AccountState,
 }
 
+/// What there is at the end of a run.
+pub struct AtEnd<'a> {
+    /// Of all particles, and of nothing else.
+    pub tallies: &'a Tallies,
+    pub inflow: &'a Inflow,
+    /// Particles that were found in no gas.
+    pub outside: u64,
+    pub averages: &'a Averages,
+    pub surface_states: &'a SurfaceStates<'a>,
+}
+
 /// Totals of all gas, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct State {
@@ -232,14 +243,7 @@ impl Account {
         Ok(if scale > 0.0 { (energy - expected) / scale } else { 0.0 })
     }
 
-    pub fn add(
-        &mut self,
-        plan: &Plan,
-        tallies: &Tallies,
-        interval: &Interval,
-        samples: u32,
-        timed: &[(&'static str, f64)],
-    ) {
+    pub fn add(&mut self, plan: &Plan, tallies: &Tallies, interval: &Interval, timed: &[(&'static str, f64)]) {
         let counters = &tallies.counters;
         let steps = u64::from(interval.steps);
         let mut present =
@@ -275,7 +279,7 @@ impl Account {
         // One step was timed; a tally is in fewer steps than the rest.
         for &(name, seconds) in timed {
             let share = match name {
-                "tally" => u64::from(samples),
+                "tally" => u64::from(interval.samples()),
                 name if once_an_interval(name) => 1,
                 _ => steps,
             };
@@ -314,16 +318,9 @@ impl Account {
         PhaseTable { rows, steps: self.counted.steps, particle_steps: self.counted.particle_steps }
     }
 
-    /// The account at the end; `outside` particles were found in no gas.
-    pub fn close(
-        &self,
-        model: &Model,
-        inflow: &Inflow,
-        tallies: &Tallies,
-        outside: u64,
-        averages: &Averages,
-        conditions: &SurfaceStates<'_>,
-    ) -> Audit {
+    /// The account at the end.
+    pub fn close(&self, model: &Model, at_end: &AtEnd<'_>) -> Audit {
+        let &AtEnd { tallies, inflow, outside, averages, surface_states } = at_end;
         let end = self.totals(tallies);
         let plan = &model.plan;
         let (entered, before) = (self.entered(inflow), self.counted.before);
@@ -353,7 +350,7 @@ impl Account {
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
                 .collect(),
-            clipped_walls: conditions.beyond(),
+            clipped_walls: surface_states.beyond(),
             energy_end: end.energy,
             lost_collision_fraction: (plan.method != Method::None && events > 0.0)
                 .then(|| self.counted.lost as f64 / events),

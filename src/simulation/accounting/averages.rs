@@ -29,6 +29,14 @@ pub struct ZoneState {
     pub volume: f64,
 }
 
+/// An interval: so many steps of this length, s, of which so many were tallied.
+#[derive(Debug, Clone, Copy)]
+pub struct Sampled {
+    pub dt: f64,
+    pub steps: u32,
+    pub samples: u32,
+}
+
 /// A wall that moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MotionState {
@@ -239,9 +247,9 @@ impl Averages {
         }
     }
 
-    /// Adds an interval of `steps` steps of `dt` that took `samples` tallies; `wanted` is what its vents should have
-    /// passed.
-    pub fn add(&mut self, tallies: &Tallies, dt: f64, steps: u32, samples: u32, wanted: &[VentTarget]) {
+    /// Adds an interval; `wanted` is what its vents should have passed.
+    pub fn add(&mut self, tallies: &Tallies, sampled: Sampled, wanted: &[VentTarget]) {
+        let Sampled { dt, steps, samples } = sampled;
         self.steps += u64::from(steps);
         self.weight += dt * f64::from(samples);
         let zones = tallies.zones.iter().skip(self.gases.len());
@@ -269,7 +277,7 @@ impl Averages {
     }
 
     /// Adds the mean volumes of the interval's tallies, m3, where walls move.
-    pub fn add_room(&mut self, dt: f64, samples: u32, volumes: &[f64]) {
+    pub fn add_room(&mut self, Sampled { dt, samples, .. }: Sampled, volumes: &[f64]) {
         for (room, volume) in self.room.iter_mut().zip(volumes) {
             *room += dt * f64::from(samples) * volume;
         }

@@ -89,6 +89,18 @@ pub struct VentTarget {
     pub isentropic: f64,
 }
 
+/// When and how an interval was tallied.
+#[derive(Debug, Clone, Copy)]
+pub struct Window<'a> {
+    /// Its start and end, s.
+    pub span: [f64; 2],
+    pub samples: u32,
+    /// The mean ones of the chambers where walls move, m3.
+    pub volumes: &'a [f64],
+    /// What the device had of the vents.
+    pub vents: &'a [GpuVent],
+}
+
 pub struct SurfaceStates<'a> {
     model: &'a Model,
     species: Vec<Species>,
@@ -141,18 +153,11 @@ impl<'a> SurfaceStates<'a> {
         self.model.surface_models.placed.is_empty()
     }
 
-    /// Takes the tallies of an interval from `start` to `end`, s; intervals come in their order. Also tells what its
+    /// Takes the tallies of an interval; intervals come in their order. Also tells what its
     /// vents should have passed, by the gas that was there (and not by that of the interval before last, whose state they
     /// followed: so a vessel that empties fast does not lose more than it should).
-    /// `volumes` are the mean ones of the chambers where walls move, `vents` what the device had of the vents.
-    pub fn see(
-        &mut self,
-        tallies: &Tallies,
-        samples: u32,
-        [start, end]: [f64; 2],
-        volumes: &[f64],
-        vents: &[GpuVent],
-    ) -> (SeenGas, Vec<VentTarget>) {
+    pub fn see(&mut self, tallies: &Tallies, window: Window<'_>) -> (SeenGas, Vec<VentTarget>) {
+        let Window { span: [start, end], samples, volumes, vents } = window;
         if self.mirrors() {
             return (SeenGas::default(), Vec::new());
         }
@@ -188,7 +193,8 @@ impl<'a> SurfaceStates<'a> {
 
     /// The state of the start of a run, before any interval.
     pub fn start(&mut self, at_start: &Tallies) {
-        self.state.current = self.see(at_start, 1, [0.0; 2], &[], &[]).0;
+        let window = Window { span: [0.0; 2], samples: 1, volumes: &[], vents: &[] };
+        self.state.current = self.see(at_start, window).0;
     }
 
     /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last.
@@ -379,7 +385,8 @@ mod tests {
                 let left = exact.floor();
                 rest = exact - left;
                 let span = span.map(|time| time - 2.0 * dt);
-                let (seen, should) = conditions.see(&tallies(left as i64), 1, span, &[], &tables.vents);
+                let window = Window { span, samples: 1, volumes: &[], vents: &tables.vents };
+                let (seen, should) = conditions.see(&tallies(left as i64), window);
                 wanted = should[0].mass;
                 conditions.follow(seen);
             }

@@ -9,6 +9,7 @@ use super::moving::Moving;
 use super::orifices::{check_discs, check_orifices};
 use super::outlook::outlook;
 use super::surface_models::SurfaceModels;
+use crate::gas::{Inflow, InflowParticles};
 use crate::geometry::Vessel;
 use crate::plan::{
     Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors, plan,
@@ -55,6 +56,18 @@ impl Model {
         }
         let Survey { vessel, surface_models, moving, probe_volumes, .. } = seen;
         Ok(Model { scene, vessel, plan, surface_models, moving, probe_volumes, choice })
+    }
+
+    /// All that will flow in.
+    pub fn inflow(&self) -> Inflow {
+        let Model { scene, plan, .. } = self;
+        let particles = InflowParticles {
+            gases: &plan.species(),
+            moles_per_particle: plan.moles_per_particle,
+            seed: plan.seed,
+            first_id: plan.initial_particles as u32,
+        };
+        Inflow::new(&scene.orifices, plan.end_time, particles)
     }
 
     /// The plan with the reasons and the forecast of the choice, and what memory it takes, for people. `plan` is what runs

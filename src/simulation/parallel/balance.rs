@@ -5,13 +5,12 @@
 
 use std::time::Instant;
 
-use super::decomposition::Decomposition;
+use super::decomposition::{Decomposition, Histogram};
 use super::exchange::Traffic;
-use crate::gpu::Device;
 use crate::partition::{By, CostModel, Decision, IntegerWeights, Measurement, Trigger, Work};
 use crate::ranks::Communicator;
 use crate::simulation::error::SimulationError;
-use crate::subdomain::{GridCells, Subdomain, Tallies};
+use crate::subdomain::{GridCells, Tallies};
 
 /// Steps that a rebalance is thought to cost at most before one was measured.
 const STEPS_OF_A_REBALANCE: f64 = 2.0;
@@ -297,14 +296,12 @@ impl Balance {
     pub fn act(
         &mut self,
         step: u64,
-        device: &Device,
-        subdomain: &mut Subdomain,
-        comm: &dyn Communicator,
+        histogram: &mut Histogram<'_>,
         decomposition: &mut Decomposition,
     ) -> Result<f64, SimulationError> {
         let (weights, shares) = match self.options.mode {
             BalanceMode::Off | BalanceMode::Initial => return Ok(0.0),
-            BalanceMode::Forced { seed } => match forced(seed, step, comm.size()) {
+            BalanceMode::Forced { seed } => match forced(seed, step, histogram.comm.size()) {
                 Some(shares) => (IntegerWeights { particle: 1, candidate: 1, wall: 1, cell: 0 }, shares),
                 None => return Ok(0.0),
             },
@@ -316,13 +313,13 @@ impl Balance {
             }
         };
         let start = Instant::now();
-        let before = decomposition.weights(device, subdomain, comm, weights)?;
-        let moved = decomposition.rebalance(device, subdomain, comm, weights, &shares)?;
+        let before = decomposition.weights(histogram, weights)?;
+        let moved = decomposition.rebalance(histogram, weights, &shares)?;
         if !moved && self.options.mode == BalanceMode::Dynamic {
             // No cut could be better. To have looked costs little, and says nothing of what a rebalance costs.
             return Ok(start.elapsed().as_secs_f64());
         }
-        let after = decomposition.weights(device, subdomain, comm, weights)?;
+        let after = decomposition.weights(histogram, weights)?;
         let over = |weights: &[u64]| imbalance(weights.iter().zip(&shares).map(|(&w, share)| w as f64 / share));
         self.rebalances.push((step, [over(&before), over(&after)]));
         self.since = Some(step);

@@ -141,13 +141,7 @@ impl Decomposition {
     ///
     /// # Errors
     /// If a device or another rank fails.
-    pub fn weights(
-        &self,
-        device: &Device,
-        subdomain: &mut Subdomain,
-        comm: &dyn Communicator,
-        weights: IntegerWeights,
-    ) -> Result<Vec<u64>, SimulationError> {
+    pub fn weights(&self, histogram: &mut Histogram<'_>, weights: IntegerWeights) -> Result<Vec<u64>, SimulationError> {
         // Planes across the first axis, box after box.
         let mut starts = vec![0];
         for extent in self.tree.boxes() {
@@ -158,8 +152,7 @@ impl Decomposition {
             Node::Part(part) | Node::Open(part) => [3, 0, self.tree.boxes()[part].low[0], starts[part] as u32],
         };
         let cuts: Vec<[u32; 4]> = self.tree.nodes().iter().map(entry).collect();
-        let planes = subdomain.histogram(device, of_particles(weights), &cuts, starts[starts.len() - 1])?;
-        let planes = comm.sum(planes)?;
+        let planes = histogram.sum(weights, &cuts, starts[starts.len() - 1])?;
         let weight = |(bounds, extent): (&[usize], &CellBox)| {
             planes[bounds[0]..bounds[1]].iter().sum::<u64>() + u64::from(weights.cell) * extent.cells()
         };
@@ -174,17 +167,14 @@ impl Decomposition {
     /// If a device or another rank fails.
     pub fn rebalance(
         &mut self,
-        device: &Device,
-        subdomain: &mut Subdomain,
-        comm: &dyn Communicator,
+        histogram: &mut Histogram<'_>,
         weights: IntegerWeights,
         shares: &[f64],
     ) -> Result<bool, SimulationError> {
         let mut bisection = Bisection::new(self.tree.root(), shares, Some(&self.tree), TOLERANCE)?;
         while !bisection.wanted().is_empty() {
             let cuts = cuts_of(bisection.partial_tree(), &bisection);
-            let own = subdomain.histogram(device, of_particles(weights), &cuts, bisection.planes())?;
-            let mut planes = comm.sum(own)?;
+            let mut planes = histogram.sum(weights, &cuts, bisection.planes())?;
             bisection.add_cells(weights.cell, &mut planes);
             bisection.cut(&planes)?;
         }
@@ -197,9 +187,20 @@ impl Decomposition {
     }
 }
 
-/// Those that the devices sum: the host knows how many cells there are.
-fn of_particles(weights: IntegerWeights) -> [u32; 3] {
-    [weights.particle, weights.candidate, weights.wall]
+/// Weights over planes of cells, of the particles that all ranks own.
+pub struct Histogram<'a> {
+    pub device: &'a Device,
+    pub subdomain: &'a mut Subdomain,
+    pub comm: &'a dyn Communicator,
+}
+
+impl Histogram<'_> {
+    /// Of so many planes, by these cuts. (The host knows how many cells there are.) Collective.
+    fn sum(&mut self, weights: IntegerWeights, cuts: &[[u32; 4]], planes: usize) -> Result<Vec<u64>, SimulationError> {
+        let of_particles = [weights.particle, weights.candidate, weights.wall];
+        let own = self.subdomain.histogram(self.device, of_particles, cuts, planes)?;
+        Ok(self.comm.sum(own)?)
+    }
 }
 
 /// The cells that particles can be in.

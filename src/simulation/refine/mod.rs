@@ -20,7 +20,7 @@ use super::control::clock::Clock;
 use super::control::ladder::LadderError;
 use super::model::build::Model;
 use super::model::error::ModelError;
-use crate::gas::{FlowIntegral, Inflow, InflowStateError, moles_at, thermo};
+use crate::gas::{FlowIntegral, InflowStateError, moles_at, thermo};
 use crate::geometry::GeometryError;
 use crate::plan::MOST_PARTICLES;
 use crate::scene::Scene;
@@ -98,7 +98,7 @@ pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times
     let progress = check(parent, state, particles)?;
     let model = Model::new(refined_scene(parent, times)?).map_err(RefineError::Model)?;
     let clock = Clock::starting_at(&model.plan, progress);
-    let mut inflow = inflow_of(&model);
+    let mut inflow = model.inflow();
     let newborns = inflow.take_until(clock.time());
 
     let mut parents = particles.to_vec();
@@ -126,18 +126,12 @@ pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times
     Ok(Refined { model, particles: children, state, report })
 }
 
-fn inflow_of(model: &Model) -> Inflow {
-    let Model { scene, plan, .. } = model;
-    let first_id = plan.initial_particles as u32;
-    Inflow::new(&scene.orifices, &plan.species(), plan.moles_per_particle, plan.seed, first_id, plan.end_time)
-}
-
 /// The share of the simulated time that is done, if state and particles are of one moment of this model.
 fn check(parent: &Model, state: &RunState, particles: &[GpuParticle]) -> Result<f64, RefineError> {
     let plan = &parent.plan;
     let mut clock = Clock::new(plan);
     clock.restore(&state.clock)?;
-    let mut inflow = inflow_of(parent);
+    let mut inflow = parent.inflow();
     inflow.restore(&state.inflow)?;
     let mut found = vec![0; plan.gases.len()];
     for particle in particles {

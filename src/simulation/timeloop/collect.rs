@@ -4,11 +4,11 @@
 use super::simulation::Simulation;
 use super::submit::{InFlight, Pending};
 use crate::simulation::SimulationError;
-use crate::simulation::accounting::averages::Row;
+use crate::simulation::accounting::averages::{Row, Sampled};
 use crate::simulation::accounting::guards::{GuardWarning, Shown};
 use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
 use crate::simulation::control::interval::Interval;
-use crate::simulation::control::surface_states::SeenGas;
+use crate::simulation::control::surface_states::{SeenGas, Window};
 use crate::simulation::parallel::balance::Load;
 use crate::simulation::parallel::exchange::Traffic;
 use crate::simulation::run_state::Feedback;
@@ -111,7 +111,7 @@ impl Simulation<'_> {
     ) -> Result<f64, SimulationError> {
         let lost = |what: String| SimulationError::Lost { time: self.progress.read_until, what };
         let drift = self.books.account.check(tallies, interval).map_err(lost)?;
-        self.books.account.add(&self.model.plan, tallies, interval, interval.samples(), timed);
+        self.books.account.add(&self.model.plan, tallies, interval, timed);
         self.lists.add(&tallies.counters);
         Ok(drift)
     }
@@ -142,11 +142,12 @@ impl Simulation<'_> {
         let samples = interval.samples();
         let end = self.progress.read_until;
         let span = [end - interval.dt * f64::from(interval.steps), end];
-        let (seen, targets) =
-            self.control.surfaces.see(tallies, samples, span, &interval.volumes, &interval.tables.vents);
+        let window = Window { span, samples, volumes: &interval.volumes, vents: &interval.tables.vents };
+        let (seen, targets) = self.control.surfaces.see(tallies, window);
         self.watch_vents(end, observer);
-        self.books.averages.add(tallies, interval.dt, interval.steps, samples, &targets);
-        self.books.averages.add_room(interval.dt, samples, &interval.volumes);
+        let sampled = Sampled { dt: interval.dt, steps: interval.steps, samples };
+        self.books.averages.add(tallies, sampled, &targets);
+        self.books.averages.add_room(sampled, &interval.volumes);
         seen
     }
 

@@ -6,7 +6,7 @@ use crate::simulation::SimulationError;
 use crate::simulation::accounting::averages::Row;
 use crate::simulation::timeloop::observer::{Continued, Observer};
 use crate::simulation::zero_d::switch::beginning;
-use crate::simulation::zero_d::uniform::continue_uniform;
+use crate::simulation::zero_d::uniform::{Continuation, Earlier, continue_uniform};
 use crate::subdomain::Tallies;
 
 /// What of mass and energy may be lost to rounding where a control volume takes over.
@@ -28,7 +28,9 @@ impl Simulation<'_> {
             (1..=rows).map(|row| until * f64::from(row) / f64::from(rows)).filter(|&end| end > time * (1.0 + 1e-9));
         let beginning = beginning(self.model, at_end, time, self.control.surfaces.open_vents());
         let ends: Vec<f64> = ends.collect();
-        let audit = continue_uniform(self.model, known, &beginning, &ends, (last, &self.books.vents), observer)?;
+        let earlier = Earlier { last, watches: &self.books.vents };
+        let from = Continuation { beginning: &beginning, earlier };
+        let audit = continue_uniform(self.model, known, &from, &ends, observer)?;
         for (what, had, has) in
             [("mass", account.mass_end, audit.mass_start), ("energy", account.energy_end, audit.energy_start)]
         {

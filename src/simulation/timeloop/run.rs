@@ -11,9 +11,10 @@ use super::observer::{Moment, Observer, Outcome};
 use super::simulation::Simulation;
 use super::submit::Machine;
 use crate::gpu::Recording;
-use crate::simulation::accounting::audit::count_outside;
+use crate::simulation::accounting::audit::{AtEnd, count_outside};
 use crate::simulation::control::interval::{Deal, Interval, Span};
 use crate::simulation::error::SimulationError;
+use crate::simulation::parallel::decomposition::Histogram;
 use crate::subdomain::Tallies;
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
@@ -110,14 +111,14 @@ impl Simulation<'_> {
         let vessel = self.model.vessel_at(self.control.clock.time());
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
-        let audit = self.books.account.close(
-            self.model,
-            &self.inflow,
-            &at_end,
+        let closing = AtEnd {
+            tallies: &at_end,
+            inflow: &self.inflow,
             outside,
-            &self.books.averages,
-            &self.control.surfaces,
-        );
+            averages: &self.books.averages,
+            surface_states: &self.control.surfaces,
+        };
+        let audit = self.books.account.close(self.model, &closing);
         let continued = self.go_on_without_particles(&at_end, &audit, last.as_ref(), observer)?;
         if continued.is_none() {
             observer.vents(&self.books.vents);
@@ -209,9 +210,9 @@ impl Simulation<'_> {
             self.subdomain.shrink(plan.initial_particles + entered - asked.left);
         }
         if let Some(decomposition) = &mut self.parallel.decomposition {
-            let (subdomain, comm) = (&mut self.subdomain, self.ranks.comm());
-            let seconds =
-                self.parallel.balance.act(self.control.clock.steps, self.device, subdomain, comm, decomposition)?;
+            let mut histogram =
+                Histogram { device: self.device, subdomain: &mut self.subdomain, comm: self.ranks.comm() };
+            let seconds = self.parallel.balance.act(self.control.clock.steps, &mut histogram, decomposition)?;
             self.parallel.exchange.rebalanced(seconds);
             if decomposition.set_halo(self.parallel.halo_tuner.next()) {
                 decomposition.apply(self.device, &mut self.subdomain, &mut self.parallel.exchange)?;
@@ -243,7 +244,6 @@ impl Simulation<'_> {
         let spare = self.submissions.spare.pop();
         let fit_lists = std::mem::take(&mut self.submissions.fresh) && !self.options.lists_start_short;
         let mut machine = Machine {
-            plan: &self.model.plan,
             device: self.device,
             subdomain: &mut self.subdomain,
             exchange: &mut self.parallel.exchange,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
+use crate::geometry::{MovingWalls, TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
 use crate::gpu::Device;
 use crate::output::Checkpoint;
 use crate::scene::{Face, Method};
@@ -110,8 +110,8 @@ impl Setup {
         let motion = |wall: usize| model.moving.motion_of(wall);
         let margin = Walls::tolerance(&plan.grid);
         let still = model.vessel.without(|wall| motion(wall).is_some());
-        let bodies = model.moving.count();
-        let triangle_grid = TriangleGrid::build_still(&model.vessel, &still, &plan.grid, margin, bodies, motion)
+        let moving = MovingWalls { still: &still, count: model.moving.count(), number: &motion };
+        let triangle_grid = TriangleGrid::build_still(&model.vessel, &plan.grid, margin, &moving)
             .map_err(|error| error.told_in(model.scene.units))?;
         let (patch, patches) = patches(model);
         let parts = |triangle: usize| {

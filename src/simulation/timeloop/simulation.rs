@@ -178,10 +178,8 @@ impl<'a> Simulation<'a> {
         if options.dispatch_by_lengths {
             subdomain.dispatch_by_lengths();
         }
-        let first_id = plan.initial_particles as u32;
         let scene = &model.scene;
-        let inflow =
-            Inflow::new(&scene.orifices, &plan.species(), plan.moles_per_particle, plan.seed, first_id, plan.end_time);
+        let inflow = model.inflow();
         let parallel = Parallel {
             exchange: match ranks {
                 Ranks::Alone(_) => Exchange::none(),
@@ -232,43 +230,35 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// One rank of a run that goes on from a state: `setup` has the particles of that moment.
+    /// The same run from a state on: its set-up has the particles of that moment.
     ///
     /// # Errors
-    /// As [`Simulation::among`], or if the state is of another run.
-    pub fn resume(
-        model: &'a Model,
-        device: &'a Device,
-        setup: &Setup,
-        comm: &'a dyn Communicator,
-        options: Options<'a>,
-        state: &RunState,
-    ) -> Result<Simulation<'a>, SimulationError> {
-        let mut simulation = Simulation::among(model, device, setup, comm, options)?;
-        simulation.control.clock.restore(&state.clock)?;
-        simulation.control.ladder.restore(&state.ladder)?;
-        simulation.books.averages.restore(&state.averages)?;
-        simulation.books.account.restore(&model.plan, &state.account)?;
-        simulation.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
+    /// If the state is of another run.
+    pub fn resume(mut self, state: &RunState) -> Result<Simulation<'a>, SimulationError> {
+        self.control.clock.restore(&state.clock)?;
+        self.control.ladder.restore(&state.ladder)?;
+        self.books.averages.restore(&state.averages)?;
+        self.books.account.restore(&self.model.plan, &state.account)?;
+        self.inflow.restore(&state.inflow).map_err(RunStateError::from)?;
         for wanted in &state.feedback {
-            simulation.control.ladder.check(&wanted.demand.shares)?;
+            self.control.ladder.check(&wanted.demand.shares)?;
         }
-        simulation.control.feedback = state.feedback.iter().cloned().collect();
-        simulation.control.surfaces.restore(&state.surfaces)?;
-        simulation.books.guards.restore(&state.guards);
-        simulation.switching.restore(&state.switch)?;
-        if state.vents.len() != model.scene.vents.len() {
-            let [found, expected] = [state.vents.len(), model.scene.vents.len()].map(|n| n as u64);
+        self.control.feedback = state.feedback.iter().cloned().collect();
+        self.control.surfaces.restore(&state.surfaces)?;
+        self.books.guards.restore(&state.guards);
+        self.switching.restore(&state.switch)?;
+        if state.vents.len() != self.model.scene.vents.len() {
+            let [found, expected] = [state.vents.len(), self.model.scene.vents.len()].map(|n| n as u64);
             return Err(RunStateError::differs("vents", found, expected).into());
         }
-        simulation.books.vents.clone_from(&state.vents);
-        simulation.submissions.submitted = state.submitted as usize;
-        simulation.progress.next_row = state.next_row;
-        simulation.progress.next_snapshot = state.next_snapshot;
-        simulation.progress.read_until = state.read_until;
-        simulation.progress.repeated = state.repeated;
-        simulation.resumed = true;
-        Ok(simulation)
+        self.books.vents.clone_from(&state.vents);
+        self.submissions.submitted = state.submitted as usize;
+        self.progress.next_row = state.next_row;
+        self.progress.next_snapshot = state.next_snapshot;
+        self.progress.read_until = state.read_until;
+        self.progress.repeated = state.repeated;
+        self.resumed = true;
+        Ok(self)
     }
 
     pub(super) fn state(&self) -> RunState {

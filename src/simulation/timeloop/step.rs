@@ -22,7 +22,6 @@ pub fn step(
     exchange: &mut Exchange<'_>,
     rec: &mut Recording<'_>,
     slot: &mut StepSlot,
-    rounds: u32,
     sampling: Sampling,
 ) -> Result<(), SimulationError> {
     subdomain.reset(rec);
@@ -32,6 +31,7 @@ pub fn step(
     subdomain.sort(rec, slot);
     subdomain.neighbours(rec, slot);
     subdomain.collide(rec, slot);
+    let rounds = subdomain.rounds();
     for round in 0..rounds {
         exchange.updates(subdomain, rec, slot, round)?;
         subdomain.choose(rec, slot, round);

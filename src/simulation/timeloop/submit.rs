@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use super::step::{Sampling, step};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
-use crate::plan::Plan;
 use crate::ranks::Reduction;
 use crate::simulation::accounting::phases::{BLOCKS, LOST, TALLY};
 use crate::simulation::control::interval::Interval;
@@ -37,7 +36,6 @@ pub enum Pending {
 
 /// What an interval runs on.
 pub struct Machine<'a, 'b> {
-    pub plan: &'a Plan,
     pub device: &'a Device,
     pub subdomain: &'a mut Subdomain,
     pub exchange: &'a mut Exchange<'b>,
@@ -54,7 +52,7 @@ impl Machine<'_, '_> {
     /// change a bit of the result.
     pub fn submit(&mut self, interval: Interval, spare: Option<wgpu::Buffer>) -> Result<InFlight, SimulationError> {
         let start = Instant::now();
-        let (plan, device) = (self.plan, self.device);
+        let device = self.device;
         if let Some(decomposition) = self.decomposition.as_deref_mut()
             && decomposition.is_scattered()
         {
@@ -95,7 +93,7 @@ impl Machine<'_, '_> {
                 rec.time_alone(self.timer.filter(|_| !alone(k).is_empty()), alone(k));
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
-            step(self.subdomain, self.exchange, &mut rec, &mut slot, plan.rounds, sampling)?;
+            step(self.subdomain, self.exchange, &mut rec, &mut slot, sampling)?;
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);
                 self.subdomain.count_candidates(&mut rec, &slot);

@@ -33,39 +33,57 @@ pub fn run_uniform(model: &Model, observer: &mut dyn RowObserver) -> Result<Audi
     let solved = |times: &[f64]| reference_with_losses(model, times);
     let known = Known::of(&model.scene, &model.vessel)?;
     let watches = vec![VentWatch::default(); model.scene.vents.len()];
-    stretch(model, &known, &solved, &bounds, (None, &watches), observer)
+    stretch(model, &known, &Solution { solved: &solved, bounds }, Earlier { last: None, watches: &watches }, observer)
 }
 
-/// Goes on from a state that particles had and emits the rows that end at `ends`, s, which are after it. `earlier`: the row
-/// before, whose totals go on, and what was seen of the vents. The audit is that of what follows.
+/// What a control volume goes on from.
+pub struct Continuation<'a> {
+    /// The state that particles had.
+    pub beginning: &'a Beginning,
+    /// What they told.
+    pub earlier: Earlier<'a>,
+}
+
+/// Goes on and emits the rows that end at `ends`, s, which are after the beginning. The audit is that of what follows.
 ///
 /// # Errors
 /// If the observer stops the run.
 pub fn continue_uniform(
     model: &Model,
     known: &Known,
-    beginning: &Beginning,
+    from: &Continuation<'_>,
     ends: &[f64],
-    earlier: Earlier<'_>,
     observer: &mut dyn RowObserver,
 ) -> Result<Audit, SimulationError> {
-    let bounds = [&[beginning.time], ends].concat();
-    let solved = |times: &[f64]| continued_with_losses(model, beginning, times);
-    stretch(model, known, &solved, &bounds, earlier, observer)
+    let bounds = [&[from.beginning.time], ends].concat();
+    let solved = |times: &[f64]| continued_with_losses(model, from.beginning, times);
+    stretch(model, known, &Solution { solved: &solved, bounds }, from.earlier, observer)
 }
 
-/// The last row of what came before, if any did, and what was seen of each vent.
-type Earlier<'a> = (Option<&'a Row>, &'a [VentWatch]);
+/// What came before.
+#[derive(Clone, Copy)]
+pub struct Earlier<'a> {
+    /// The last row, if there was any: its totals go on.
+    pub last: Option<&'a Row>,
+    /// What was seen of each vent.
+    pub watches: &'a [VentWatch],
+}
 
-/// States, and what has left since the start of the stretch, at times that ascend from it.
+/// States, and what has left since the start, at times that ascend from it.
 type Solved<'a> = &'a dyn Fn(&[f64]) -> Vec<(Vec<State>, Lost)>;
+
+/// A time that a control volume is solved for.
+struct Solution<'a> {
+    solved: Solved<'a>,
+    /// The start of the first row and the ends of all, s.
+    bounds: Vec<f64>,
+}
 
 fn stretch(
     model: &Model,
     known: &Known,
-    solved: Solved<'_>,
-    bounds: &[f64],
-    (last, watches): Earlier<'_>,
+    Solution { solved, bounds }: &Solution<'_>,
+    Earlier { last, watches }: Earlier<'_>,
     observer: &mut dyn RowObserver,
 ) -> Result<Audit, SimulationError> {
     let Model { plan, .. } = model;

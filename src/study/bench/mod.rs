@@ -24,7 +24,7 @@ use crate::study::verify::scene_of;
 pub use ceilings::Ceilings;
 use host::{CpuTime, HostLoad, threads};
 use operations::Counted;
-pub use work::Work;
+pub use work::{BenchedRun, Work};
 
 /// A published scene.
 pub struct BenchScene {
@@ -152,7 +152,8 @@ pub fn measure(
     let buffers = simulation.buffer_bytes();
     let counted = Counted::new(simulation.constants())?;
     let outcome = simulation.finish(&mut ())?;
-    let work = Work::new(&model, &before, &after, &outcome, lists, device.variant());
+    let run = BenchedRun { before: &before, after: &after, outcome: &outcome, lists };
+    let work = Work::new(&model, &run, device.variant());
     let phases = since(&before.phases, &after.phases);
     let costs = phases.rows.iter().map(|(name, seconds, dispatches)| Cost {
         phase: name.clone(),

@@ -48,17 +48,21 @@ pub struct Work {
     pub capped: bool,
 }
 
+/// A run whose last part is measured.
+pub struct BenchedRun<'a> {
+    /// What it had done when that began, and at its end.
+    pub before: &'a Done,
+    pub after: &'a Done,
+    pub outcome: &'a Outcome,
+    /// Entries of the neighbour lists in the last step, and particles that had any, over all particles.
+    pub lists: [f64; 2],
+}
+
 impl Work {
-    /// Of the steps since `before`. The lengths of lists are those in the last steps of intervals, `lists` those of neighbours in the last step
-    /// of all; the cells are those of the particles at the end.
-    pub fn new(
-        model: &Model,
-        before: &Done,
-        after: &Done,
-        outcome: &Outcome,
-        lists: [f64; 2],
-        variant: KernelVariant,
-    ) -> Work {
+    /// Of the steps between the two. The lengths of lists are those in the last steps of intervals; the cells are those
+    /// of the particles at the end.
+    pub fn new(model: &Model, run: &BenchedRun<'_>, variant: KernelVariant) -> Work {
+        let &BenchedRun { before, after, outcome, lists } = run;
         let plan = &model.plan;
         let steps = (after.phases.steps - before.phases.steps) as f64;
         let particle_steps = (after.phases.particle_steps - before.phases.particle_steps) as f64;

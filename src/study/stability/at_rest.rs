@@ -79,15 +79,19 @@ pub(super) fn of_any(model: &Model, run: &Run) -> Vec<Check> {
     checks
 }
 
-/// Of gas at rest; `masses`: of each gas over the heaviest; `rigid`: p over n k T expected of rigid spheres.
-fn findings(
-    device: &Device,
-    mut model: Model,
-    gas: &EquilibriumBox<'_>,
-    masses: &[f64],
+/// Gas at rest, and what is known of it.
+struct RestingBox<'a> {
+    gas: &'a EquilibriumBox<'a>,
+    /// Of each gas over the heaviest.
+    masses: &'a [f64],
+    /// p over n k T expected of rigid spheres.
     rigid: f64,
+    /// The step stays the plan's.
     hold_step: bool,
-) -> Result<Vec<Check>, StudyError> {
+}
+
+fn findings(device: &Device, mut model: Model, rest: &RestingBox<'_>) -> Result<Vec<Check>, StudyError> {
+    let &RestingBox { gas, masses, rigid, hold_step } = rest;
     let margin = gas.wall_layer();
     let core = |x: &f64| *x >= margin && *x <= EDGE - margin;
     let (mut visits, mut ends, mut time) = (0u64, 0u64, 0.0);
@@ -142,7 +146,7 @@ fn findings(
 
 /// One gas in its box, the step held.
 fn at_rest(device: &Device, gas: &EquilibriumBox<'_>, rigid: f64) -> Result<Vec<Check>, StudyError> {
-    findings(device, gas.model()?, gas, &[1.0], rigid, true)
+    findings(device, gas.model()?, &RestingBox { gas, masses: &[1.0], rigid, hold_step: true })
 }
 
 pub(super) fn time_step(device: &Device, method: Method, x: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
@@ -185,7 +189,8 @@ pub(super) fn gap(device: &Device, method: Method, width: f64, effort: Effort) -
     let step = gas.step_over_tau * collision_time(density, diameter, gas.thermal_speed().powi(2));
     scene.model.time_step = Some(step);
     scene.end_time = step * f64::from(gas.steps);
-    let checks = findings(device, model_from("slit", scene)?, &gas, &[1.0], rigid_pressure(), true)?;
+    let rest = RestingBox { gas: &gas, masses: &[1.0], rigid: rigid_pressure(), hold_step: true };
+    let checks = findings(device, model_from("slit", scene)?, &rest)?;
     // Pairs do not meet behind walls, and there are many: their rate is no longer that of free space.
     Ok(checks.into_iter().filter(|check| check.quantity != "collision rate").collect())
 }
@@ -208,5 +213,7 @@ pub(super) fn mass_ratio(
     let longer = (0.5 * ratio.sqrt()).clamp(1.0, 4.0);
     let gas = lasting(gas, longer * size(effort).1);
     // Steps follow the light gas, as in any run.
-    findings(device, gas.model()?, &gas, &[1.0 / ratio, 1.0], rigid_pressure(), false)
+    let masses = [1.0 / ratio, 1.0];
+    let rest = RestingBox { gas: &gas, masses: &masses, rigid: rigid_pressure(), hold_step: false };
+    findings(device, gas.model()?, &rest)
 }

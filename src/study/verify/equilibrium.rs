@@ -78,7 +78,19 @@ pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Finding
     Ok(checks.into())
 }
 
-/// Z of a gas with `zeta` internal degrees of freedom from a run that starts without spin and stops when
+/// A gas whose translation and spin come to have one temperature.
+#[derive(Debug, Clone, Copy)]
+pub struct Relaxation {
+    pub method: &'static str,
+    /// Internal degrees of freedom.
+    pub zeta: f64,
+    /// The collision number that the scene asks for.
+    pub asked: f64,
+    pub occupancy: f64,
+    pub step_over_tau: f64,
+}
+
+/// Z of a gas from a run that starts without spin and stops when
 /// about 1 - exp(-.83) of the difference of the temperatures is gone, and its standard error.
 ///
 /// The start has D = T_tr - T_int without noise. At a = (1 + zeta/3) s / Z exchange at the temperature T gives D an error of
@@ -88,14 +100,8 @@ pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Finding
 ///
 /// # Errors
 /// If the run fails.
-pub fn collision_number(
-    device: &Device,
-    method: &str,
-    zeta: f64,
-    asked: f64,
-    occupancy: f64,
-    step_over_tau: f64,
-) -> Result<(f64, f64), StudyError> {
+pub fn collision_number(device: &Device, of: Relaxation) -> Result<(f64, f64), StudyError> {
+    let Relaxation { method, zeta, asked, occupancy, step_over_tau } = of;
     let particles = 110_000u64;
     let gamma = (5.0 + zeta) / (3.0 + zeta);
     let gases = format!("[[gas]]\nname = \"gas\"\nmolar_mass = 0.028\ngamma = {gamma}\n");
@@ -129,16 +135,14 @@ pub fn collision_number(
 
 /// The law is that of molecular chaos: of closest approach in a thin gas, of cells in any.
 pub(super) fn relaxation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let ways = [
-        ("closest-approach", 2.0, 2.0, 0.003, 0.05),
-        ("cell", 2.0, 5.0, 0.1, 0.25),
-        ("closest-approach", 2.0, 5.0, 0.003, 0.05),
-        ("closest-approach", 5.0, 5.0, 0.003, 0.05),
-        ("cell", 5.0, 5.0, 0.1, 0.25),
-    ];
+    let thin =
+        |zeta, asked| Relaxation { method: "closest-approach", zeta, asked, occupancy: 0.003, step_over_tau: 0.05 };
+    let cells = |zeta| Relaxation { method: "cell", zeta, asked: 5.0, occupancy: 0.1, step_over_tau: 0.25 };
+    let ways = [thin(2.0, 2.0), cells(2.0), thin(2.0, 5.0), thin(5.0, 5.0), cells(5.0)];
     let count = if effort == Effort::Quick { 2 } else { ways.len() };
-    let check = |&(method, zeta, asked, occupancy, step_over_tau): &(&str, f64, f64, f64, f64)| {
-        let found = collision_number(device, method, zeta, asked, occupancy, step_over_tau)?;
+    let check = |&way: &Relaxation| {
+        let Relaxation { method, zeta, asked, .. } = way;
+        let found = collision_number(device, way)?;
         Ok(Check::of(format!("{method}: Z, asked {asked}, zeta = {zeta}"), asked, found, 0.05 * asked))
     };
     ways[..count].iter().map(check).collect()
