@@ -1,12 +1,11 @@
-//! `corpuscle check`: whether scenes can be run: of each a line, what it holds, and its warnings.
+//! `corpuscle check`: whether scenes can be run, by the set-up of a run up to its device: of each a line, what it holds,
+//! and its warnings.
 
 use std::path::Path;
 
-use crate::geometry::TriangleGrid;
 use crate::output::grouped;
 use crate::scene::load;
-use crate::simulation::Model;
-use crate::subdomain::Walls;
+use crate::simulation::check_setup;
 
 use super::CliError;
 use super::arguments::CheckArguments;
@@ -31,10 +30,8 @@ pub fn check(raw: CheckArguments, quiet: bool) -> Result<(), CliError> {
 
 fn checked(path: &Path, strict: bool, quiet: bool) -> Result<(), CliError> {
     let model = model_of(path, load(path)?)?;
-    let Model { vessel, plan, scene, .. } = &model;
-    // The last that a run asks of the walls: that they survive the rounding to the grid of its positions.
-    TriangleGrid::build(vessel, &plan.grid, Walls::tolerance(&plan.grid))
-        .map_err(|error| CliError::model(path, error.told_in(scene.units).into()))?;
+    check_setup(&model).map_err(|error| CliError::set_up(path, error))?;
+    let plan = &model.plan;
     let warnings = plan.told();
     let mut line = format!(
         "ok {}: {} particles ({} injected), {} cells, {} steps",

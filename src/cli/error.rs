@@ -29,6 +29,14 @@ pub enum CliError {
         #[help]
         help: Option<String>,
     },
+    /// Built by [`CliError::set_up`].
+    #[error("{}: {error}", path.display())]
+    SetUp {
+        path: PathBuf,
+        error: Box<SimulationError>,
+        #[help]
+        help: Option<String>,
+    },
     #[error("{failed} of {checked} scenes cannot be run")]
     Check { failed: usize, checked: usize },
     #[error(transparent)]
@@ -142,6 +150,11 @@ impl CliError {
         CliError::Model { path: path.to_path_buf(), error, help }
     }
 
+    pub fn set_up(path: &Path, error: SimulationError) -> CliError {
+        let help = error.help().map(|help| help.to_string());
+        CliError::SetUp { path: path.to_path_buf(), error: Box::new(error), help }
+    }
+
     /// The same with what no vessel has before the help: what else would help follows from it.
     pub fn doubting(self, doubts: &[String]) -> CliError {
         match self {
@@ -185,6 +198,7 @@ impl CliError {
             )
             | CliError::Scene(_)
             | CliError::Model { .. }
+            | CliError::SetUp { .. }
             | CliError::Check { .. }
             | CliError::PlanWarnings { .. }
             | CliError::Output(_)

@@ -99,6 +99,14 @@ impl InitialGas<'_> {
         Ok(particles)
     }
 
+    /// Finds a place for the first particle of each gas in each chamber: where there is one, the others find theirs too.
+    ///
+    /// # Errors
+    /// As [`InitialGas::all`].
+    pub fn find_room(&self) -> Result<(), FillError> {
+        self.batches()?.iter().try_for_each(|batch| self.draw(batch, batch.ids.start).map(|_| ()))
+    }
+
     /// What makes each chamber exact: draws how all of its particles move, twice, and keeps none.
     ///
     /// # Errors
@@ -363,5 +371,6 @@ mod tests {
         let (chambers, gases) = ([chamber], gases());
         let gas = gas(&chambers, &gases, &|_| true);
         assert_eq!(gas.all(), Err(FillError::NoRoom { chamber: 0, tries: MOST_TRIES }));
+        assert_eq!(gas.find_room(), gas.all().map(|_| ()));
     }
 }

@@ -37,6 +37,7 @@ pub use parallel::halo_tuner::HaloOptions;
 pub use parallel::initial_particles::{Initial, InitialParticles, initial_particles};
 pub use refine::{RefineError, RefineReport, Refined, refine};
 pub use run_state::{Feedback, RunState, particles_of};
+pub use timeloop::host_setup::check_setup;
 pub use timeloop::interrupt::{Interrupt, Request, signal_name};
 pub use timeloop::meter::Done;
 pub use timeloop::observer::{Continued, Moment, Observer, Options, Outcome};

@@ -216,6 +216,29 @@ fn walls_and_plans_that_are_not_sound_are_2() {
     assert!(code == 2 && err.contains("changed.toml") && err.contains("help:"), "{err}");
 }
 
+/// What only the set-up of a run can tell, a check tells in the same words: here that no place is found for the gas of a
+/// chamber which is a ten-millionth of its bounding box.
+#[test]
+fn a_check_goes_through_the_set_up_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let chambers = "name = \"most\"\n\
+                    region = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.099999999] } }\n\
+                    pressure = 101325.0\ntemperature = 300.0\ngas = \"nitrogen\"\n\n\
+                    [[chamber]]\nname = \"sliver\"\npressure = 1e11 # Pa";
+    let path = scene_with(&folder, "name = \"box\"\npressure = 101325.0", chambers);
+    let (path, out) = (path.to_str().unwrap(), folder.path().join("out"));
+    let run = outcome(&["run", path, "--steps", "1", "--out", out.to_str().unwrap()]);
+    let check = outcome(&["check", path]);
+    for (code, _, err) in [&run, &check] {
+        assert!(*code == 2 && err.contains("no gas found in chamber 1") && err.contains("help:"), "{err}");
+    }
+    assert!(check.2.contains("changed.toml"), "{}", check.2);
+    // The check can fail: with a sliver a hundred thousand times as thick there is room.
+    let thick = fs::read_to_string(path).unwrap().replace("0.099999999", "0.0999").replace("1e11", "1e6");
+    fs::write(path, thick).unwrap();
+    assert_eq!(outcome(&["check", path]).0, 0);
+}
+
 #[test]
 fn a_check_goes_on_after_a_bad_scene() {
     let (code, out, err) = outcome(&["check", "tests/robustness/bad/empty.toml", "scenes/box.toml"]);

@@ -106,6 +106,14 @@ pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationEr
     Ok(stored.collect::<Result<_, _>>()?)
 }
 
+/// Finds a place for a particle of each gas in each chamber.
+///
+/// # Errors
+/// If the initial gas does not fit the walls.
+pub fn find_room(model: &Model) -> Result<(), SimulationError> {
+    with_gas(model, |gas| Ok(gas.find_room()?))
+}
+
 fn with_gas<T>(
     model: &Model,
     act: impl FnOnce(&InitialGas<'_>) -> Result<T, SimulationError>,

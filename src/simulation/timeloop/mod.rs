@@ -2,6 +2,7 @@
 
 pub(super) mod collect;
 pub(super) mod handover;
+pub(super) mod host_setup;
 pub(super) mod inspect;
 pub(super) mod interrupt;
 pub(super) mod meter;

@@ -1,17 +1,16 @@
-//! What a model becomes on a device: walls, zones and patches; and where its particles come from.
+//! What a model becomes on a device, and where its particles come from.
 
 use std::sync::Arc;
 
-use crate::geometry::{MovingWalls, TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
+use super::host_setup::HostSetup;
 use crate::gpu::Device;
 use crate::output::Checkpoint;
-use crate::scene::{Face, Method};
+use crate::scene::Method;
 use crate::simulation::accounting::averages::Layout;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
-use crate::simulation::model::patches::patches;
 use crate::simulation::parallel::initial_particles::{Initial, InitialParticles, initial_particles};
-use crate::subdomain::{CellTable, Domain, DomainInput, GpuParticle, GpuZone, KernelChoice, Patches, Walls, zone_of};
+use crate::subdomain::{Domain, DomainInput, GpuParticle, KernelChoice};
 
 /// What the ranks that share a device have in common; made once for all of them.
 #[derive(Clone)]
@@ -107,122 +106,24 @@ impl Setup {
         if plan.method == Method::ControlVolume {
             return Err(SimulationError::NoParticles);
         }
-        let motion = |wall: usize| model.moving.motion_of(wall);
-        let margin = Walls::tolerance(&plan.grid);
-        let still = model.vessel.without(|wall| motion(wall).is_some());
-        let moving = MovingWalls { still: &still, count: model.moving.count(), number: &motion };
-        let triangle_grid = TriangleGrid::build_still(&model.vessel, &plan.grid, margin, &moving)
-            .map_err(|error| error.told_in(model.scene.units))?;
-        let (patch, patches) = patches(model);
-        let parts = |triangle: usize| {
-            let wall = &model.scene.walls[model.vessel.triangles[triangle].wall as usize];
-            !wall.is_convex_cavity()
-        };
-        let walls = Walls::new(&triangle_grid, &plan.grid, &patch, &model.surface_models.of_triangle, parts)
-            .moving(&triangle_grid, |source| motion(model.vessel.triangles[source].wall as usize));
-        let cells = match plan.method {
-            Method::Cell => cell_table(model, &still, &triangle_grid, parts)?,
-            _ => CellTable::default(),
-        };
-        let zones = zones(model);
-        let tallied = Patches {
-            surfaces: patches.len(),
-            surface_models: model.surface_models.placed.len(),
-            vents: model.scene.vents.len(),
-            motions: model.moving.count(),
-        };
+        let HostSetup { walls, cells, zones, patches, layout, volumes } = HostSetup::new(model)?;
         let input = DomainInput {
             plan,
             walls: &walls,
             cells: &cells,
             zones: &zones,
-            patches: tallied,
+            patches,
             vent_entries: model.surface_models.vent_entries(),
             among_others: ranks > 1,
             kernels,
         };
         Ok(Setup {
             domain: Arc::new(Domain::new(device, &input)?),
-            layout: layout(model, &patch, &patches),
-            patches: patches.len(),
-            volumes: Arc::new(volumes_of_blocks(model, &still)?),
+            layout,
+            patches: patches.surfaces,
+            volumes: Arc::new(volumes),
             cut_by: None,
             particles,
         })
-    }
-}
-
-/// The gas of the cells, as walls at rest leave it.
-fn cell_table(
-    model: &Model,
-    still: &Vessel,
-    triangles: &TriangleGrid,
-    parts: impl Fn(usize) -> bool + Sync,
-) -> Result<CellTable, SimulationError> {
-    let grid = &model.plan.grid;
-    if model.moving.is_empty() {
-        return Ok(CellTable::new(&cell_gas(&model.vessel, grid, triangles, parts), grid)?);
-    }
-    let still = still.clone().measured()?;
-    let gas = cell_gas(&still, grid, triangles, parts);
-    let points = still_points(&still, grid, triangles, &model.moving.swept_cells(grid));
-    Ok(CellTable::new(&gas, grid)?.moving(&gas, &points))
-}
-
-/// Without the walls that move: a block that one of them covers in part counts with all of its volume.
-fn volumes_of_blocks(model: &Model, still: &Vessel) -> Result<Vec<f64>, SimulationError> {
-    let plan = &model.plan;
-    if model.moving.is_empty() {
-        return Ok(block_volumes(&model.vessel, &plan.grid, plan.block_cells_log2));
-    }
-    Ok(block_volumes(&still.clone().measured()?, &plan.grid, plan.block_cells_log2))
-}
-
-/// Everything, the chambers, the probes.
-fn zones(model: &Model) -> Vec<GpuZone> {
-    let grid = &model.plan.grid;
-    let chambers = model.scene.chambers.iter().enumerate().map(|(index, chamber)| GpuZone {
-        carried: model.moving.carried.get(index).copied().unwrap_or(0),
-        ..zone_of(chamber.region.as_ref(), grid)
-    });
-    let probes = model.scene.probes.iter().map(|probe| zone_of(Some(&probe.region), grid));
-    std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
-}
-
-fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -> Layout {
-    let Model { scene, vessel, plan, surface_models, moving, probe_volumes, .. } = model;
-    let area_of = |wall: u32, face: Option<Face>| -> f64 {
-        let vertex = |index: u32| glam::DVec3::from(vessel.vertices[index as usize]);
-        let own = |patch: &u32| patches[*patch as usize] == (wall, face);
-        let triangles = vessel.triangles.iter().zip(of_triangle).filter(|(_, patch)| own(patch));
-        triangles
-            .map(|(triangle, _)| {
-                let [a, b, c] = triangle.vertices.map(vertex);
-                0.5 * (b - a).cross(c - a).length()
-            })
-            .sum()
-    };
-    let surfaces = scene.surfaces.iter().map(|surface| {
-        let members = patches.iter().enumerate().filter(|(_, (wall, face))| {
-            *wall as usize == surface.wall && (surface.face.is_none() || *face == surface.face)
-        });
-        let members: Vec<usize> = members.map(|(index, _)| index).collect();
-        let area = members.iter().map(|&index| area_of(patches[index].0, patches[index].1)).sum();
-        (members, area)
-    });
-    let walls = scene.heated_surfaces().map(|(surface, _)| {
-        let own = surface_models.placed.iter().enumerate().filter(|(_, placed)| placed.surface == surface);
-        let members: Vec<usize> = own.map(|(index, _)| index).collect();
-        let area = members.iter().map(|&index| surface_models.placed[index].area).sum();
-        (members, area)
-    });
-    Layout {
-        walls: walls.collect(),
-        vents: scene.vents.len(),
-        surface_models: surface_models.placed.len(),
-        motions: moving.count(),
-        volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes.iter().copied()).collect(),
-        chambers: scene.chambers.len(),
-        surfaces: surfaces.collect(),
     }
 }
