@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl drawn.wgsl cell_gas.wgsl members.wgsl lay.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl motions.wgsl body_frame.wgsl cell_gas.wgsl members.wgsl lay.wgsl
 //! phase: sort
 // Sort of the method `cell`: the particles to the places of their cells, in the order of the threads where `collide` puts so few in
 // order by itself; those of other cells are listed. A particle lies in the cell of its bin, so its place tells which that is.

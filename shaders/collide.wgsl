@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl drawn.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl motions.wgsl body_frame.wgsl dsmc.wgsl cell_gas.wgsl members.wgsl
 //! phase: collide
 // The collisions of the method `cell`, in cells of up to MEMBERS particles that no wall parts.
 //

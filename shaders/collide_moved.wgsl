@@ -74,7 +74,7 @@ fn gather(thread: u32) {
             continue;
         }
         let from_middle = middle - bitcast<vec3<u32>>(motion.moved);
-        let drawn = drawn_around(here, motion);
+        let drawn = body_around(here, motion);
         for (var z = drawn.low.z; z <= drawn.high.z; z++) {
             for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                 let row = row_of(motion, y, z);
@@ -94,13 +94,13 @@ fn gather(thread: u32) {
 }
 
 // What marks the triangles of a row that are in one before it among these, too: the first of its rows counts.
-fn earlier_marks(drawn: DrawnCells, y: i32, z: i32) -> u32 {
+fn earlier_marks(drawn: BodyCells, y: i32, z: i32) -> u32 {
     return select(0u, EARLIER_Y, y > drawn.low.y) | select(0u, EARLIER_Z, z > drawn.low.z);
 }
 
 // Where in `wall_list` it says where the triangles of a row begin.
 fn row_of(motion: Motion, y: i32, z: i32) -> u32 {
-    return motion.rows + u32(z * bitcast<vec3<i32>>(motion.drawn_size).y + y);
+    return motion.rows + u32(z * bitcast<vec3<i32>>(motion.body_size).y + y);
 }
 
 // Puts a triangle into `ahead` and `close`, if it is. `from_middle` is the middle of the cell in its frame.
@@ -148,7 +148,7 @@ fn in_wall(p0: vec3<u32>, p1: vec3<u32>, p2: vec3<u32>) -> vec3<bool> {
             continue;
         }
         let way = bitcast<vec3<u32>>(motion.moved);
-        let drawn = drawn_around(here, motion);
+        let drawn = body_around(here, motion);
         for (var z = drawn.low.z; z <= drawn.high.z; z++) {
             for (var y = drawn.low.y; y <= drawn.high.y; y++) {
                 let row = row_of(motion, y, z);
@@ -233,10 +233,10 @@ fn clear_of(ways: Ways, wanted: vec3<bool>) -> vec3<bool> {
                 continue;
             }
             let way = bitcast<vec3<u32>>(motion.moved);
-            let drawn = drawn_around(here, motion);
+            let drawn = body_around(here, motion);
             for (var z = drawn.low.z; z <= drawn.high.z; z++) {
                 for (var y = drawn.low.y; y <= drawn.high.y; y++) {
-                    let list = drawn_list(motion, drawn, y, z);
+                    let list = body_list(motion, drawn, y, z);
                     var k = list.x;
                     for (; k < list.y && any(open); k++) {
                         open = left_open(triangles[wall_list[k]], way, ways, open);

@@ -74,9 +74,7 @@ fn twins() -> Vec<Twin> {
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
-        twin!(
-            "Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, drawn_low, pad3, drawn_size, pad4
-        ),
+        twin!("Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, body_low, pad3, body_size, pad4),
         twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),
         twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),

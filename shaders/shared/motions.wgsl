@@ -4,7 +4,7 @@
 struct Motion {
     // Since the start of the run, at the start of the step, quanta.
     moved: vec3<i32>,
-    // Where in `wall_list` it says where the triangles begin of each cell in which it is drawn (drawn.wgsl).
+    // Where in `wall_list` it says where the triangles begin of each cell of its box (body_frame.wgsl).
     cells: u32,
     // m/s.
     velocity: vec3<f32>,
@@ -15,10 +15,10 @@ struct Motion {
     pad: u32,
     high: vec3<u32>,
     pad2: u32,
-    // The box of cells in which it is drawn: the first, and how many there are.
-    drawn_low: vec3<u32>,
+    // The box of cells around it in its body frame: the first, and how many there are.
+    body_low: vec3<u32>,
     pad3: u32,
-    drawn_size: vec3<u32>,
+    body_size: vec3<u32>,
     pad4: u32,
 }
 

@@ -1,9 +1,9 @@
-//! uses: motions.wgsl drawn.wgsl turns.wgsl
+//! uses: motions.wgsl body_frame.wgsl turns.wgsl
 // Swept tests of a straight flight against the triangles of the walls.
 //
 // A wall that moves does so along a straight line at one velocity in a step, so in its own frame it is at rest: the
-// flight is moved into the frame and tested against the triangles as drawn. These are in lists of their own, of the cells in which
-// the wall is drawn.
+// flight is moved into the wall's body frame and tested there against its triangles. These are in lists of their own, of the
+// cells of that frame (body_frame.wgsl).
 //
 // A triangle stops a particle that moves against its normal and comes from the gas side. Rounding may
 // leave a particle less than TOLERANCE behind a wall; moving away it is let go, turning back it is
@@ -30,7 +30,8 @@ struct Triangle {
     motion: u32,
 }
 
-// The place of a point at a time of the step in the frame of a moving wall, in which the wall is as it is drawn.
+// The place of a point at a time of the step in the body frame of a moving wall, in which the wall is where it is at the start
+// of the run.
 fn in_frame(p: vec3<u32>, motion: Motion, time: f32) -> vec3<u32> {
     return shifted(p - bitcast<vec3<u32>>(motion.moved), -motion.velocity, time);
 }
@@ -222,12 +223,12 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             let motion = motion_of(m);
             if (touches(cells, motion)) {
                 let from_frame = in_frame(from_point, motion, start);
-                let drawn = drawn_cells(motion, from_frame, in_frame(to_point, motion, end));
+                let body = body_cells(motion, from_frame, in_frame(to_point, motion, end));
                 // bench: plane of cells
-                for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+                for (var z = body.low.z; z <= body.high.z; z++) {
                     // bench: row of cells
-                    for (var y = drawn.low.y; y <= drawn.high.y; y++) {
-                        let list = drawn_list(motion, drawn, y, z);
+                    for (var y = body.low.y; y <= body.high.y; y++) {
+                        let list = body_list(motion, body, y, z);
                         var k = list.x;
                         // bench: triangle
                         for (; k < list.y; k++) {
@@ -266,11 +267,11 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
     return false;
 }
 
-// Whether a way through the cells in which some moving wall is drawn, as that wall has it, passes one with a triangle.
+// Whether a way passes a cell with a triangle of some moving wall, in that wall's body frame.
 fn passes_moving(p: vec3<u32>, start: f32, q: vec3<u32>, end: f32) -> bool {
     for (var m = 0u; m < MOTIONS; m++) {
         let motion = motion_of(m);
-        if (any_drawn(motion, drawn_cells(motion, in_frame(p, motion, start), in_frame(q, motion, end)))) {
+        if (any_of_body(motion, body_cells(motion, in_frame(p, motion, start), in_frame(q, motion, end)))) {
             return true;
         }
     }
@@ -305,12 +306,12 @@ fn lies_between(triangle: Triangle, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>
 
 // Whether a moving wall lies between two points of its frame.
 fn blocked_by(motion: Motion, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> bool {
-    let drawn = drawn_cells(motion, p, q);
+    let body = body_cells(motion, p, q);
     // bench: plane of cells
-    for (var z = drawn.low.z; z <= drawn.high.z; z++) {
+    for (var z = body.low.z; z <= body.high.z; z++) {
         // bench: row of cells
-        for (var y = drawn.low.y; y <= drawn.high.y; y++) {
-            let list = drawn_list(motion, drawn, y, z);
+        for (var y = body.low.y; y <= body.high.y; y++) {
+            let list = body_list(motion, body, y, z);
             var k = list.x;
             // bench: triangle
             for (; k < list.y; k++) {

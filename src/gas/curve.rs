@@ -34,7 +34,7 @@ pub fn integral_held(curve: &Curve, to: f64) -> f64 {
     knots.windows(2).map(|pair| piece(pair[0], pair[1])).sum()
 }
 
-/// How far a wall has moved from where it is drawn, m.
+/// How far a wall has moved from where it is at the start, m.
 pub fn displacement(course: &Course, time: f64) -> f64 {
     match course {
         Course::Velocity(velocity) => integral_held(velocity, time),
@@ -220,9 +220,9 @@ mod tests {
             assert!((displacement(&course, time) - expected).abs() < 1e-12, "{time}");
         }
         assert!(turns(&course).contains(&2.0) && velocity(&course, 2.5) == -2.0);
-        let drawn = Course::Displacement(Curve { points: vec![[0.0, 0.0], [2.0, 1.0], [3.0, -1.0]] });
-        assert_eq!([0.0, 1.0, 2.0, 5.0].map(|t| velocity(&drawn, t)), [0.5, 0.5, -2.0, 0.0]);
-        assert_eq!(displacement(&drawn, 9.0), -1.0);
+        let course = Course::Displacement(Curve { points: vec![[0.0, 0.0], [2.0, 1.0], [3.0, -1.0]] });
+        assert_eq!([0.0, 1.0, 2.0, 5.0].map(|t| velocity(&course, t)), [0.5, 0.5, -2.0, 0.0]);
+        assert_eq!(displacement(&course, 9.0), -1.0);
     }
 
     #[test]

@@ -17,7 +17,7 @@
 //! **Energy debt.** Each orifice carries the sum of h - e over its particles. A particle pays a fraction of
 //! the debt its predecessors left, by its spin (never below zero), or by its speed where zeta = 0 (energy
 //! within a factor of 4, so that it still leaves the plane). The fraction of 1/8 leaves the distributions
-//! nearly as drawn (it adds a/(2-a) = 7 % of a particle's energy variance) and keeps the debt at about two
+//! nearly as sampled (it adds a/(2-a) = 7 % of a particle's energy variance) and keeps the debt at about two
 //! standard deviations of one particle's energy. The last few particles of an orifice settle what is left, speed
 //! included, so that after them the energy injected is the enthalpy injected.
 //!
@@ -317,8 +317,8 @@ impl Inflow {
         let translational = 0.5 * mass * local.iter().map(|v| v * v).sum::<f64>();
 
         let settling = source.left < SETTLING;
-        let drawn = translational + spin_energy;
-        let mut due = if settling { source.debt + enthalpy - drawn } else { DEBT_SHARE * source.debt };
+        let sampled = translational + spin_energy;
+        let mut due = if settling { source.debt + enthalpy - sampled } else { DEBT_SHARE * source.debt };
         if species.has_spin() {
             let paid = due.max(-spin_energy);
             spin_energy += paid;

@@ -7,7 +7,7 @@
 //! single particle keeps its momentum: it could not have the energy otherwise.
 //!
 //! Invariants: ids are 0.. in the order chamber, gas, particle; each particle's draws depend on its id only. So any part
-//! of the gas can be drawn without the rest, once what makes each chamber exact is known, and has the same bits.
+//! of the gas can be sampled without the rest, once what makes each chamber exact is known, and has the same bits.
 
 use std::ops::Range;
 
@@ -61,7 +61,7 @@ pub struct Correction {
     spin_factors: Vec<f64>,
 }
 
-/// What is drawn of a particle but its place.
+/// What is sampled of a particle but its place.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     gas: u8,

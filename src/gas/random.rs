@@ -3,7 +3,7 @@
 //! Every draw is [`philox4x32_10`](super::philox4x32_10) of a counter under the key [`key`]`(seed, purpose)`
 //! `= [seed bits 0..32, seed bits 32..56 << 8 | purpose]`. Counters by purpose:
 //!
-//! | purpose           | counter                                            | drawn by |
+//! | purpose           | counter                                            | sampled by |
 //! |-------------------|----------------------------------------------------|----------|
 //! | `InitialPosition` | `[particle id, block, 0, 0]`                       | host     |
 //! | `InitialState`    | `[particle id, block, 0, 0]`                       | host     |
@@ -30,15 +30,15 @@ pub enum Purpose {
     InitialPosition = 1,
     InitialState = 2,
     Inflow = 3,
-    /// Drawn on the device only: spin exchange and chirality of a pair.
+    /// Sampled on the device only: spin exchange and chirality of a pair.
     Collision = 4,
     /// Of the particles that a coarser state is split into; ids are those of the refined run.
     RefinedPosition = 5,
     RefinedState = 6,
-    /// Drawn on the device only: whether a hit on a wall lets the particle out, and how it leaves the wall. `hit`
+    /// Sampled on the device only: whether a hit on a wall lets the particle out, and how it leaves the wall. `hit`
     /// counts those of the particle in the step, from 1.
     Wall = 7,
-    /// Drawn on the device only: candidate pairs of a cell, and their collisions.
+    /// Sampled on the device only: candidate pairs of a cell, and their collisions.
     CellCollision = 9,
 }
 

@@ -3,7 +3,7 @@
 //! A constant heat capacity is that of zeta = 2 cv/R - 3 internal degrees of freedom. One that depends on the
 //! temperature is that of a partition function q = T^nu0 sum_K h_K T^K, h_K >= 0 ([`Modes`]; specification,
 //! section 3 "cp(T)"): a gas whose internal energy e has the density of states g(e) ~ sum_K h_K e^(nu0+K-1) /
-//! Gamma(nu0+K), hence e/kT that of Gamma(nu0+K) where K is drawn in proportion to h_K T^K. Energies count from
+//! Gamma(nu0+K), hence e/kT that of Gamma(nu0+K) where K is sampled in proportion to h_K T^K. Energies count from
 //! 0 K in either case.
 //!
 //! Invariant: the arithmetic of a constant heat capacity is in the order in which it always was, so that scenes of
@@ -74,7 +74,7 @@ impl Modes {
     }
 
     /// The power K for a uniform draw.
-    fn drawn(&self, temperature: f64, uniform: f64) -> f64 {
+    fn sampled_mode(&self, temperature: f64, uniform: f64) -> f64 {
         let mut left = uniform;
         for (power, share) in self.shares(temperature) {
             if left < share {
@@ -173,7 +173,7 @@ impl Species {
     pub fn draw_spin(&self, thermal_energy: f64, temperature: f64, draws: &mut Draws) -> f64 {
         let shape = match &self.heat {
             Heat::Constant(cv) => 0.5 * constant_dof(*cv),
-            Heat::Modes(modes) => modes.nu0 + modes.drawn(temperature, draws.uniform()),
+            Heat::Modes(modes) => modes.nu0 + modes.sampled_mode(temperature, draws.uniform()),
         };
         thermal_energy * draws.gamma(shape)
     }

@@ -13,7 +13,7 @@ pub struct Swept {
     pub course: Course,
     /// Displacements, m, in order; at least two.
     pub at: Vec<f64>,
-    /// By displacement, then zone: the volume less that of the wall where it is drawn, m3.
+    /// By displacement, then zone: the volume less that of the wall at the start, m3.
     pub change: Vec<Vec<f64>>,
 }
 

@@ -32,7 +32,7 @@ pub struct CellGas {
     /// m3, by cell; positive everywhere.
     pub volume: Vec<f64>,
     /// The cells that walls part, in order, with at least one part each.
-    pub parted: Vec<(usize, Vec<CellPart>)>,
+    pub divided: Vec<(usize, Vec<CellPart>)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +64,7 @@ pub fn cell_gas(
     };
     let cut: Vec<usize> = (0..volume.len()).filter(|&cell| !walls_of(cell).is_empty()).collect();
     let found = map(cut.len(), |k, _| parts_of(vessel, grid, cut[k], volume[cut[k]], &walls_of(cut[k])));
-    CellGas { volume, parted: cut.into_iter().zip(found).collect() }
+    CellGas { volume, divided: cut.into_iter().zip(found).collect() }
 }
 
 /// Which points of the lattice are gas, a bit for each, of each cell (x fastest) in boxes of cells (the first and the
@@ -193,7 +193,7 @@ mod tests {
         let of_parts = |parts: &[CellPart]| parts.iter().map(|part| part.volume).sum::<f64>();
         let mut total = gas.volume.iter().sum::<f64>();
         let mut halves = 0;
-        for (cell, parts) in &gas.parted {
+        for (cell, parts) in &gas.divided {
             total += of_parts(parts) - gas.volume[*cell];
             if let [a, b] = parts[..] {
                 halves += 1;
@@ -220,7 +220,7 @@ mod tests {
         let (_, grid, gas) = plated(0.002, 0.07);
         let mut hidden = 0;
         let inside = |cell: usize| gas.volume[cell] > 0.5 * grid.cell.powi(3);
-        for (cell, parts) in gas.parted.iter().filter(|(cell, parts)| parts.len() == 1 && inside(*cell)) {
+        for (cell, parts) in gas.divided.iter().filter(|(cell, parts)| parts.len() == 1 && inside(*cell)) {
             let share = parts[0].volume / gas.volume[*cell];
             assert!(share > 0.3 && share <= 1.0, "{share}");
             let low = grid.origin[2] + (cell / (grid.cells[0] * grid.cells[1]) as usize) as f64 * grid.cell;

@@ -67,8 +67,8 @@ fn clearance(triangles: &TriangleGrid, grid: &Grid, margin: f64, cell: usize) ->
     let per_cell = f64::from(1u32 << grid.cell_bits);
     let mut walls: Vec<(DVec3, Vec<DVec3>)> = Vec::new();
     for triangle in near.iter().map(|&k| &triangles.triangles[k as usize]) {
-        let drawn = triangle.corners.map(|corner| DVec3::from(corner.map(|q| f64::from(q) / per_cell)) - middle);
-        let seen = clipped(drawn.to_vec(), 1.5 + margin);
+        let corners = triangle.corners.map(|corner| DVec3::from(corner.map(|q| f64::from(q) / per_cell)) - middle);
+        let seen = clipped(corners.to_vec(), 1.5 + margin);
         // What of it is seen from another cell of these alone is too far away.
         if !seen.is_empty() {
             walls.push((DVec3::from(triangle.normal.map(f64::from)), seen));

@@ -4,7 +4,7 @@
 //! Akenine-Moeller 2001, with a tolerance of 1e-9 cells: never too few). Each axis bounds a linear function of
 //! the cell's centre, so a row of cells along x costs one intersection of intervals, however long it is.
 //!
-//! A wall that moves is in lists of its own, as drawn ([`Body`]): what comes near it looks there from its frame.
+//! A wall that moves is in lists of its own, in its body frame ([`Body`]): what comes near it looks there from its frame.
 //!
 //! Invariants: no fixed triangle is degenerate or turned over by the rounding; shared vertices keep one id and
 //! the same corners; each list is in ascending order; a class other than `Cut` means an empty list.
@@ -64,7 +64,7 @@ pub struct Lists {
     pub list: Vec<u32>,
 }
 
-/// A wall that moves, where it is drawn.
+/// A wall that moves, in its body frame: where it is at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// The first cell of the box around its triangles, and the cells of the box by axis.

@@ -77,7 +77,7 @@ pub struct MeasuredMotion {
     pub fastest: f64,
 }
 
-/// A wall as it is drawn.
+/// A wall at the start of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredWall {
     /// m, the corners of the box around it.

@@ -32,12 +32,12 @@ impl CellTable {
     /// # Errors
     /// If walls part more cells than can be named.
     pub fn new(gas: &CellGas, grid: &Grid) -> Result<CellTable, TooManyParts> {
-        let mut table = CellTable { divided: gas.parted.len() as u64, ..CellTable::default() };
+        let mut table = CellTable { divided: gas.divided.len() as u64, ..CellTable::default() };
         table.volume = gas.volume.iter().map(|&volume| (volume as f32).to_bits()).collect();
-        for (cell, parts) in &gas.parted {
+        for (cell, parts) in &gas.divided {
             let count = parts.len().min(MOST_PARTS);
             if table.parts.len() + count > MOST_ENTRIES {
-                return Err(TooManyParts { cells: gas.parted.len(), limit: MOST_ENTRIES });
+                return Err(TooManyParts { cells: gas.divided.len(), limit: MOST_ENTRIES });
             }
             table.volume[*cell] = DIVIDED | (count as u32) << 24 | table.parts.len() as u32;
             // A point of a cell of the grid is on the grid.

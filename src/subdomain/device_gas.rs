@@ -12,8 +12,8 @@ use super::domain::Domain;
 use super::guess::Guess;
 use super::kernels::Kernels;
 use super::layout::{GpuParticle, GpuPeer};
-use super::place::{Cells, GridCells, SubdomainBox};
 use super::step_slot::uniforms;
+use super::subdomain_box::{Cells, GridCells, SubdomainBox};
 
 pub struct Subdomain {
     pub(super) domain: Arc<Domain>,

@@ -11,7 +11,7 @@ use super::kernels::Compiled;
 use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};
 use super::sizes::SURFACE_COPIES;
-use super::walls::{Drawn, Walls};
+use super::walls::{BodyLists, Walls};
 
 /// What a domain is made from.
 pub struct DomainInput<'a> {
@@ -60,8 +60,8 @@ pub struct Domain {
     pub(super) divided_cells: u64,
     /// Cells that moving walls may touch, at most.
     pub(super) moved_cells: u64,
-    /// Where the walls that move are drawn.
-    pub(super) drawn: Vec<Drawn>,
+    /// Of the walls that move.
+    pub(super) bodies: Vec<BodyLists>,
 }
 
 impl Domain {
@@ -100,7 +100,7 @@ impl Domain {
             zones: input.zones.len(),
             divided_cells: input.cells.divided,
             moved_cells: input.cells.still.len() as u64,
-            drawn: input.walls.drawn.clone(),
+            bodies: input.walls.bodies.clone(),
         })
     }
 

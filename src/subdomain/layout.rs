@@ -146,9 +146,9 @@ pub struct GpuMotion {
     pub pad: u32,
     pub high: [u32; 3],
     pub pad2: u32,
-    pub drawn_low: [u32; 3],
+    pub body_low: [u32; 3],
     pub pad3: u32,
-    pub drawn_size: [u32; 3],
+    pub body_size: [u32; 3],
     pub pad4: u32,
 }
 

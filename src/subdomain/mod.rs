@@ -21,7 +21,6 @@ mod layout;
 mod memory;
 mod nearness;
 mod parameters;
-mod place;
 mod readback;
 mod recall;
 pub mod registry;
@@ -32,6 +31,7 @@ mod shaders;
 mod sizes;
 mod state;
 mod step_slot;
+mod subdomain_box;
 mod tallies;
 mod walls;
 
@@ -47,12 +47,12 @@ pub use layout::{
     GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
-pub use place::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
 pub use sizes::{CHUNK, CROWD, MEMBERS, MOTION_ENTRIES, STRETCH, WORKGROUP};
 pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
+pub use subdomain_box::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};
 pub use walls::Walls;

@@ -7,9 +7,9 @@ use super::buffers::step_stride;
 use super::device_gas::Subdomain;
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
-use super::place::Cells;
 use super::registry::INTERVAL_STEPS;
 use super::step_slot::{Newborns, StepSlot, Steps, Tables, uniforms};
+use super::subdomain_box::Cells;
 
 /// `GHOSTS_ALL` and so on of `shaders/shared/step.wgsl`.
 const GHOSTS_ALL: u32 = 0;
@@ -156,7 +156,7 @@ impl Subdomain {
     pub fn place_walls(&self, device: &Device, motions: &[GpuMotion]) {
         let mut told = motions.to_vec();
         for step in told.chunks_mut(MOST_MOTIONS) {
-            step.iter_mut().zip(&self.domain.drawn).for_each(|(motion, drawn)| *motion = drawn.complete(*motion));
+            step.iter_mut().zip(&self.domain.bodies).for_each(|(motion, body)| *motion = body.complete(*motion));
         }
         device.write(&self.fixed.motions, 0, &told);
     }

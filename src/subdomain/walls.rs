@@ -32,15 +32,15 @@ pub struct Walls {
     /// A bit per cell: whether a wall that can part two points of the gas is in one of the 27 cells around.
     pub parting: Vec<u32>,
     /// The walls that move.
-    pub drawn: Vec<Drawn>,
+    pub bodies: Vec<BodyLists>,
     /// m.
     pub tolerance: f64,
 }
 
-/// Where a wall that moves is drawn, and where in `list` its lists are: place `i` has the triangles from the word at `list[at + i]` up to
+/// The cells of a wall that moves in its body frame, and where in `list` its lists are: place `i` has the triangles from the word at `list[at + i]` up to
 /// that at `list[at + i + 1]`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Drawn {
+pub struct BodyLists {
     /// The first cell of the box around it, and the cells of the box by axis.
     low: [u32; 3],
     size: [u32; 3],
@@ -49,10 +49,10 @@ pub struct Drawn {
     rows: u32,
 }
 
-impl Drawn {
+impl BodyLists {
     /// What the shaders are told of the wall in a step.
     pub fn complete(&self, motion: GpuMotion) -> GpuMotion {
-        GpuMotion { drawn_low: self.low, drawn_size: self.size, cells: self.cells, rows: self.rows, ..motion }
+        GpuMotion { body_low: self.low, body_size: self.size, cells: self.cells, rows: self.rows, ..motion }
     }
 }
 
@@ -137,7 +137,7 @@ impl Walls {
             list: triangle_grid.list.clone(),
             class,
             parting: parting(triangle_grid, grid, parts),
-            drawn: Vec::new(),
+            bodies: Vec::new(),
             tolerance,
         }
     }
@@ -151,7 +151,7 @@ impl Walls {
         }
         for body in &triangle_grid.bodies {
             let [cells, rows] = [&body.cells, &body.rows].map(|lists| self.append(lists));
-            self.drawn.push(Drawn { low: body.low, size: body.size, cells, rows });
+            self.bodies.push(BodyLists { low: body.low, size: body.size, cells, rows });
         }
         self
     }
@@ -173,11 +173,11 @@ fn parting(triangle_grid: &TriangleGrid, grid: &Grid, parts: impl Fn(usize) -> b
         for y in 0..ny {
             for x in 0..nx {
                 let cell = grid.cell_index([x, y, z]);
-                let parted = triangle_grid
+                let divides = triangle_grid
                     .in_cell(cell)
                     .iter()
                     .any(|&t| parts(triangle_grid.triangles[t as usize].source as usize));
-                if !parted {
+                if !divides {
                     continue;
                 }
                 for around in 0..27 {

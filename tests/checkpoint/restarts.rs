@@ -7,7 +7,7 @@ use corpuscle::subdomain::GpuParticle;
 
 use super::program::{Case, Numbers, Program, Results, dense, newest, published, tank};
 
-/// Stops at three steps drawn at random, and goes on each time with another number of subdomains. Once more is computed
+/// Stops at three random steps, and goes on each time with another number of subdomains. Once more is computed
 /// and written than the checkpoint knows, and then thrown away.
 fn restarts(scene: &Scene, seed: u64, subdomains: [usize; 4]) -> Case {
     let case = Case::new(scene);

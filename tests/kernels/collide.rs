@@ -65,9 +65,9 @@ impl Cloud {
         constants.iter().for_each(|(name, value)| rig.constant(name, *value));
         self.put_parts(&mut rig);
         collide(&rig, self.start.len() - 1);
-        let parted = rig.counter(0);
-        if parted > 0 {
-            rig.run("collide_divided", parted as usize);
+        let divided = rig.counter(0);
+        if divided > 0 {
+            rig.run("collide_divided", divided as usize);
         }
         let moved = rig.counter(1);
         if moved > 0 {
@@ -78,8 +78,8 @@ impl Cloud {
 
     /// The part of each particle of a cell that walls part, as the sort leaves it.
     fn put_parts(&self, rig: &mut Rig) {
-        let parted = (0..self.start.len() - 1).filter(|&cell| self.table.volume[cell] >> 31 == 1);
-        let crowded: Vec<u32> = parted.flat_map(|cell| self.cell(cell)).map(|s| s as u32).collect();
+        let divided = (0..self.start.len() - 1).filter(|&cell| self.table.volume[cell] >> 31 == 1);
+        let crowded: Vec<u32> = divided.flat_map(|cell| self.cell(cell)).map(|s| s as u32).collect();
         let bins: Vec<[u32; 2]> =
             (0..self.start.len() - 1).flat_map(|cell| self.cell(cell).map(move |_| [cell as u32, 0])).collect();
         rig.put("particles", &self.particles);

@@ -18,7 +18,7 @@ use crate::rig::*;
 /// Some two dozen in a cell: many pairs in few runs.
 const COUNT: usize = 8000;
 const TANK: Vector = [0.06, 0.07, 0.08];
-/// From where a wall is drawn to where it is in the step, m.
+/// From where a wall is at the start of the run to where it is in the step, m.
 const WAY: Vector = [0.0205, 0.004, -0.003];
 /// Of a plate as wide as the tank.
 const ALONG: Vector = [0.0205, 0.0, 0.0];
@@ -41,7 +41,7 @@ fn edge(way: Vector) -> Shape {
 }
 
 /// The second of two walls moves.
-struct Drawn {
+struct MovingWorld {
     world: World,
     /// Without it.
     rest: Vessel,
@@ -52,7 +52,7 @@ struct Drawn {
     moving: Vec<Triangle>,
 }
 
-fn drawn(walls: &[Wall; 2], moved: Vector, velocity: Vector) -> Drawn {
+fn moving_world(walls: &[Wall; 2], moved: Vector, velocity: Vector) -> MovingWorld {
     let mut world = World::new(walls, 0.01);
     let grid = world.grid;
     let vessel = Vessel::build(walls).unwrap();
@@ -84,15 +84,15 @@ fn drawn(walls: &[Wall; 2], moved: Vector, velocity: Vector) -> Drawn {
         high: cell(f64::max, 1.0),
         ..GpuMotion::default()
     };
-    let motion = world.walls.drawn[0].complete(motion);
-    Drawn { world, rest, triangles, motion, resting, moving }
+    let motion = world.walls.bodies[0].complete(motion);
+    MovingWorld { world, rest, triangles, motion, resting, moving }
 }
 
-/// The wall as it is in the step, at rest; and the same gas beside the wall that has moved there from where it is drawn.
+/// The wall as it is in the step, at rest; and the same gas beside the wall that has moved there from where it is at the start of the run.
 fn at_rest_and_moved(seed: u32, shape: &dyn Fn(Vector) -> Shape, gas: GasSide, moved: Vector) -> [Cloud; 2] {
     let at = |way: Vector| [tank(TANK), wall(shape(way), gas)];
     let mut still = Cloud::of(seed, &at(moved), COUNT);
-    let Drawn { world, rest, triangles, motion, .. } = drawn(&at([0.0; 3]), moved, [0.0; 3]);
+    let MovingWorld { world, rest, triangles, motion, .. } = moving_world(&at([0.0; 3]), moved, [0.0; 3]);
     let grid = &world.grid;
     assert_eq!(*grid, still.world.grid);
     let gas = cell_gas(&rest, grid, &triangles, |_| false);
@@ -254,7 +254,7 @@ const EVERY: usize = 40;
 #[test]
 fn without_room_for_the_triangles_of_a_cell_the_results_are_the_same() {
     let shapes: [(&dyn Fn(Vector) -> Shape, GasSide); 2] = [(&ball, GasSide::Outside), (&edge, GasSide::Both)];
-    let mut parted = false;
+    let mut divided = false;
     for (shape, gas) in shapes {
         let [_, cloud] = at_rest_and_moved(91, shape, gas, WAY);
         let count = cloud.particles.len();
@@ -265,9 +265,9 @@ fn without_room_for_the_triangles_of_a_cell_the_results_are_the_same() {
         });
         assert!(listed.2 > 50 && listed.0 != cloud.particles, "{} collisions", listed.2);
         assert!(listed == gone_through);
-        parted |= listed.1[0].iter().any(|&part| part > 0);
+        divided |= listed.1[0].iter().any(|&part| part > 0);
     }
-    assert!(parted, "no cell has parts");
+    assert!(divided, "no cell has parts");
 }
 
 /// m/s: the wall flies half a cell in the step.
@@ -278,7 +278,7 @@ const FLIGHT: Vector = [150.0, -60.0, 40.0];
 fn flights_meet_a_moving_wall_where_it_is() {
     const COUNT: usize = 8000;
     let walls = [tank(TANK), wall(ball([0.0; 3]), GasSide::Outside)];
-    let Drawn { world, motion, resting, moving, .. } = drawn(&walls, WAY, FLIGHT);
+    let MovingWorld { world, motion, resting, moving, .. } = moving_world(&walls, WAY, FLIGHT);
     let mut stream = Stream::new(92);
     let mut particles = world.particles(&mut stream, 2 * COUNT, 100.0);
     let vessel = Vessel::build(&walls).unwrap();

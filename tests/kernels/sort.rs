@@ -203,7 +203,7 @@ fn particles_of_cells_are_arranged() {
     }
     // In the box around a wall that moves, but not where it is.
     let divided = cells.index([5, 2, 2]);
-    // A wall that is drawn in the first of these cells has moved by one and a half along x; its box is larger.
+    // A wall that starts in the first of these cells has moved by one and a half along x; its box is larger.
     let (low, high) = ([5, 2, 2], [6, 3, 2]);
     let moved = |of: u32| {
         let at = place_of(of);
@@ -217,8 +217,8 @@ fn particles_of_cells_are_arranged() {
         low,
         high,
         cells: begin + 1,
-        drawn_low: low,
-        drawn_size: [1; 3],
+        body_low: low,
+        body_size: [1; 3],
         ..GpuMotion::default()
     };
     let mut start = vec![0u32; cells.count() + 1];

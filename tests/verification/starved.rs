@@ -45,7 +45,7 @@ fn starved_cells_are_too_viscous() {
 }
 
 /// Gas of two pressures, a wall between.
-fn parted(pressures: [f64; 2], method: &str, occupancy: f64) -> Model {
+fn divided(pressures: [f64; 2], method: &str, occupancy: f64) -> Model {
     let text = format!(
         r#"
         end_time = 4e-4
@@ -80,7 +80,7 @@ fn parted(pressures: [f64; 2], method: &str, occupancy: f64) -> Model {
         "#,
         pressures[0], pressures[1]
     );
-    Model::new(scene::parse(&text, "parted.toml", Path::new("")).expect("a scene")).expect("a model")
+    Model::new(scene::parse(&text, "divided.toml", Path::new("")).expect("a scene")).expect("a model")
 }
 
 fn told(model: &Model, options: Options<'_>) -> Vec<Quantity> {
@@ -90,10 +90,10 @@ fn told(model: &Model, options: Options<'_>) -> Vec<Quantity> {
 #[test]
 fn starved_cells_are_told_before_a_run_and_in_it() {
     let planned = |model: &Model| model.plan.warnings.iter().any(|text| text.contains("particles in a cell"));
-    let starved = parted([1.4e4, 1e5], "cell", 0.3);
+    let starved = divided([1.4e4, 1e5], "cell", 0.3);
     assert!(planned(&starved), "{:?}", starved.plan.warnings);
     assert!(told(&starved, Options::default()).contains(&Quantity::CellParticles));
-    for good in [parted([6e4, 1e5], "cell", 0.3), parted([1.4e4, 1e5], "closest-approach", 0.3)] {
+    for good in [divided([6e4, 1e5], "cell", 0.3), divided([1.4e4, 1e5], "closest-approach", 0.3)] {
         assert!(!planned(&good), "{:?}", good.plan.warnings);
         assert!(!told(&good, Options::default()).contains(&Quantity::CellParticles));
     }
@@ -103,7 +103,7 @@ fn starved_cells_are_told_before_a_run_and_in_it() {
 #[test]
 fn flights_past_cells_are_told() {
     for method in ["cell", "none"] {
-        let mut scene = parted([6e4, 1e5], "cell", 0.21).scene;
+        let mut scene = divided([6e4, 1e5], "cell", 0.21).scene;
         if method == "none" {
             (scene.model.occupancy, scene.model.method) = (None, Some(Method::None));
         }

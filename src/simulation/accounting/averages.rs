@@ -271,8 +271,8 @@ impl Averages {
         self.add_losses(tallies, wanted);
     }
 
-    /// The volumes of the chambers and probes as drawn, m3.
-    pub fn drawn(&self) -> &[f64] {
+    /// Of the chambers and probes at the start, m3.
+    pub fn initial_volumes(&self) -> &[f64] {
         &self.layout.volumes
     }
 

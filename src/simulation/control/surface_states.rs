@@ -167,8 +167,8 @@ impl<'a> SurfaceStates<'a> {
             self.state.latest.chambers = (0..model.plan.chambers.len())
                 .map(|chamber| {
                     let zones = &tallies.zones[(chamber + 1) * gases..(chamber + 2) * gases];
-                    let drawn = model.plan.chambers[chamber].volume;
-                    self.chamber(zones, f64::from(samples), volumes.get(chamber).copied().unwrap_or(drawn))
+                    let initial = model.plan.chambers[chamber].volume;
+                    self.chamber(zones, f64::from(samples), volumes.get(chamber).copied().unwrap_or(initial))
                 })
                 .collect();
         }

@@ -23,7 +23,7 @@ pub struct Model {
     pub vessel: Vessel,
     pub plan: Plan,
     pub surface_models: SurfaceModels,
-    /// The walls that move; `vessel` has them as they are drawn.
+    /// The walls that move; `vessel` has them as they are at the start.
     pub moving: Moving,
     /// m3 of gas in each probe.
     pub probe_volumes: Vec<f64>,

@@ -36,7 +36,7 @@ pub struct Moving {
 struct Body {
     motion: Motion,
     name: String,
-    /// As drawn, m.
+    /// At the start, m.
     low: [f64; 3],
     high: [f64; 3],
     /// The least and the largest displacement of the run, m.
@@ -87,12 +87,12 @@ impl Moving {
             end_time: scene.end_time,
         };
         moving.refuse_swept_places(scene, vessel)?;
-        let drawn = moving.volumes_at(scene, vessel, &vec![0.0; moving.bodies.len()])?;
+        let initial = moving.volumes_at(scene, vessel, &vec![0.0; moving.bodies.len()])?;
         for index in 0..moving.bodies.len() {
-            let swept = moving.measure(scene, vessel, index, &drawn)?;
+            let swept = moving.measure(scene, vessel, index, &initial)?;
             moving.swept.push(swept);
         }
-        moving.refuse_squeezed(scene, &drawn)?;
+        moving.refuse_squeezed(scene, &initial)?;
         Ok(moving)
     }
 
@@ -160,15 +160,15 @@ impl Moving {
         Ok(volumes)
     }
 
-    fn measure(&self, scene: &Scene, vessel: &Vessel, index: usize, drawn: &[f64]) -> Result<Swept, ModelError> {
+    fn measure(&self, scene: &Scene, vessel: &Vessel, index: usize, initial: &[f64]) -> Result<Swept, ModelError> {
         let body = &self.bodies[index];
         let at = |place: f64| -> Result<(f64, Vec<f64>), ModelError> {
             let mut moved = vec![0.0; self.bodies.len()];
             moved[index] = place;
             let volumes = self.volumes_at(scene, vessel, &moved)?;
-            Ok((place, volumes.iter().zip(drawn).map(|(own, drawn)| own - drawn).collect()))
+            Ok((place, volumes.iter().zip(initial).map(|(own, initial)| own - initial).collect()))
         };
-        let all: f64 = drawn.iter().sum();
+        let all: f64 = initial.iter().sum();
         let [low, high] = body.range;
         // A wall that stays where it is has two places nevertheless.
         let high = if high > low { high } else { low + 1e-6 };
@@ -178,7 +178,7 @@ impl Moving {
             let start = found[found.len() - 1].clone();
             let middle = at(0.5 * (start.0 + end.0))?;
             let off = |zone: usize| (middle.1[zone] - 0.5 * (start.1[zone] + end.1[zone])).abs();
-            if halvings >= MOST_HALVINGS || (0..drawn.len()).all(|zone| off(zone) <= LINEAR * all) {
+            if halvings >= MOST_HALVINGS || (0..initial.len()).all(|zone| off(zone) <= LINEAR * all) {
                 found.extend([middle, end]);
             } else {
                 pending.push((end, halvings + 1));
@@ -225,10 +225,10 @@ impl Moving {
         Ok(())
     }
 
-    fn refuse_squeezed(&self, scene: &Scene, drawn: &[f64]) -> Result<(), ModelError> {
+    fn refuse_squeezed(&self, scene: &Scene, initial: &[f64]) -> Result<(), ModelError> {
         for time in self.moments() {
-            let volumes = self.volumes(drawn, time);
-            for (chamber, (now, start)) in scene.chambers.iter().zip(volumes.iter().zip(drawn)) {
+            let volumes = self.volumes(initial, time);
+            for (chamber, (now, start)) in scene.chambers.iter().zip(volumes.iter().zip(initial)) {
                 if *now < LEAST_SHARE * start {
                     return Err(ModelError::Squeezed { chamber: chamber.name.clone(), share: now / start, time });
                 }
@@ -243,12 +243,12 @@ impl Moving {
         turns.filter(|&time| time > 0.0 && time < self.end_time).chain([0.0, self.end_time]).collect()
     }
 
-    /// The volumes at a time, s, of zones that have `drawn` at the start, m3.
-    pub fn volumes(&self, drawn: &[f64], time: f64) -> Vec<f64> {
-        let volume = |(zone, drawn): (usize, &f64)| {
-            self.swept.iter().fold(*drawn, |volume, swept| volume + swept.change(zone, time)).max(0.0)
+    /// The volumes at a time, s, of zones that have `initial` at the start, m3.
+    pub fn volumes(&self, initial: &[f64], time: f64) -> Vec<f64> {
+        let volume = |(zone, initial): (usize, &f64)| {
+            self.swept.iter().fold(*initial, |volume, swept| volume + swept.change(zone, time)).max(0.0)
         };
-        drawn.iter().enumerate().map(volume).collect()
+        initial.iter().enumerate().map(volume).collect()
     }
 
     /// Times at which a velocity bends or jumps, s.
@@ -256,15 +256,15 @@ impl Moving {
         self.bodies.iter().flat_map(|body| bends(&body.motion.course)).collect()
     }
 
-    /// What the plan must know of it; `drawn` are the volumes of the chambers, m3.
-    pub fn measured(&self, drawn: &[f64]) -> Option<MeasuredMotion> {
+    /// What the plan must know of it; `initial` are the volumes of the chambers, m3.
+    pub fn measured(&self, initial: &[f64]) -> Option<MeasuredMotion> {
         if self.is_empty() {
             return None;
         }
-        let all = |time: f64| self.volumes(drawn, time).iter().sum::<f64>();
+        let all = |time: f64| self.volumes(initial, time).iter().sum::<f64>();
         let share = |time: f64| {
-            let now = self.volumes(drawn, time);
-            now.iter().zip(drawn).map(|(now, drawn)| now / drawn).fold(1.0, f64::min)
+            let now = self.volumes(initial, time);
+            now.iter().zip(initial).map(|(now, initial)| now / initial).fold(1.0, f64::min)
         };
         let fastest = |time: f64| self.courses(time).iter().map(|[_, velocity]| velocity.abs()).fold(0.0, f64::max);
         let moments = self.moments();
@@ -302,14 +302,14 @@ impl Moving {
     }
 
     /// The mean volumes over the steps of an interval that are tallied, m3; empty where nothing moves or is tallied.
-    pub fn mean_volumes(&self, drawn: &[f64], times: impl Iterator<Item = f64>) -> Vec<f64> {
+    pub fn mean_volumes(&self, initial: &[f64], times: impl Iterator<Item = f64>) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
         }
-        let mut sum = vec![0.0; drawn.len()];
+        let mut sum = vec![0.0; initial.len()];
         let mut count = 0.0;
         for time in times {
-            for (sum, volume) in sum.iter_mut().zip(self.volumes(drawn, time)) {
+            for (sum, volume) in sum.iter_mut().zip(self.volumes(initial, time)) {
                 *sum += volume;
             }
             count += 1.0;

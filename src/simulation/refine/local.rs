@@ -143,8 +143,8 @@ impl<'a> Split<'a> {
         let gas = parent.gas();
         let (mass, species) = (self.gases[usize::from(gas)].0, &self.species[usize::from(gas)]);
         let grid = &self.plan.grid;
-        let drawn = self.places.draw(parent, self.plan.seed, id).and_then(|place| grid.to_fixed(place));
-        let position = drawn.unwrap_or_else(|| {
+        let sampled = self.places.draw(parent, self.plan.seed, id).and_then(|place| grid.to_fixed(place));
+        let position = sampled.unwrap_or_else(|| {
             report.at_parent += 1;
             // Both grids lie around the same walls.
             grid.to_fixed(self.places.metres(parent)).unwrap_or_default()
@@ -163,11 +163,11 @@ impl<'a> Split<'a> {
 
     /// Gives children the momentum, kinetic and spin energy per mass of their parents.
     fn conserve(&self, before: &Sums, children: &mut [Child]) {
-        let drawn = self.sums(children.iter().map(|child| (child.gas, child.velocity, child.spin)));
-        let per_mass = drawn.mass / before.mass;
+        let sampled = self.sums(children.iter().map(|child| (child.gas, child.velocity, child.spin)));
+        let per_mass = sampled.mass / before.mass;
         let ratio = |wanted: f64, found: f64| if found > 0.0 { per_mass * wanted / found } else { 0.0 };
-        let (faster, spin) = (ratio(before.thermal, drawn.thermal).sqrt(), ratio(before.spin, drawn.spin));
-        let (mean, found) = (before.velocity(), drawn.velocity());
+        let (faster, spin) = (ratio(before.thermal, sampled.thermal).sqrt(), ratio(before.spin, sampled.spin));
+        let (mean, found) = (before.velocity(), sampled.velocity());
         for child in children {
             child.velocity = std::array::from_fn(|axis| mean[axis] + faster * (child.velocity[axis] - found[axis]));
             child.spin *= spin;

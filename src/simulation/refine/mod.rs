@@ -2,7 +2,7 @@
 //!
 //! The refined run is that of the same scene with `times` the particles, and goes on from the same moment. Of the parents
 //! it keeps, in every group of neighbours (`groups`), mass, momentum, kinetic and spin energy; where a child is and how it
-//! moves about its group's mean is drawn anew (`places`, `local`). How many particles of each gas a run of the refined
+//! moves about its group's mean is sampled anew (`places`, `local`). How many particles of each gas a run of the refined
 //! scene has at that moment follows from its plan and its inflow; that is not just `times` the parents', by rounding, so
 //! a few parents have a child more or less (`lineage`), with the mean energy and momentum of their group.
 //!

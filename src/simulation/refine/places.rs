@@ -2,7 +2,7 @@
 //!
 //! The displacement is uniform in a cube of the parent's share of the volume, so that even gas becomes even gas without
 //! holes or heaps. Mirrored at walls, and not refused there, the children of an even gas are even up to the wall. A path
-//! that ends in another chamber (through a hole) or in no gas is drawn again, the later tries nearer to the parent.
+//! that ends in another chamber (through a hole) or in no gas is sampled again, the later tries nearer to the parent.
 
 use glam::DVec3;
 

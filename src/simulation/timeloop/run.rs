@@ -234,7 +234,7 @@ impl Simulation<'_> {
         let moving = &self.model.moving;
         if !moving.is_empty() {
             interval.tables.motions = moving.steps(&plan.grid, start, interval.dt, steps);
-            interval.volumes = moving.mean_volumes(self.books.averages.drawn(), interval.tallied_at(start));
+            interval.volumes = moving.mean_volumes(self.books.averages.initial_volumes(), interval.tallied_at(start));
         }
         self.submit(interval)
     }

@@ -239,8 +239,8 @@ fn works(model: &Model, solved: Solved<'_>, bounds: &[f64]) -> Vec<Vec<f64>> {
 
 fn zone(model: &Model, chamber: usize, time: f64, state: &State) -> ZoneState {
     let plan = &model.plan;
-    let drawn = plan.chambers[chamber].volume;
-    let volume = model.moving.swept.iter().fold(drawn, |volume, swept| volume + swept.change(chamber, time));
+    let initial = plan.chambers[chamber].volume;
+    let volume = model.moving.swept.iter().fold(initial, |volume, swept| volume + swept.change(chamber, time));
     let mass: f64 = state.moles.iter().zip(&plan.gases).map(|(n, gas)| n * gas.molar_mass).sum();
     ZoneState {
         pressure: state.pressure,

@@ -27,9 +27,9 @@ const TO_AND_FRO: &str = "displacement = [[0.0, 0.0], [4e-4, 0.02], [1e-3, -0.01
 #[test]
 fn volumes_follow_a_plate() {
     let model = model(TO_AND_FRO, "").unwrap();
-    let drawn = model.vessel.chamber_volumes(&model.scene.chambers);
+    let initial = model.vessel.chamber_volumes(&model.scene.chambers);
     for (time, x) in [(0.0, 0.0), (2e-4, 0.01), (4e-4, 0.02), (7e-4, 0.005), (1e-3, -0.01)] {
-        let found = model.moving.volumes(&drawn, time);
+        let found = model.moving.volumes(&initial, time);
         for (found, expected) in found.iter().zip([0.01 * (0.039 + x), 0.01 * (0.059 - x)]) {
             assert!((found / expected - 1.0).abs() < 1e-3, "{time}: {found} {expected}");
         }
