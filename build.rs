@@ -10,10 +10,7 @@
 //! gets the binding number of the buffer NAME from there; `//! binds: BUFFER as NAME` says that a kernel (or what uses a shared file)
 //! has another buffer by that name. `//! phase: choose lost` names the phases of the step in which a kernel is dispatched.
 //!
-//! `CORPUSCLE_SOURCE` is a number of all sources, by which ranks see that they are of one build. `CORPUSCLE_COMMIT` is the last commit
-//! of the working tree that changed sources, marked where they are others; not set where there is none, or no git. It is found anew
-//! only where sources change: a commit of anything else builds nothing, and sources that are committed as they were built stay
-//! marked. `CORPUSCLE_VERSION` is the package's with that commit.
+//! What the program says of its own version is found in `build/version.rs`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -24,6 +21,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 #[path = "src/subdomain/registry.rs"]
 #[allow(dead_code)] // Most of it is for the host.
 mod registry;
+#[path = "build/version.rs"]
+mod version;
 
 /// What all kernels of a folder have: numbers, and buffers whose places are their binding numbers.
 #[derive(Clone, Copy)]
@@ -44,11 +43,6 @@ pub const CAPABILITIES: Capabilities = Capabilities::empty();
 /// The variants that a shared file may have beside its own, in the order of `KernelVariant` (src/gpu/source.rs), and what the sources made of them may ask.
 pub const VARIANTS: [&str; 2] = ["software", "gpu"];
 const CAPABILITIES_OF_VARIANTS: Capabilities = Capabilities::SUBGROUP;
-
-/// What a build is made of.
-const SOURCES: [&str; 4] = ["Cargo.lock", "build.rs", "shaders", "src"];
-const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
-const FNV_PRIME: u64 = 0x100_0000_01b3;
 
 /// A kernel with the shared files before it.
 pub struct Kernel {
@@ -89,7 +83,7 @@ struct SourceFile {
 
 fn main() {
     // Cargo looks at every file below.
-    for path in SOURCES {
+    for path in version::SOURCES {
         println!("cargo::rerun-if-changed={path}");
     }
     let written = kernels(Path::new("shaders"), REGISTRY).and_then(|(kernels, unused)| {
@@ -100,59 +94,10 @@ fn main() {
         let path = Path::new(&out).join("shaders.rs");
         fs::write(&path, table(&kernels)).map_err(|error| format!("{}: {error}", path.display()))
     });
-    let numbered = written.and_then(|()| {
-        let mut number = FNV_START;
-        SOURCES.iter().try_for_each(|path| add_to(&mut number, Path::new(path)))?;
-        println!("cargo::rustc-env=CORPUSCLE_SOURCE={number:016x}");
-        let version = env!("CARGO_PKG_VERSION");
-        match commit() {
-            Some(commit) => {
-                println!("cargo::rustc-env=CORPUSCLE_COMMIT={commit}");
-                println!("cargo::rustc-env=CORPUSCLE_VERSION={version} ({commit})");
-            }
-            None => println!("cargo::rustc-env=CORPUSCLE_VERSION={version}"),
-        }
-        Ok(())
-    });
-    if let Err(message) = numbered {
+    if let Err(message) = written.and_then(|()| version::tell()) {
         eprintln!("{message}");
         process::exit(1);
     }
-}
-
-/// What git says of this package's own working tree.
-fn commit() -> Option<String> {
-    // The package may lie within another's working tree.
-    let root = fs::canonicalize(git(&["rev-parse", "--show-toplevel"])?).ok()?;
-    if root != fs::canonicalize(".").ok()? {
-        return None;
-    }
-    let log = ["log", "-1", "--format=%h", "--abbrev=12", "--"];
-    let commit = git(&[&log, &SOURCES[..]].concat()).filter(|commit| !commit.is_empty())?;
-    let changed = !git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?.is_empty();
-    Some(if changed { commit + "-changed" } else { commit })
-}
-
-/// What git answers, if it does.
-fn git(arguments: &[&str]) -> Option<String> {
-    let done = process::Command::new("git").args(arguments).output().ok().filter(|done| done.status.success())?;
-    Some(String::from_utf8(done.stdout).ok()?.trim().to_owned())
-}
-
-/// Adds a file, or all files of a folder in the order of their names, to a hash (FNV-1a, 64 bits).
-fn add_to(number: &mut u64, path: &Path) -> Result<(), String> {
-    let told = |error: std::io::Error| format!("{}: {error}", path.display());
-    if path.is_dir() {
-        let entries: Result<Vec<_>, _> = fs::read_dir(path).map_err(told)?.map(|entry| Ok(entry?.path())).collect();
-        let mut paths = entries.map_err(told)?;
-        paths.sort();
-        return paths.iter().try_for_each(|path| add_to(number, path));
-    }
-    let name = path.to_string_lossy();
-    for byte in name.bytes().chain(fs::read(path).map_err(told)?) {
-        *number = (*number ^ u64::from(byte)).wrapping_mul(FNV_PRIME);
-    }
-    Ok(())
 }
 
 /// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.

@@ -74,7 +74,8 @@ mod tests {
     use crate::gas::{Inflow, InflowParticles};
     use crate::plan::Plan;
     use crate::simulation::accounting::audit::Account;
-    use crate::simulation::accounting::averages::{Averages, Layout, Sampled};
+    use crate::simulation::accounting::averages::{Averages, Sampled};
+    use crate::simulation::accounting::row::Layout;
     use crate::simulation::control::clock::Clock;
     use crate::simulation::control::ladder::Ladder;
     use crate::simulation::control::surface_states::VentTarget;

@@ -13,6 +13,7 @@ mod ceilings;
 mod choose;
 mod closed;
 mod collide;
+mod crowd;
 mod devices;
 mod exchange;
 mod fly;
@@ -36,6 +37,7 @@ mod surface_models;
 mod tally;
 mod variants;
 mod weigh;
+mod world;
 
 /// No kernel goes untested: the table of kernels is the list of those the files here run.
 #[test]

@@ -2,7 +2,7 @@ use super::*;
 use std::sync::LazyLock;
 
 use crate::gas::{Modes, fit};
-use crate::scene::{Curve, Mixture};
+use crate::scene::{Curve, Jet, JetSpeed, Mixture};
 
 /// Like nitrogen, helium and carbon dioxide, the last with a heat capacity that grows.
 fn gases() -> Vec<Species> {

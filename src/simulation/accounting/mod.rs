@@ -5,4 +5,5 @@ pub(super) mod averages;
 pub(super) mod guards;
 pub(super) mod lists;
 pub(super) mod phases;
+pub(super) mod row;
 pub(super) mod vent_watch;

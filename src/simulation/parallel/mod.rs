@@ -5,3 +5,4 @@ pub(super) mod decomposition;
 pub(super) mod exchange;
 pub(super) mod halo_tuner;
 pub(super) mod initial_particles;
+pub(super) mod load;

@@ -4,13 +4,14 @@
 use super::simulation::Simulation;
 use super::submit::{InFlight, Pending};
 use crate::simulation::SimulationError;
-use crate::simulation::accounting::averages::{Row, Sampled};
+use crate::simulation::accounting::averages::Sampled;
 use crate::simulation::accounting::guards::{GuardWarning, Shown};
 use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
+use crate::simulation::accounting::row::Row;
 use crate::simulation::control::interval::Interval;
 use crate::simulation::control::surface_states::{SeenGas, Window};
-use crate::simulation::parallel::balance::Load;
 use crate::simulation::parallel::exchange::Traffic;
+use crate::simulation::parallel::load::Load;
 use crate::simulation::run_state::Feedback;
 use crate::simulation::timeloop::interrupt::Request;
 use crate::simulation::timeloop::observer::Observer;

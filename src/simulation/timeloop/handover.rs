@@ -3,7 +3,7 @@
 use super::simulation::Simulation;
 use crate::output::Audit;
 use crate::simulation::SimulationError;
-use crate::simulation::accounting::averages::Row;
+use crate::simulation::accounting::row::Row;
 use crate::simulation::timeloop::observer::{Continued, Observer};
 use crate::simulation::zero_d::switch::beginning;
 use crate::simulation::zero_d::uniform::{Continuation, Earlier, continue_uniform};

@@ -2,7 +2,7 @@
 
 use crate::geometry::{MovingWalls, TriangleGrid, Vessel, block_volumes, cell_gas, still_points};
 use crate::scene::{Face, Method};
-use crate::simulation::accounting::averages::Layout;
+use crate::simulation::accounting::row::Layout;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::patches::patches;

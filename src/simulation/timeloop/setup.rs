@@ -6,7 +6,7 @@ use super::host_setup::HostSetup;
 use crate::gpu::Device;
 use crate::output::Checkpoint;
 use crate::scene::Method;
-use crate::simulation::accounting::averages::Layout;
+use crate::simulation::accounting::row::Layout;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::parallel::initial_particles::{Initial, InitialParticles, initial_particles};

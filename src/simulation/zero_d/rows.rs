@@ -1,6 +1,6 @@
 //! Who is told of the rows of a run, of particles or of control volumes.
 
-use crate::simulation::accounting::averages::Row;
+use crate::simulation::accounting::row::Row;
 use crate::simulation::accounting::vent_watch::VentWatch;
 use crate::simulation::error::SimulationError;
 

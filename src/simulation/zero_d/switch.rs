@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::gas::{Beginning, kinetics};
 use crate::plan::{Plan, noise_of_hits, noise_of_zone};
 use crate::scene::Switch;
-use crate::simulation::accounting::averages::Row;
+use crate::simulation::accounting::row::Row;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;

@@ -14,7 +14,7 @@ use crate::gas::{
 };
 use crate::output::Audit;
 use crate::scene::{SurfaceId, WallHeat};
-use crate::simulation::accounting::averages::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
+use crate::simulation::accounting::row::{MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
 use crate::simulation::accounting::vent_watch::VentWatch;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::scene::{Method, parse};
-use crate::simulation::accounting::averages::Row;
+use crate::simulation::accounting::row::Row;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::facing::{PARTS, parts};
