@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl walls.wgsl cell_gas.wgsl lay.wgsl
+//! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl lists.wgsl walls.wgsl cell_gas.wgsl lay.wgsl place_by_id.wgsl
 //! phase: sort
 // Sort of the method `cell`, in cells that `collide` does not put in order: their particles by id, and where walls at rest part the gas the part
 // of each.
@@ -9,28 +9,11 @@
 // per entry of `crowded`.
 
 var<storage, read> bins: array<vec2<u32>>;
-var<storage, read> cell_start: array<u32>;
-// Four slots each.
-var<storage, read> slots: array<vec4<u32>>;
 var<storage, read> crowded: array<u32>;
 var<storage, read> cell_parts: array<Part>;
 
 // Walls part the gas of some cell.
 override DIVIDED_GAS: bool = true;
-
-// The place of a particle by (cell, id): its cell's start plus the number of lower ids in the cell, whatever order the slots have.
-fn place_by_id(cell: u32, own_id: u32) -> u32 {
-    let begin = cell_start[cell];
-    let end = cell_start[cell + 1u];
-    var place = begin;
-    // bench: lower ids
-    for (var k = begin >> 2u; 4u * k < end; k++) {
-        let slot = vec4<u32>(4u * k) + vec4<u32>(0u, 1u, 2u, 3u);
-        let lower = (slots[k] < vec4<u32>(own_id)) & (slot >= vec4<u32>(begin)) & (slot < vec4<u32>(end));
-        place += dot(select(vec4<u32>(0u), vec4<u32>(1u), lower), vec4<u32>(1u));
-    }
-    return place;
-}
 
 fn part_of(place: vec3<u32>, first: u32, parts: u32) -> u32 {
     var nearest = 0u;

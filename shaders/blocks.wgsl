@@ -2,7 +2,7 @@
 //! binds: block_sums as sums
 //! phase: blocks
 // The local state that sets the step size: number and kinetic energy in coarse blocks of cells, and how
-// many particles would cross more than a cell at each step of the ladder.
+// many particles would cross more than CELLS_FLOWN cells at each step of the ladder.
 //
 // Reads `particles`; writes the integer tally `sums`: per block number (two words) and energy (two
 // words), then the LEVELS counts of fast particles. One thread per particle. Sums of integers do not
@@ -13,6 +13,8 @@ override BLOCKS: u32;
 // The ladder's largest step, s, and its number of levels.
 override TIME_STEP: f32;
 override LEVELS: u32;
+// Cells that a particle may fly in a step.
+override CELLS_FLOWN: f32 = 1.0;
 // Kinetic energy over reference mass to tally units.
 override BLOCK_ENERGY_SCALE: f32;
 
@@ -43,10 +45,10 @@ fn blocks(thread: Thread) {
     }
     add64(slot + BLOCK_NUMBER, 1u, 0u);
     add64(slot + BLOCK_ENERGY, rounded_unsigned(energy), 0u);
-    // Too fast at level l if |v| TIME_STEP / 2^l is more than a cell.
+    // Too fast at level l if |v| TIME_STEP / 2^l is more than CELLS_FLOWN cells.
     var reach = sqrt(speed2) * TIME_STEP * QUANTA / f32(1u << CELL_BITS);
     var level = 0u;
-    while (reach > 1.0 && level < LEVELS) {
+    while (reach > CELLS_FLOWN && level < LEVELS) {
         atomicAdd(&sums[BLOCK_WORDS * BLOCKS + level], 1u);
         reach *= 0.5;
         level++;

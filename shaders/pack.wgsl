@@ -19,7 +19,8 @@ fn pack(thread: Thread) {
         return;
     }
     let cell = global_cell(border[entry].y);
-    let place = vec3<i32>(cell);
+    // Boxes of tiles are those of the lattice that begins with the grid.
+    let place = vec3<i32>(cell - shift_of(step.lattice));
     let index = border[entry].x;
     let particle = particles[index];
     let midpoint = packed(midpoint_of(particle.position, particle.velocity));

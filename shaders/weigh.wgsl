@@ -19,6 +19,9 @@ struct Weights {
 
 const OPEN: u32 = 3;
 
+// Cells per edge, log2, of what boxes are made of: tiles with the method `half-turn`.
+override BOX_BITS: u32 = 0;
+
 var<uniform> step: Step;
 var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read> neighbour_count: array<u32>;
@@ -50,7 +53,7 @@ fn weigh(thread: Thread) {
     if ((mark & LAYER) != 0u) {
         return;
     }
-    let cell = cell_of(cells[s]);
+    let cell = (cell_of(cells[s]) - shift_of(step.lattice)) >> vec3<u32>(BOX_BITS);
     var node = cuts[0];
     while (node.x < OPEN) {
         node = cuts[select(node.w, node.z, cell[node.x] < node.y)];

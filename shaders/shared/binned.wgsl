@@ -15,10 +15,18 @@ fn bin_nobody(i: u32) {
     bins[i] = vec2<u32>(NOBODY, 0u);
 }
 
+// The bin of a cell in the step that follows. (On a device alone every cell has one in any lattice.)
+fn next_index(cell: vec3<u32>) -> u32 {
+    if (TILED) {
+        return tiled_index(cell, step.low + shift_of(step.next_lattice) - shift_of(step.lattice), step.next_lattice);
+    }
+    return local_index(cell);
+}
+
 fn bin_next(i: u32, place: vec3<u32>, velocity: vec3<f32>) {
     let cell = flown_cell(place, velocity);
     if (has_bin(cell)) {
-        let index = local_index(cell);
+        let index = next_index(cell);
         bins[i] = vec2<u32>(index, atomicAdd(&cell_counts[index], 1u));
     } else {
         bin_nobody(i);

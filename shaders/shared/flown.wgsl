@@ -8,7 +8,9 @@ fn flown_cell(place: vec3<u32>, velocity: vec3<f32>) -> vec3<u32> {
     return nearest_cell(shifted(place, velocity, FLOWN * step.dt));
 }
 
-// The border layer of the box has no bins to fill.
+// Layers of the box that have no bins to fill.
+override BORDER: u32 = 1;
+
 fn has_bin(cell: vec3<u32>) -> bool {
-    return all(cell - step.low - 1u < step.size - 2u);
+    return all(cell - step.low - BORDER < step.size - 2u * BORDER);
 }

@@ -56,6 +56,9 @@ struct Step {
     flight: u32,
     // Newborns of the step that follows in the interval, where particles are counted for it as they fly (binned.wgsl).
     next_newborns: u32,
+    // Of the tiles of the method `half-turn`, the number of the step modulo 6, and that of the step that follows.
+    lattice: u32,
+    next_lattice: u32,
 }
 
 // `ghosts`: all of them choose; the outermost wait; the pass over those that were asked.

@@ -94,6 +94,7 @@ impl From<MethodName> for Method {
             MethodName::ClosestApproach => Method::ClosestApproach,
             MethodName::HardSphere => Method::HardSphere,
             MethodName::Cell => Method::Cell,
+            MethodName::HalfTurn => Method::HalfTurn,
             MethodName::None => Method::None,
             MethodName::ControlVolume => Method::ControlVolume,
         }

@@ -55,6 +55,8 @@ pub enum Collisions {
     /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, and are
     /// the more viscous to a hole ([`kinetics::viscosity_of_cells`]); else where they crowd ([`kinetics::viscosity_of_crowds`]).
     Particles { diameter: f64, cap: Option<f64>, cell: Option<f64>, moles_per_particle: f64 },
+    /// Those within cells of the same number of particles everywhere, whose viscosity is that of a mean free path of so many mean spacings.
+    Spacings { path: f64, moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
 }
@@ -328,17 +330,22 @@ impl ControlVolume {
     }
 
     fn knudsen(&self, a: Side, b: Side, length: f64) -> f64 {
-        let (diameter, cap, cell, moles_per_particle) = match self.collisions {
+        let moles_per_particle = match self.collisions {
             Collisions::None => return f64::INFINITY,
             Collisions::Continuum => return 0.0,
-            Collisions::Particles { diameter, cap, cell, moles_per_particle } => {
-                (diameter, cap, cell, moles_per_particle)
+            Collisions::Particles { moles_per_particle, .. } | Collisions::Spacings { moles_per_particle, .. } => {
+                moles_per_particle
             }
         };
         let density = |side: Side| side.moles.iter().sum::<f64>() / (side.volume * moles_per_particle);
         let (pa, pb) = (a.pressure(), b.pressure());
         let weight = 0.5 + 0.5 * ((pa - pb) / (BLENDED_DIFFERENCE * pa.max(pb))).clamp(-1.0, 1.0);
         let upstream = weight * density(a) + (1.0 - weight) * density(b);
+        let (diameter, cap, cell) = match self.collisions {
+            Collisions::Particles { diameter, cap, cell, .. } => (diameter, cap, cell),
+            Collisions::Spacings { path, .. } => return path * kinetics::mean_spacing(upstream) / length,
+            Collisions::None | Collisions::Continuum => return 0.0,
+        };
         let diameter = kinetics::capped_diameter(diameter, cap, upstream);
         let path = kinetics::mean_free_path(upstream, diameter);
         let viscosity = match cell {

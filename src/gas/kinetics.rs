@@ -97,6 +97,11 @@ pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     TABLE[3][1]
 }
 
+/// The mean free path, in mean spacings, by which the Knudsen numbers of the method `half-turn` are counted: that of particles of the usual
+/// occupancy (.12) with its kinematic viscosity, .21 d c0. (What particles of such a path have is .783 lambda c0 times 1.31,
+/// [`viscosity_of_crowds`].)
+pub const HALF_TURN_PATH: f64 = 0.21 / 0.783 / 1.31;
+
 /// How many times as viscous as their kinetic mean free path says particles are that crowd at this occupancy, over those at .12, about
 /// which the discharge of holes was measured.
 pub fn viscosity_of_crowds(occupancy: f64) -> f64 {

@@ -9,7 +9,7 @@ use super::longest::{Basis, asked_and_own, possible_step};
 use super::population::{Population, openings, silent_orifices, wanted};
 use super::resolution::{
     ExpectedGas, Extreme, LADDER_LEVELS, MeanState, PER_BLOCK, Resolution, STEPS_PER_INTERVAL, TALLY_EVERY,
-    default_occupancy,
+    default_occupancy, mean_free_path,
 };
 use super::text::significant;
 use super::warnings::{Decided, warnings};
@@ -71,7 +71,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     if grid.cell_count() > MOST_CELLS {
         return Err(PlanError::TooManyCells { cells: grid.cell_count(), limit: MOST_CELLS });
     }
-    let mean_free_path = kinetics::mean_free_path(number_density, resolution.diameter);
+    let mean_free_path = mean_free_path(method, number_density, resolution.diameter);
     let openings: Vec<OpeningPlan> = openings(scene, measured)
         .map(|opening| OpeningPlan {
             name: opening.name.clone(),

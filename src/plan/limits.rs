@@ -50,7 +50,7 @@ pub enum Quantity {
     WallSpeed,
     /// Of all particles, those that fly more than a cell in a step.
     FastParticles,
-    /// Of the method `cell`, where a cell is at least a mean free path long.
+    /// Of the method `cell`, where a cell is at least a mean free path long; of the method `half-turn`, in a tile, its largest collision cell.
     CellParticles,
     /// How far the facets of a round wall lie from the round surface at most, over its radius.
     Facets,
@@ -73,7 +73,7 @@ impl Quantity {
             Quantity::ThinGas => "mean free path over the chamber's size",
             Quantity::Flight => "cells flown in a step",
             Quantity::FastParticles => "share of particles that fly more than a cell",
-            Quantity::CellParticles => "particles in a cell as long as their free path",
+            Quantity::CellParticles => "particles in a collision cell",
             Quantity::Thickness => "thickness over the vessel's longest side",
             Quantity::Halvings => "halvings of the step left",
             Quantity::EnergyDrift => "drift of the energy",
@@ -156,6 +156,8 @@ pub const LIMITS: &[Limit] = &[
     // gas before a hole is four times as dense, cells are twelve free paths long at the occupancy of plans, and a hole of .03 acts
     // as one of .13 (`kinetics::viscosity_of_cells`).
     limit_of(Quantity::Knudsen, Some(Method::Cell), AtMost(0.03), "its flow is off by 7 % or more"),
+    // A hole of 13 spacings: .806 of .84 (`docs/method.md`, half-turn).
+    limit_of(Quantity::Knudsen, Some(Method::HalfTurn), AtMost(0.0315), "its flow is off by 4 % or more"),
     // Measured at f = .03: 24 % too much at .1, where the others hold. What rigid spheres press harder drives the flow; no
     // Knudsen number mends it.
     limit_of(
@@ -210,6 +212,13 @@ pub const LIMITS: &[Limit] = &[
         AtLeast(2.0),
         "pairs collide again and again, and the gas is too viscous",
     ),
+    // Of fewer than six no velocity gradient is known: nu is .45 d c0 at 7, .58 at 4 (docs/method.md).
+    limit_of(
+        Quantity::CellParticles,
+        Some(Method::HalfTurn),
+        AtLeast(6.0),
+        "collision cells are too thin for a velocity gradient, and the gas is too viscous",
+    ),
     limit_of(
         Quantity::Halvings,
         None,
@@ -245,8 +254,12 @@ pub fn limit(quantity: Quantity, method: Method) -> Option<&'static Limit> {
 }
 
 /// Largest x = dt/tau with at most 2 % of the events lost: specification, section 2, for up to four rounds; for eight,
-/// measured in `tests/verification`; between them by steps. Without rounds that of the method `cell`.
+/// measured in `tests/verification`; between them by steps. Without rounds that of the method `cell`. Of `half-turn` the mean spacings that gas of thermal
+/// speed flies, beyond which it becomes as much more viscous as steps are longer.
 pub fn step_limit(method: Method, rounds: u32) -> f64 {
+    if method == Method::HalfTurn {
+        return 1.0;
+    }
     match (method.has_rounds(), rounds) {
         (false, _) => 2.0,
         (true, 0 | 1) => 0.02,

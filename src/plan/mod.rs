@@ -51,7 +51,7 @@ pub use measured::{Measured, MeasuredMotion, MeasuredVent, MeasuredWall, NoOpeni
 pub use planned::{ChamberPlan, GasPlan, OpeningPlan, Plan, VentPlan};
 pub use plausible::by_scene as doubts_of;
 pub use reason::Reason;
-pub use resolution::{FASTEST_PAIR, LADDER_TAIL, PER_CELL};
+pub use resolution::{COLLISION_CELL, FASTEST_PAIR, LADDER_TAIL, PER_CELL};
 pub use text::significant;
 
 #[cfg(test)]

@@ -27,6 +27,10 @@ const EDGE_MARGIN: f64 = 1.0001;
 pub const FASTEST_PAIR: f64 = 6.0;
 /// 99.9 % of the molecules are slower than this many sqrt(kT/m).
 const FAST_PARTICLE: f64 = 4.04;
+/// Edge of a collision cell of the method `half-turn` in mean spacings of its gas: 14 particles.
+pub const COLLISION_CELL: f64 = 2.41;
+/// And those that gas of thermal speed flies in its steps.
+const SPACINGS_FLOWN: f64 = 0.6;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
 const SURELY_FAST: f64 = 4.4;
 
@@ -45,7 +49,9 @@ const MOST_HALVINGS: u32 = LADDER_LEVELS - 1;
 pub fn default_occupancy(method: Method) -> f64 {
     match method {
         Method::HardSphere => RIGID_OCCUPANCY,
-        Method::ClosestApproach | Method::Cell | Method::None | Method::ControlVolume => DEFAULT_OCCUPANCY,
+        Method::ClosestApproach | Method::Cell | Method::HalfTurn | Method::None | Method::ControlVolume => {
+            DEFAULT_OCCUPANCY
+        }
     }
 }
 
@@ -96,12 +102,17 @@ impl Resolution {
             // Control volumes have no particles, and need no resolution.
             Method::None | Method::ControlVolume => Ok(Self::free_flight(request, gas, end_time, reasons)),
             Method::Cell => Ok(Self::within_cells(request, gas, end_time, reasons)),
+            Method::HalfTurn => Ok(Self::half_turn(request, gas, end_time, reasons)),
             Method::ClosestApproach | Method::HardSphere => Self::in_rounds(method, request, gas, end_time, reasons),
         }
     }
 
-    /// x = dt/tau of gas in such a state whose particles have such a diameter, m.
+    /// x = dt/tau of gas in such a state whose particles have such a diameter, m; where they have none, the mean spacings that a particle of
+    /// thermal speed flies.
     pub fn collisions_in_step(&self, state: MeanState, diameter: f64) -> f64 {
+        if diameter == 0.0 {
+            return spacings_flown(self.time_step, state);
+        }
         self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square)
     }
 
@@ -251,6 +262,45 @@ impl Resolution {
         }
     }
 
+    /// The method `half-turn`: cells of the grid an eighth of the volume of a collision cell at the mean density of the end, steps in which the hottest gas flies
+    /// some half a mean spacing.
+    fn half_turn(request: &ModelRequest, gas: ExpectedGas, end_time: f64, reasons: &mut Vec<Reason>) -> Self {
+        let ExpectedGas { states, extreme } = gas;
+        let mut because = |quantity: &str, value: String, why: String| {
+            reasons.push(Reason { quantity: quantity.into(), value, why });
+        };
+        let spacing = kinetics::mean_spacing(states[1].number_density);
+        let cell = 0.5 * COLLISION_CELL * spacing;
+        let why = format!(
+            "half the edge of a collision cell of {:.0} particles at the mean density of the end; where gas is thinner or denser collision cells follow, by halves",
+            COLLISION_CELL.powi(3)
+        );
+        because("cell", format!("{} mm", significant(1e3 * cell)), why);
+        let limit = step_limit(Method::HalfTurn, 0);
+        let hottest = states.map(|state| state.number_density).into_iter().fold(0.0, f64::max);
+        let densest = MeanState { number_density: hottest, thermal_square: extreme.0 };
+        let (wanted, why) = match request.time_step {
+            Some(step) => (step, "asked for, cut to divide the end time".to_string()),
+            None => (
+                SPACINGS_FLOWN / spacings_flown(1.0, densest),
+                format!("the hottest gas flies {SPACINGS_FLOWN} mean spacings a step, {limit} at most"),
+            ),
+        };
+        let (time_step, steps) = divide(end_time, wanted);
+        because("time step", format!("{} us", significant(1e6 * time_step)), why);
+        let flown = states.map(|state| spacings_flown(time_step, state)).into_iter().fold(0.0, f64::max);
+        Self {
+            diameter: 0.0,
+            rounds: 0,
+            collision_limit: limit,
+            time_step,
+            steps,
+            cell,
+            collisions_per_step: flown,
+            flight_over_cell: FAST_PARTICLE * extreme.0.sqrt() * time_step / (2.0 * COLLISION_CELL * spacing),
+        }
+    }
+
     fn free_flight(request: &ModelRequest, gas: ExpectedGas, end_time: f64, reasons: &mut Vec<Reason>) -> Self {
         let cell = kinetics::mean_spacing(gas.states[1].number_density);
         let speed = FAST_PARTICLE * gas.extreme.0.sqrt();
@@ -274,6 +324,19 @@ impl Resolution {
             collisions_per_step: 0.0,
             flight_over_cell: speed * time_step / cell,
         }
+    }
+}
+
+/// Mean spacings that a particle of thermal speed sqrt(kT/m) flies in a time, s.
+fn spacings_flown(time: f64, state: MeanState) -> f64 {
+    time * state.thermal_square.sqrt() / kinetics::mean_spacing(state.number_density)
+}
+
+/// The mean free path, m, by which Knudsen numbers are counted.
+pub(super) fn mean_free_path(method: Method, density: f64, diameter: f64) -> f64 {
+    match method {
+        Method::HalfTurn => kinetics::HALF_TURN_PATH * kinetics::mean_spacing(density),
+        _ => kinetics::mean_free_path(density, diameter),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::limits::{Bound, Judged, Limit, Quantity, Warning, limit, step_limit};
 use super::notes::between;
 use super::population::more_particles;
-use super::resolution::Resolution;
+use super::resolution::{Resolution, mean_free_path};
 use super::text::significant;
 use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
@@ -130,7 +130,7 @@ fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
     let highest = scene.chambers.iter().map(|chamber| chamber.pressure).fold(0.0, f64::max);
     let of_chamber = |(chamber, plan): (&Chamber, &ChamberPlan)| {
         let density = plan.particles.iter().sum::<u64>() as f64 / plan.volume;
-        let path = kinetics::mean_free_path(density, resolution.diameter) / libm::cbrt(plan.volume);
+        let path = mean_free_path(method, density, resolution.diameter) / libm::cbrt(plan.volume);
         (chamber.pressure < PRESSED * highest && density > 0.0).then(|| (path, plan.name.clone()))
     };
     let (path, name) = scene.chambers.iter().zip(chambers).filter_map(of_chamber).max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -142,12 +142,27 @@ fn thin(scene: &Scene, decided: &Decided<'_>) -> Option<Option<Warning>> {
     Some(Warning::by_table(Quantity::ThinGas, method, &subject, path, &remedy))
 }
 
-/// Of the method `cell`: chambers with few particles in each cell, where gas has no longer free path than that.
+/// Chambers with few particles in each collision cell: of the method `cell` where gas has no longer free path than that, of `half-turn` in a
+/// tile.
 fn starved(decided: &Decided<'_>) -> Vec<Option<Warning>> {
     let Decided { method, resolution, chambers, .. } = *decided;
     let of_chamber = |chamber: &ChamberPlan| {
         let density = chamber.particles.iter().sum::<u64>() as f64 / chamber.volume;
-        if density <= 0.0 || kinetics::mean_free_path(density, resolution.diameter) > resolution.cell {
+        if method == Method::HalfTurn && density > 0.0 {
+            let subject = format!("chamber `{}` at the start", chamber.name);
+            let remedy = "more `particles`, or another `method`";
+            return Warning::by_table(
+                Quantity::CellParticles,
+                method,
+                &subject,
+                64.0 * density * resolution.cell.powi(3),
+                remedy,
+            );
+        }
+        if method != Method::Cell
+            || density <= 0.0
+            || kinetics::mean_free_path(density, resolution.diameter) > resolution.cell
+        {
             return None;
         }
         let subject = format!("chamber `{}` at the start", chamber.name);
@@ -171,6 +186,7 @@ fn narrow(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Option<W
     let remedy = if touching { "; let the walls overlap if they were meant to touch" } else { "" };
     let (length, what) = match method {
         Method::Cell => (resolution.cell, "cell"),
+        Method::HalfTurn => (2.0 * resolution.cell, "collision cell"),
         _ => (resolution.diameter, "collision diameter"),
     };
     let subject = format!(
@@ -243,7 +259,12 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
 
 /// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path.
 pub fn wall_hits(measured: &Measured, number_density: f64, resolution: &Resolution) -> f64 {
-    let flown = resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter);
+    let flown = if resolution.diameter == 0.0 {
+        // Of thermal speed; cbar is sqrt(8/pi) times as much.
+        1.596 * resolution.collisions_per_step * kinetics::mean_spacing(number_density)
+    } else {
+        resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter)
+    };
     flown * measured.wall_area / (4.0 * measured.gas_volume)
 }
 

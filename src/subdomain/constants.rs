@@ -9,7 +9,7 @@ use crate::scene::{GAS_CONSTANT, Method};
 use super::nearness;
 use super::registry::{SURFACE_MODEL_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
-use super::sizes::{CHUNK, FEW_STRETCHES, SURFACE_COPIES, WORKGROUP};
+use super::sizes::{CHUNK, FEW_STRETCHES, SURFACE_COPIES, TILE_BITS, WORKGROUP};
 use super::walls::Walls;
 
 const MOST_TALLY_LOOPS: u32 = 32;
@@ -24,6 +24,8 @@ const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 /// Bounces of a flight in a step before it is cut short: there are many in narrow gaps, between walls that close in on each
 /// other, and in steps that are too long.
 const MOST_BOUNCES: f64 = 1024.0;
+/// Collision cells of the method `half-turn` with more particles are halved.
+const MOST_MEMBERS: f64 = 21.0;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,6 +33,8 @@ pub struct Features {
     pub collisions: bool,
     /// Pairs are chosen from neighbour lists, in rounds; without it they collide within their cells.
     pub rounds: bool,
+    /// The particles of a cell collide all at once, without diameters.
+    pub half_turn: bool,
     /// The collision diameter follows the local density where gas is dense.
     pub capped: bool,
     /// Walls part the gas of some cell.
@@ -135,6 +139,7 @@ impl Features {
         Features {
             collisions: plan.method != Method::None,
             rounds: plan.method.has_rounds(),
+            half_turn: plan.method == Method::HalfTurn,
             capped: plan.diameter_cap.is_some(),
             divided,
             spin: plan.gases.iter().any(|gas| gas.species.has_spin() && gas.particles > 0),
@@ -231,6 +236,11 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("GENERATOR_Y", CELL_GENERATOR[1] as f64),
         ("GENERATOR_Z", CELL_GENERATOR[2] as f64),
         ("DIVIDED_GAS", flag(features.divided)),
+        ("TILED", flag(features.half_turn)),
+        ("BORDER", flag(!features.half_turn)),
+        ("BOX_BITS", f64::from(box_bits(plan.method))),
+        ("MOST_MEMBERS", MOST_MEMBERS),
+        ("CELLS_FLOWN", f64::from(1u32 << box_bits(plan.method))),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
         ("MOST_BOUNCES", MOST_BOUNCES),
@@ -247,6 +257,11 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("LEVELS", f64::from(plan.ladder_levels)),
         ("BLOCK_ENERGY_SCALE", scales.block_energy),
     ]
+}
+
+/// Cells per edge, log2, of what the boxes of subdomains are made of: with the method `half-turn` tiles, whose collision cells have one owner.
+pub fn box_bits(method: Method) -> u32 {
+    if method == Method::HalfTurn { TILE_BITS } else { 0 }
 }
 
 /// Of a gas, at least one.

@@ -48,6 +48,11 @@ pub struct Counters {
     pub ghost_walls: u32,
     /// Threads whose loops the device ended too soon.
     pub cut_short: u32,
+    /// With the method `half-turn`: particles that flew on, alone in their collision cell or group; groups that walls made; and particles that collided
+    /// without a velocity gradient.
+    pub free_flights: u32,
+    pub cut_groups: u32,
+    pub unfitted: u32,
     /// Entries of lists that found no place, and threads that were parted while they counted together.
     pub misplaced: u32,
     /// Of the last step on this device: particles that chose in each round, and behind the last that would have again.
@@ -81,6 +86,9 @@ impl Counters {
             ghost_candidates: word(GHOST_CANDIDATES),
             ghost_walls: word(GHOST_WALLS),
             cut_short: word(CUT_SHORT),
+            free_flights: word(FREE_FLIGHTS),
+            cut_groups: word(CUT_GROUPS),
+            unfitted: word(UNFITTED),
             misplaced: word(MISPLACED),
             choosers: std::array::from_fn(|round| {
                 let list = LIST_RECHOOSE + round as u32;
@@ -91,7 +99,7 @@ impl Counters {
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 16] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 19] {
         [
             &mut self.lost,
             &mut self.sampled,
@@ -109,6 +117,9 @@ impl Counters {
             &mut self.near_walls,
             &mut self.cut_short,
             &mut self.misplaced,
+            &mut self.free_flights,
+            &mut self.cut_groups,
+            &mut self.unfitted,
         ]
     }
 

@@ -28,6 +28,8 @@ pub struct Subdomain {
     pub(super) update_guess: Guess,
     /// Slots of `particles` in use once all encoded steps have run; among others some of them are dead.
     pub(super) count: u32,
+    /// The last step that was begun among others.
+    pub(super) last_index: u32,
     pub(super) staging: Vec<wgpu::Buffer>,
     pub(super) spare_staging: Vec<wgpu::Buffer>,
     /// Lists with so few places have a thread for each.
@@ -87,6 +89,7 @@ impl Subdomain {
             outbox_guess: Guess::new(),
             update_guess: Guess::new(),
             count: particles.len() as u32,
+            last_index: 0,
             staging: Vec::new(),
             spare_staging: Vec::new(),
             short_lists: if domain.variant == KernelVariant::Gpu { SHORT_LIST } else { 0 },

@@ -2,6 +2,7 @@
 
 use crate::gpu::{Device, GpuError, KernelVariant};
 use crate::plan::Plan;
+use crate::scene::Method;
 
 use super::buffers::TallyWords;
 use super::cell_table::CellTable;
@@ -69,7 +70,10 @@ impl Domain {
     /// If the device refuses a kernel, or the walls are over its limits.
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<Domain, GpuError> {
         let plan = input.plan;
-        let needed = Features::of(plan, input.patches, input.cells.divided > 0, input.among_others);
+        // (Cells without a table of parts are cut where walls may stand in them.)
+        let divided = input.cells.divided > 0
+            || plan.method == Method::HalfTurn && input.walls.parting.iter().any(|&word| word != 0);
+        let needed = Features::of(plan, input.patches, divided, input.among_others);
         let features = match input.kernels {
             KernelChoice::Fitting | KernelChoice::Fixed => needed,
             KernelChoice::AllFeatures => needed.with_all(),

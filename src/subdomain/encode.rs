@@ -6,7 +6,10 @@ use super::buffers::{RECORD, few_stretches};
 use super::counters;
 use super::device_gas::Subdomain;
 use super::dispatch::{all, threads};
-use super::registry::{LIST_BOUNCE, LIST_CROWDED, LIST_CROWDS, LIST_DIVIDED, LIST_INCOMPLETE, LIST_MOVED, LISTS};
+use super::registry::{
+    LIST_BOUNCE, LIST_COLLISION_CELLS, LIST_CROWDED, LIST_CROWDS, LIST_CUT_CELLS, LIST_DIVIDED, LIST_INCOMPLETE,
+    LIST_MOVED, LISTS,
+};
 use super::sizes::{CHUNK, CLEARED_CELLS, MEMBERS, STRETCH, WORKGROUP};
 use super::step_slot::StepSlot;
 
@@ -76,6 +79,11 @@ impl Subdomain {
                 ListDispatch { arguments: &self.fixed.dispatches, list: LIST_CROWDED, places: step.total.into() };
             self.over_list(&kernels.arrange_crowded, (device, pass), offset, list);
         }
+        if let Some(kernels) = &self.kernels.half_turn {
+            let pass = &mut rec.phase("sort");
+            kernels.list_ids.dispatch(pass, offset, slots);
+            kernels.arrange_by_id.dispatch(pass, offset, slots);
+        }
     }
 
     pub fn neighbours(&self, rec: &mut Recording<'_>, step: &StepSlot) {
@@ -93,7 +101,7 @@ impl Subdomain {
         }
     }
 
-    /// The collisions of the method `cell`, within each cell.
+    /// The collisions of the methods `cell` and `half-turn`, within each cell.
     pub fn collide(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.cells {
             let device = rec.device();
@@ -112,6 +120,16 @@ impl Subdomain {
             }
             if let Some(moved) = &kernels.moved {
                 moved.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_MOVED);
+            }
+        }
+        if let Some(kernels) = &self.kernels.half_turn {
+            let device = rec.device();
+            let offset = self.offset(device, step, 0);
+            let pass = &mut rec.phase("collide");
+            kernels.collision_cells.dispatch(pass, offset, threads(device, self.bins()));
+            kernels.half_turn.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_COLLISION_CELLS);
+            if let Some(cut) = &kernels.cut {
+                cut.dispatch_indirect(pass, offset, &self.fixed.dispatches, LIST_CUT_CELLS);
             }
         }
     }

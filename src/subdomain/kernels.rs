@@ -11,6 +11,7 @@ pub struct Kernels<K> {
     pub sort: Option<SortKernels<K>>,
     pub collisions: Option<CollisionKernels<K>>,
     pub cells: Option<CellKernels<K>>,
+    pub half_turn: Option<HalfTurnKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
     pub reset: K,
     pub advect: K,
@@ -59,6 +60,16 @@ pub struct CellKernels<K> {
     pub moved: Option<K>,
 }
 
+/// Collisions of all particles of a cell at once.
+pub struct HalfTurnKernels<K> {
+    pub list_ids: K,
+    pub arrange_by_id: K,
+    pub collision_cells: K,
+    pub half_turn: K,
+    /// Of a scene whose walls may stand between particles of a cell.
+    pub cut: Option<K>,
+}
+
 /// On a device among others.
 pub struct ExchangeKernels<K> {
     pub pack: K,
@@ -88,7 +99,18 @@ impl<K> Kernels<K> {
         } else {
             None
         };
-        let cells = if features.collisions && !features.rounds {
+        let half_turn = if features.half_turn {
+            Some(HalfTurnKernels {
+                list_ids: make("list_ids")?,
+                arrange_by_id: make("arrange_by_id")?,
+                collision_cells: make("collision_cells")?,
+                half_turn: make("half_turn")?,
+                cut: if features.divided || features.moving { Some(make("half_turn_cut")?) } else { None },
+            })
+        } else {
+            None
+        };
+        let cells = if features.has_cells() && !features.half_turn {
             Some(CellKernels {
                 arrange: make("arrange")?,
                 arrange_crowded: make("arrange_crowded")?,
@@ -140,6 +162,7 @@ impl<K> Kernels<K> {
             sort,
             collisions,
             cells,
+            half_turn,
             exchange,
             reset: make("reset")?,
             advect: make("advect")?,

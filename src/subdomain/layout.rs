@@ -35,7 +35,9 @@ pub struct GpuStep {
     pub near2: u32,
     pub flight: u32,
     pub next_newborns: u32,
-    pub pad: [u32; 3],
+    pub lattice: u32,
+    pub next_lattice: u32,
+    pub pad: u32,
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.

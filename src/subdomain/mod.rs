@@ -37,7 +37,7 @@ mod walls;
 
 pub use buffers::{few_stretches, most_particles};
 pub use cell_table::{CellTable, TooManyParts};
-pub use constants::{Features, Patches, block_counts, constants, runtime_constants};
+pub use constants::{Features, Patches, block_counts, box_bits, constants, runtime_constants};
 pub use counters::{Counters, places_in_shards};
 pub use device_gas::Subdomain;
 pub use domain::{Domain, DomainInput, KernelChoice};

@@ -15,6 +15,8 @@ use super::subdomain_box::Cells;
 const GHOSTS_ALL: u32 = 0;
 const GHOSTS_WAIT: u32 = 1;
 const GHOSTS_ON_DEMAND: u32 = 2;
+/// Of tiles: where they begin, and the order in which their axes are halved.
+const LATTICES: u32 = 6;
 
 impl Subdomain {
     /// Uploads the newborns of one interval, on a device alone also the parameters of its steps, and returns
@@ -85,6 +87,7 @@ impl Subdomain {
     /// # Errors
     /// If room must be made and the device has none.
     pub fn begin_step(&mut self, rec: &mut Recording<'_>, slot: &mut StepSlot) -> Result<(), GpuError> {
+        self.last_index = slot.index;
         if !self.place.is_alone() {
             self.make_room(rec, slot.newborns.into(), 0, 0)?;
             slot.count = self.count;
@@ -107,6 +110,10 @@ impl Subdomain {
         let mut bytes = vec![0u8; stride * uniforms as usize];
         let (low, size) = self.place.bins(self.domain.plan.grid.cells);
         let Cells { low: inner_low, high: inner_high } = self.place.inner(self.domain.plan.grid.cells);
+        let [lattice, next_lattice] = [slot.index, slot.index.wrapping_add(1)].map(|index| index % LATTICES);
+        // Tiles begin a cell farther in every other step (`shaders/shared/local.wgsl`).
+        let shift = if self.place.tiled { lattice & 1 } else { 0 };
+        let moved = |corner: [u32; 3]| corner.map(|cell| cell + shift);
         for at in 0..uniforms {
             let round = at % rounds;
             let step = GpuStep {
@@ -118,18 +125,18 @@ impl Subdomain {
                 dt: slot.dt,
                 round,
                 arrivals: slot.arrivals,
-                low,
+                low: moved(low),
                 total: slot.total,
                 size,
                 bins: size.iter().product(),
-                own_low: self.place.own.low,
+                own_low: moved(self.place.own.low),
                 depth: self.place.depth,
-                own_high: self.place.own.high,
+                own_high: moved(self.place.own.high),
                 reach: self.place.reach(round),
-                inner_low,
+                inner_low: moved(inner_low),
                 // The arrivals are binned after the others.
                 first: if slot.arrivals > 0 { slot.count + slot.newborns } else { 0 },
-                inner_high,
+                inner_high: moved(inner_high),
                 ghosts: match (self.place.has_on_demand_ghosts(), at < rounds) {
                     (false, _) => GHOSTS_ALL,
                     (true, true) => GHOSTS_WAIT,
@@ -144,7 +151,9 @@ impl Subdomain {
                 near2: slot.near2,
                 flight: self.place.flight,
                 next_newborns: slot.next.unwrap_or(0),
-                pad: [0; 3],
+                lattice: if self.place.tiled { lattice } else { 0 },
+                next_lattice,
+                pad: 0,
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -163,9 +172,10 @@ impl Subdomain {
 
     /// The particles as they are, for tallies outside a step.
     pub fn at_rest(&self, device: &Device) -> StepSlot {
+        // (What is left of the last step, as the cells of its particles, is numbered as in that.)
         let slot = StepSlot {
             slot: 0,
-            index: 0,
+            index: self.last_index,
             dt: 0.0,
             count: self.count,
             newborns: 0,

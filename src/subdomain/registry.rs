@@ -26,6 +26,9 @@ registry! {
         /// Particles of cells that are put in order one by one, and crowded cells, with the method `cell`.
         LIST_CROWDED = 2,
         LIST_CROWDS = 3,
+        /// Collision cells of the method `half-turn`, and those that walls may cut.
+        LIST_COLLISION_CELLS = 4,
+        LIST_CUT_CELLS = 5,
         /// The particles that may meet a wall in the step: their number alone, they are in other lists.
         LIST_NEAR_WALLS = 9,
         LIST_INCOMPLETE = 10,
@@ -98,6 +101,11 @@ registry! {
         COLLISION_COUNTS = 32,
         /// Entries of lists that found no place, and threads that were parted while they counted together.
         MISPLACED = 117,
+        /// With the method `half-turn` since the last read: particles that flew on, alone in their collision cell or group; groups
+        /// that walls made; and particles that collided without a velocity gradient.
+        FREE_FLIGHTS = 118,
+        CUT_GROUPS = 119,
+        UNFITTED = 120,
         /// The lengths of sharded lists (`shaders/shared/sharded_lists.gpu.wgsl`), by shard: each shard's so far
         /// behind the one before that another part of a GPU's cache has them.
         LENGTHS_OF_SHARDS = 128,
@@ -229,6 +237,8 @@ pub const BUFFERS: &[&str] = &[
     "firsts",
     "divided",
     "moved",
+    "collision_cells",
+    "cut_cells",
     "peers",
     "sendings",
     "peer_counts",
@@ -268,6 +278,8 @@ pub enum Runs {
     All,
     /// Those of the method `cell`.
     Cell,
+    /// Those of the method `half-turn`.
+    HalfTurn,
     /// Those whose pairs are chosen in rounds.
     Rounds,
 }
@@ -301,10 +313,12 @@ pub const REUSED: &[&[Use]] = &[
     &[
         Use { names: &["bins"], runs: Runs::All, from: "advect", to: "sort", idle: &[] },
         Use { names: &["crowds"], runs: Runs::Cell, from: "collide", to: "collide", idle: &[] },
+        Use { names: &["collision_cells"], runs: Runs::HalfTurn, from: "collide", to: "collide", idle: &[] },
         Use { names: &["choices"], runs: Runs::Rounds, from: "neighbours", to: "lost", idle: &[] },
     ],
     &[
         Use { names: &["slots"], runs: Runs::Cell, from: "sort", to: "collide", idle: &[] },
+        Use { names: &["cut_cells"], runs: Runs::HalfTurn, from: "collide", to: "collide", idle: &[] },
         Use { names: &["border"], runs: Runs::All, from: "bin", to: "exchange", idle: &[] },
         // The pass over the ghosts that were asked reads `asked`.
         Use { names: &["incomplete"], runs: Runs::Rounds, from: "sort", to: "neighbours", idle: &["complete_lists"] },
@@ -312,7 +326,7 @@ pub const REUSED: &[&[Use]] = &[
     ],
     &[
         Use { names: &["crowded"], runs: Runs::Cell, from: "sort", to: "sort", idle: &[] },
-        Use { names: &["order_by_id"], runs: Runs::Cell, from: "collide", to: "collide", idle: &[] },
+        Use { names: &["order_by_id"], runs: Runs::All, from: "collide", to: "collide", idle: &[] },
         Use { names: &["rechoose"], runs: Runs::Rounds, from: "neighbours", to: "lost", idle: &[] },
         Use { names: &["bouncing"], runs: Runs::All, from: "advect", to: "advect", idle: &[] },
     ],

@@ -8,6 +8,9 @@ pub const MEMBERS: u32 = 12;
 /// And of more, slots that one thread puts in order.
 pub const CROWD: u32 = 64;
 
+/// Cells per edge, log2, of a tile of the method `half-turn`: as `shaders/shared/local.wgsl` has it.
+pub const TILE_BITS: u32 = 2;
+
 /// Cells per thread of the scan.
 pub const CHUNK: u64 = 64;
 /// Those of a workgroup, of a thread each.

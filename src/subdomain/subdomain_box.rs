@@ -2,6 +2,8 @@
 
 use crate::plan::Plan;
 
+use super::constants::box_bits;
+
 /// A box of cells, low <= c < high.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cells {
@@ -10,9 +12,13 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// The cells that particles can be in: all but the border layer of the grid.
+    /// The cells that particles can be in: all but the border layer of the grid; where boxes are made of tiles, all tiles that have some.
     pub fn inside(plan: &Plan) -> Cells {
-        Cells { low: [1; 3], high: plan.grid.cells.map(|cells| cells - 1) }
+        let bits = box_bits(plan.method);
+        if bits == 0 {
+            return Cells { low: [1; 3], high: plan.grid.cells.map(|cells| cells - 1) };
+        }
+        Cells { low: [0; 3], high: plan.grid.cells.map(|cells| (((cells - 2) >> bits) + 1) << bits) }
     }
 }
 
@@ -52,6 +58,8 @@ pub struct SubdomainBox {
     pub flight: u32,
     /// Whether the particles may be anywhere (after a rebalance or a restart), not only near their owner.
     pub scattered: bool,
+    /// Whether it is made of tiles (the method `half-turn`), which begin a cell farther in every other step: no particle needs to know of one in another.
+    pub tiled: bool,
 }
 
 impl SubdomainBox {
@@ -65,6 +73,7 @@ impl SubdomainBox {
             near: 0,
             flight: 0,
             scattered: false,
+            tiled: box_bits(plan.method) > 0,
         }
     }
 
@@ -73,9 +82,12 @@ impl SubdomainBox {
         self.peers.is_empty()
     }
 
-    /// The cells that have bins: the own ones, the halo and an empty border layer, within the grid. Low corner
+    /// The cells that have bins: the own ones, the halo and an empty border layer, within the grid; of tiles the own ones. Low corner
     /// and size.
     pub(super) fn bins(&self, grid: [u32; 3]) -> ([u32; 3], [u32; 3]) {
+        if self.tiled {
+            return (self.own.low, std::array::from_fn(|axis| self.own.high[axis] - self.own.low[axis]));
+        }
         let around = self.depth + 1;
         let low = self.own.low.map(|low| low.saturating_sub(around));
         let size = std::array::from_fn(|axis| (self.own.high[axis] + around).min(grid[axis]) - low[axis]);
@@ -130,7 +142,16 @@ mod tests {
 
     fn place(depth: u32) -> SubdomainBox {
         let own = Cells { low: [1, 10, 4], high: [9, 20, 8] };
-        SubdomainBox { own, depth, ghosts: Ghosts::OnDemand, peers: Vec::new(), near: 0, flight: 0, scattered: false }
+        SubdomainBox {
+            own,
+            depth,
+            ghosts: Ghosts::OnDemand,
+            peers: Vec::new(),
+            near: 0,
+            flight: 0,
+            scattered: false,
+            tiled: false,
+        }
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.

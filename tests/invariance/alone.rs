@@ -64,7 +64,7 @@ fn inflow_that_outgrows_the_buffers_has_the_same_bits_in_every_way() {
 #[test]
 fn room_made_between_recorded_steps_loses_none() {
     let device = device();
-    for method in [Method::ClosestApproach, Method::Cell] {
+    for method in [Method::ClosestApproach, Method::Cell, Method::HalfTurn] {
         let model = by(method, gas_box());
         let setup = Setup::new(&model, &device, 1, None).expect("a set-up");
         let particles = initial_particles(&model).expect("particles");
@@ -181,6 +181,15 @@ fn collisions_within_cells_have_the_same_bits_in_every_way() {
     every_way(&by(Method::Cell, plate()));
 }
 
+/// Inflow, two gases, walls that move, vents, and a wall with a hole through collision cells.
+#[test]
+fn half_turns_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::HalfTurn, tank(0)));
+    every_way(&by(Method::HalfTurn, plate()));
+    every_way(&by(Method::HalfTurn, pistons()));
+    every_way(&by(Method::HalfTurn, venting()));
+}
+
 #[test]
 fn rigid_spheres_have_the_same_bits_in_every_way() {
     every_way(&by(Method::HardSphere, plate()));
@@ -191,7 +200,13 @@ fn rigid_spheres_have_the_same_bits_in_every_way() {
 fn numbers_read_and_compiled_in_give_the_same_bits() {
     let device = device();
     let scenes = [tank(0), plate(), pistons(), cold_walls(), venting(), venting_freely(), effusion()];
-    let more = [by(Method::Cell, tank(0)), by(Method::Cell, pistons()), by(Method::HardSphere, plate())];
+    let more = [
+        by(Method::Cell, tank(0)),
+        by(Method::Cell, pistons()),
+        by(Method::HardSphere, plate()),
+        by(Method::HalfTurn, tank(0)),
+        by(Method::HalfTurn, pistons()),
+    ];
     for model in scenes.into_iter().chain(more) {
         let [read, fixed] = [Setup::new(&model, &device, 1, None), Setup::fixed(&model, &device)].map(|setup| {
             let setup = setup.expect("a set-up");

@@ -11,7 +11,8 @@ use corpuscle::simulation::{BalanceMode, Model};
 use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 
-const METHODS: [Method; 4] = [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
+const METHODS: [Method; 5] =
+    [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::HalfTurn, Method::None];
 const PARTICLES: u64 = 2000;
 const STEPS: u64 = 128;
 

@@ -17,6 +17,7 @@ mod crowd;
 mod devices;
 mod exchange;
 mod fly;
+mod half_turn;
 mod halo;
 mod lists;
 mod local;
@@ -45,6 +46,7 @@ fn every_kernel_has_its_test() {
     let tested = [
         "advect",
         "arrange",
+        "arrange_by_id",
         "arrange_crowded",
         "bin",
         "blocks",
@@ -59,9 +61,13 @@ fn every_kernel_has_its_test() {
         "collide_crowded",
         "collide_divided",
         "collide_moved",
+        "collision_cells",
         "complete_lists",
         "fill_outbox",
         "fill_updates",
+        "half_turn",
+        "half_turn_cut",
+        "list_ids",
         "lost",
         "match_pairs",
         "message_starts",

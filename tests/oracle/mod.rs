@@ -5,6 +5,7 @@
 
 pub mod cells;
 pub mod collision;
+pub mod half_turn;
 pub mod pairing;
 pub mod random;
 pub mod simulation;

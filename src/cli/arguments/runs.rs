@@ -191,6 +191,7 @@ pub enum MethodName {
     ClosestApproach,
     HardSphere,
     Cell,
+    HalfTurn,
     None,
     ControlVolume,
 }

@@ -36,7 +36,7 @@ fn bytes(method: Method, rounds: u32, collisions_per_step: f64, in_cell: f64) ->
             let further: f64 = (1..rounds).map(|round| lost_events(collisions_per_step, round)).sum();
             SEARCH * in_cell / USUAL_IN_CELL + REST + ROUND * further
         }
-        Method::Cell => CELL,
+        Method::Cell | Method::HalfTurn => CELL,
         Method::None | Method::ControlVolume => FREE,
     }
 }

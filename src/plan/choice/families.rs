@@ -42,6 +42,7 @@ pub fn families(
     for &method in &methods {
         let collides = !matches!(method, Method::None | Method::ControlVolume);
         let of_method: Vec<Option<f64>> = match scene.model.occupancy {
+            _ if method == Method::HalfTurn => vec![None],
             Some(asked) if collides => vec![Some(asked)],
             None if collides && scene.model.diameter.is_none() => match method {
                 Method::HardSphere => vec![Some(default_occupancy(method))],

@@ -7,6 +7,8 @@ use crate::scene::{Jet, Method, Orifice};
 
 /// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (specification, section 2).
 const CELL_PATH: f64 = 0.9;
+/// And of the method `half-turn`: viscosity .21 d c0 over .783 c0.
+const HALF_TURN_PATH: f64 = 0.21 / 0.783;
 /// T_int/T_tr falls by a tenth of the share of lost collisions: .985 where .186 are lost, .946 where .538 are
 /// (specification, section 2).
 const UNEQUAL_PER_LOST: f64 = 0.1;
@@ -30,6 +32,7 @@ const COEFFICIENT: f64 = 0.84;
 pub fn effective_path(method: Method, occupancy: f64) -> f64 {
     match method {
         Method::Cell => CELL_PATH,
+        Method::HalfTurn => HALF_TURN_PATH,
         _ => kinetics::effective_mean_free_path_over_spacing(occupancy),
     }
 }

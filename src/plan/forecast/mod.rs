@@ -252,7 +252,10 @@ impl<'a> Run<'a> {
             let diameter = kinetics::diameter(density, occupancy);
             let cell = (method == Method::Cell).then(|| cell_edge(density, diameter));
             // Measured biases belong to the diameter of the mean gas.
-            let states = course.solve(Collisions::Particles { diameter, cap: None, cell, moles_per_particle });
+            let states = course.solve(match method {
+                Method::HalfTurn => Collisions::Spacings { path: kinetics::HALF_TURN_PATH, moles_per_particle },
+                _ => Collisions::Particles { diameter, cap: None, cell, moles_per_particle },
+            });
             let holes = bias::differences(&states, limit);
             (Some(states), holes)
         };
@@ -261,7 +264,15 @@ impl<'a> Run<'a> {
             moments: course.moments(states.as_ref().unwrap_or(limit)),
             holes,
             method,
-            diameter: if method == Method::None { 0.0 } else { kinetics::diameter(density, occupancy) },
+            diameter: match method {
+                Method::None => 0.0,
+                // That of the mean free path of the mean gas.
+                Method::HalfTurn => kinetics::diameter_of_path(
+                    density,
+                    bias::effective_path(method, occupancy) * kinetics::mean_spacing(density),
+                ),
+                _ => kinetics::diameter(density, occupancy),
+            },
             occupancy,
             lost: if method.has_rounds() { lost_events(collisions_per_step, rounds) } else { 0.0 },
             collision_number: forecaster.scene.model.collision_number.unwrap_or(5.0),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::averages::Averages;
 use crate::gas::Inflow;
 use crate::geometry::Vessel;
-use crate::output::{Audit, AuditLimits, PhaseTable};
+use crate::output::{Audit, AuditLimits, CollisionCells, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::simulation::accounting::phases::{once_an_interval, order_of};
@@ -74,6 +74,10 @@ pub struct AccountState {
     lost: u64,
     sampled: u64,
     truncated: u64,
+    /// With the method `half-turn`: particles that flew on alone, that collided without a velocity gradient, and groups that walls made.
+    free_flights: u64,
+    unfitted: u64,
+    cut_groups: u64,
     overshoot: u32,
     /// What walls took and vents let out in the intervals read, J and particles.
     energy_lost: f64,
@@ -112,6 +116,9 @@ impl Account {
             lost: 0,
             sampled: 0,
             truncated: 0,
+            free_flights: 0,
+            unfitted: 0,
+            cut_groups: 0,
             overshoot: 0,
             energy_lost: 0.0,
             left: 0,
@@ -270,6 +277,9 @@ impl Account {
             _ => u64::from(counters.sampled),
         };
         self.counted.truncated += u64::from(counters.truncated);
+        self.counted.free_flights += u64::from(counters.free_flights);
+        self.counted.unfitted += u64::from(counters.unfitted);
+        self.counted.cut_groups += u64::from(counters.cut_groups);
         self.counted.overshoot = self.counted.overshoot.max(counters.overshoot);
         self.counted.step_range =
             [self.counted.step_range[0].min(interval.dt), self.counted.step_range[1].max(interval.dt)];
@@ -352,6 +362,11 @@ impl Account {
                 .collect(),
             clipped_walls: surface_states.beyond(),
             energy_end: end.energy,
+            collision_cells: (plan.method == Method::HalfTurn).then(|| CollisionCells {
+                free_flights: self.counted.free_flights as f64 / self.counted.particle_steps.max(1) as f64,
+                unfitted: self.counted.unfitted as f64 / self.counted.particle_steps.max(1) as f64,
+                cut_groups: self.counted.cut_groups as f64 / self.counted.steps.max(1) as f64,
+            }),
             lost_collision_fraction: (plan.method != Method::None && events > 0.0)
                 .then(|| self.counted.lost as f64 / events),
             wall_overshoot: f64::from(self.counted.overshoot) * plan.grid.quantum(),

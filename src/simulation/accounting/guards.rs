@@ -10,7 +10,7 @@ use super::row::Row;
 use crate::gas::kinetics;
 use crate::plan::{Bound, Plan, Quantity, Warning, limit};
 use crate::scene::{Method, Scene};
-use crate::subdomain::{BlockSum, FULL_SHARE, Tallies};
+use crate::subdomain::{BlockSum, FULL_SHARE, Tallies, box_bits};
 
 /// Collisions after which the share of lost ones is judged: known to .4 % at 3 %.
 const EVENTS: u64 = 2000;
@@ -137,7 +137,7 @@ impl<'a> Guards<'a> {
         let counters = &tallies.counters;
         self.state.lost += u64::from(counters.lost);
         self.state.sampled += match self.plan.method {
-            Method::None => return None,
+            Method::None | Method::HalfTurn => return None,
             Method::Cell => counters.collisions,
             _ => u64::from(counters.sampled),
         };
@@ -208,7 +208,9 @@ impl<'a> Guards<'a> {
     /// than its cells leaves them before it collides again.
     fn starved(&self, blocks: &[BlockSum]) -> Option<Warning> {
         let bound = limit(Quantity::CellParticles, self.plan.method)?.bound;
-        let cell = self.plan.grid.cell;
+        // The largest collision cell of `half-turn` is a tile.
+        let tiled = self.plan.method == Method::HalfTurn;
+        let cell = self.plan.grid.cell * f64::from(1u32 << box_bits(self.plan.method));
         let (mut total, mut within, mut sum) = (0, 0, 0.0);
         for (block, &room) in blocks.iter().zip(&self.block_volumes) {
             total += block.number;
@@ -218,7 +220,7 @@ impl<'a> Guards<'a> {
                 continue;
             }
             let holds = room <= LEAST_VOLUME * self.full_block || bound.holds(in_cell(number + SURE * number.sqrt()));
-            if !holds && kinetics::mean_free_path(number / room, self.plan.diameter) <= cell {
+            if !holds && (tiled || kinetics::mean_free_path(number / room, self.plan.diameter) <= cell) {
                 within += block.number;
                 sum += number * in_cell(number);
             }
@@ -228,7 +230,10 @@ impl<'a> Guards<'a> {
         }
         let share = 100.0 * within as f64 / total as f64;
         let subject = format!("where {share:.0} % of the gas is");
-        let remedy = "a smaller `diameter` or `occupancy`, or another `method`";
+        let remedy = match self.plan.method {
+            Method::HalfTurn => "more `particles`, or another `method`",
+            _ => "a smaller `diameter` or `occupancy`, or another `method`",
+        };
         self.table(Quantity::CellParticles, &subject, sum / within as f64, remedy)
     }
 

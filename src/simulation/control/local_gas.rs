@@ -14,8 +14,10 @@ pub struct BlockGas {
     /// Gas volume of each block, m3.
     volumes: Vec<f64>,
     full: f64,
-    /// sigma^2 pi sqrt(16 / (pi m_lightest / m_ref)): rate = this x n x sqrt(kT/m_ref).
+    /// sigma^2 pi sqrt(16 / (pi m_lightest / m_ref)): rate = this x n x sqrt(kT/m_ref). Where particles have no diameter sqrt(m_ref / m_lightest):
+    /// then it is this x n^(1/3) x sqrt(kT/m_ref), in which a particle of thermal speed flies a mean spacing.
     rate: f64,
+    by_spacing: bool,
     energy_unit: f64,
     cap: Option<Cap>,
 }
@@ -43,11 +45,12 @@ impl BlockGas {
         let pi = std::f64::consts::PI;
         let block_edge = plan.grid.cell * f64::from(1u32 << plan.block_cells_log2);
         BlockGas {
-            rate: if plan.method == Method::None {
-                0.0
-            } else {
-                plan.diameter * plan.diameter * pi * (16.0 / pi * heaviest / lightest).sqrt()
+            rate: match plan.method {
+                Method::None => 0.0,
+                Method::HalfTurn => (heaviest / lightest).sqrt(),
+                _ => plan.diameter * plan.diameter * pi * (16.0 / pi * heaviest / lightest).sqrt(),
             },
+            by_spacing: plan.method == Method::HalfTurn,
             energy_unit: scales.block_energy,
             cap: plan.diameter_cap.map(|spacings| Cap { diameter: plan.diameter, spacings }),
             volumes,
@@ -109,7 +112,8 @@ impl BlockGas {
     /// Collisions per particle and second in gas of this volume, m3.
     fn collision_rate(&self, gas: &BlockSum, volume: f64) -> f64 {
         let kt = 2.0 / 3.0 * gas.energy as f64 / self.energy_unit / gas.number as f64;
-        self.rate * density(gas, volume) * kt.sqrt()
+        let density = density(gas, volume);
+        self.rate * if self.by_spacing { libm::cbrt(density) } else { density } * kt.sqrt()
     }
 }
 
@@ -138,7 +142,7 @@ pub mod tests {
 
     /// A rate of n sqrt(kT) in blocks of 1 m3.
     pub fn block_gas(volumes: Vec<f64>) -> BlockGas {
-        BlockGas { rate: 1.0, energy_unit: 1.0, volumes, full: 1.0, cap: None }
+        BlockGas { rate: 1.0, by_spacing: false, energy_unit: 1.0, volumes, full: 1.0, cap: None }
     }
 
     /// kT = 1.

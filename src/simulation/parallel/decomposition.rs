@@ -11,14 +11,17 @@ use crate::partition::{Bisection, CellBox, IntegerWeights, Node, TOLERANCE, Tree
 use crate::plan::Plan;
 use crate::ranks::Communicator;
 use crate::simulation::error::SimulationError;
-use crate::subdomain::{Cells, GpuParticle, Subdomain, SubdomainBox};
+use crate::subdomain::{Cells, GpuParticle, Subdomain, SubdomainBox, box_bits};
 
 /// Layers of cells beyond the halo from which a particle may come in a step. One that flew farther is
 /// found by its owner of the step before, and the interval is run again with everyone as a peer.
 const FLIGHT: u32 = 6;
 
 pub struct Decomposition {
+    /// Of boxes of cells, or of tiles.
     tree: Tree,
+    /// Cells per edge, log2, of what its boxes are made of.
+    bits: u32,
     rank: usize,
     halo: Halo,
     /// Everyone is a peer.
@@ -47,7 +50,7 @@ impl Decomposition {
                 bisect_shared(root, &shares, &cells, |own| Ok::<_, SimulationError>(comm.sum(own)?))?
             }
         };
-        Ok(Decomposition { tree, rank: comm.rank(), halo, wide: false, scattered: true })
+        Ok(Decomposition { tree, bits: box_bits(plan.method), rank: comm.rank(), halo, wide: false, scattered: true })
     }
 
     /// The rank that starts with a particle: the owner of its cell. (The first exchange decides by the cell of its
@@ -64,10 +67,14 @@ impl Decomposition {
         let gap = |rank: &usize| boxes[*rank].gap(&own);
         let everyone = self.wide || self.scattered;
         let others = (0..boxes.len()).filter(|&rank| rank != self.rank);
-        let mut peers: Vec<usize> = others.filter(|rank| everyone || gap(rank) < self.depth() + FLIGHT).collect();
+        let mut peers: Vec<usize> =
+            others.filter(|rank| everyone || gap(rank) << self.bits < self.depth() + FLIGHT).collect();
         peers.sort_by_key(|rank| (gap(rank) >= self.depth(), *rank));
         let near = peers.iter().filter(|rank| gap(rank) < self.depth()).count();
-        let cells = |extent: &CellBox| Cells { low: extent.low, high: extent.high };
+        let cells = |extent: &CellBox| Cells {
+            low: extent.low.map(|at| at << self.bits),
+            high: extent.high.map(|at| at << self.bits),
+        };
         let place = SubdomainBox {
             own: cells(&own),
             depth: self.depth(),
@@ -76,13 +83,16 @@ impl Decomposition {
             near,
             flight: if self.depth() == 0 || peers.len() + 1 == boxes.len() { 0 } else { FLIGHT },
             scattered: self.scattered,
+            tiled: self.bits > 0,
         };
         (peers, place)
     }
 
     /// Low and high corner of each rank's box, m.
     pub fn boxes(&self, grid: &Grid) -> Vec<[[f64; 3]; 2]> {
-        let corner = |cell: [u32; 3]| std::array::from_fn(|a| grid.origin[a] + f64::from(cell[a]) * grid.cell);
+        let corner = |at: [u32; 3]| {
+            std::array::from_fn(|a| grid.origin[a] + f64::from((at[a] << self.bits).min(grid.cells[a])) * grid.cell)
+        };
         self.tree.boxes().iter().map(|extent| [corner(extent.low), corner(extent.high)]).collect()
     }
 
@@ -154,7 +164,8 @@ impl Decomposition {
         let cuts: Vec<[u32; 4]> = self.tree.nodes().iter().map(entry).collect();
         let planes = histogram.sum(weights, &cuts, starts[starts.len() - 1])?;
         let weight = |(bounds, extent): (&[usize], &CellBox)| {
-            planes[bounds[0]..bounds[1]].iter().sum::<u64>() + u64::from(weights.cell) * extent.cells()
+            planes[bounds[0]..bounds[1]].iter().sum::<u64>()
+                + u64::from(weights.cell << (3 * self.bits)) * extent.cells()
         };
         Ok(starts.windows(2).zip(self.tree.boxes()).map(weight).collect())
     }
@@ -175,7 +186,7 @@ impl Decomposition {
         while !bisection.wanted().is_empty() {
             let cuts = cuts_of(bisection.partial_tree(), &bisection);
             let mut planes = histogram.sum(weights, &cuts, bisection.planes())?;
-            bisection.add_cells(weights.cell, &mut planes);
+            bisection.add_cells(weights.cell << (3 * self.bits), &mut planes);
             bisection.cut(&planes)?;
         }
         let tree = bisection.finish()?;
@@ -203,15 +214,19 @@ impl Histogram<'_> {
     }
 }
 
-/// The cells that particles can be in.
+/// The cells that particles can be in, or the tiles of such cells.
 pub fn root(plan: &Plan) -> CellBox {
     let Cells { low, high } = Cells::inside(plan);
-    CellBox { low, high }
+    let bits = box_bits(plan.method);
+    CellBox { low: low.map(|at| at >> bits), high: high.map(|at| at >> bits) }
 }
 
-/// The cell of a particle's position, moved into the root as `nearest_cell` of the shaders does.
+/// The cell of a particle's position, moved into the root as `nearest_cell` of the shaders does, or its tile.
 fn cell_of(plan: &Plan, particle: &GpuParticle) -> [u32; 3] {
-    std::array::from_fn(|axis| (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2))
+    std::array::from_fn(|axis| {
+        let cell = (particle.position[axis] >> plan.grid.cell_bits).clamp(1, plan.grid.cells[axis] - 2);
+        cell >> box_bits(plan.method)
+    })
 }
 
 /// The tree so far, as `shaders/weigh.wgsl` reads it.
