@@ -51,6 +51,8 @@ pub struct Audit {
     /// Pairs still mutually eligible after the last round, over all that should have collided; `None`
     /// where the method has no collisions.
     pub lost_collision_fraction: Option<f64>,
+    /// In their place where all particles of a cell collide at once (the method `half-turn`).
+    pub collision_cells: Option<CollisionCells>,
     /// Largest distance by which a particle was found beyond a wall, m.
     pub wall_overshoot: f64,
     /// Flights that used up their bounces in a step and were cut short.
@@ -61,6 +63,17 @@ pub struct Audit {
     pub clipped_walls: Vec<(String, f64)>,
     /// Names of the buffers or tallies that overflowed.
     pub overflows: Vec<String>,
+}
+
+/// What was less than a full collision cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CollisionCells {
+    /// Over the particles of all steps: those that flew on, alone in their collision cell or behind walls.
+    pub free_flights: f64,
+    /// And those that collided without a velocity gradient, in collision cells of fewer than six or flat ones.
+    pub unfitted: f64,
+    /// Groups that walls made of the particles of collision cells, a step.
+    pub cut_groups: f64,
 }
 
 /// What an audit lets pass.
@@ -237,9 +250,14 @@ impl Audit {
             row("energy, J", &amounts(energy, self.energy_error())),
         ]);
         let vector = |[x, y, z]: [f64; 3]| format!("({x:.3e}, {y:.3e}, {z:.3e})");
-        let lost = match self.lost_collision_fraction {
-            Some(lost) => format!("{:.3} %", 100.0 * lost),
-            None => "no collisions".to_owned(),
+        let collisions = match (self.collision_cells, self.lost_collision_fraction) {
+            (Some(cells), _) => vec![
+                ("free flights", format!("{:.3} % of particle-steps", 100.0 * cells.free_flights)),
+                ("without a gradient", format!("{:.3} % of particle-steps", 100.0 * cells.unfitted)),
+                ("groups cut by walls", format!("{:.1} a step", cells.cut_groups)),
+            ],
+            (None, Some(lost)) => vec![("lost collisions", format!("{:.3} %", 100.0 * lost))],
+            (None, None) => vec![("lost collisions", "no collisions".to_owned())],
         };
         let overflows = if self.overflows.is_empty() { "none".to_owned() } else { self.overflows.join(", ") };
         let (to_walls, momentum_error) = match (self.momentum_to_walls, self.momentum_error()) {
@@ -249,7 +267,6 @@ impl Audit {
         };
         let mut facts = vec![
             ("outside the vessel", grouped(self.particles_outside)),
-            ("lost collisions", lost),
             ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
             ("truncated flights", grouped(self.truncated_flights)),
             ("overflows", overflows),
@@ -259,6 +276,7 @@ impl Audit {
             ("  end", vector(self.momentum_end)),
             ("  error", momentum_error),
         ];
+        facts.splice(1..1, collisions);
         if let Some(work) = self.work_by_walls {
             facts.insert(0, ("in energy: work of moving walls, J", format!("{work:.6e}")));
         }

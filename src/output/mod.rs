@@ -31,7 +31,7 @@ mod timing;
 mod vtk;
 
 pub use appended::{AppendedFile, AppendedState};
-pub use audit::{Audit, AuditLimits};
+pub use audit::{Audit, AuditLimits, CollisionCells};
 pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{

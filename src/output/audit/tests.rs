@@ -24,6 +24,7 @@ fn clean() -> Audit {
         clipped_walls: Vec::new(),
         energy_end: 70_000.5,
         lost_collision_fraction: Some(0.012),
+        collision_cells: None,
         wall_overshoot: 1e-9,
         truncated_flights: 0,
         overflows: Vec::new(),
@@ -137,6 +138,10 @@ fn the_table_shows_every_account() {
     let told = Audit { momentum_to_walls: Some([11.999, 2e-3, 0.0]), ..clean() }.render();
     assert!(told.contains("to the walls             (1.200e1, 2.000e-3, 0.000e0)"), "{told}");
     assert!(!told.contains("unknown"), "{told}");
+    let cells = CollisionCells { free_flights: 2e-4, unfitted: 0.013, cut_groups: 8.25 };
+    let told = Audit { collision_cells: Some(cells), ..clean() }.render();
+    assert!(told.contains("free flights               0.020 % of particle-steps\nwithout a gradient         1.300 %"));
+    assert!(told.contains("groups cut by walls        8.2 a step") && !told.contains("lost"), "{told}");
 }
 
 #[test]

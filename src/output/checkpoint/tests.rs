@@ -228,8 +228,8 @@ fn each_fault_has_its_reason() {
     let manifest = String::from_utf8(whole[MANIFEST].clone()).unwrap();
     let foreign = altered(whole, MANIFEST, Some(b"[package]\nname = 1\n"));
     assert!(foreign.contains("no checkpoint's manifest") && foreign.contains("[package]"), "{foreign}");
-    let other = altered(whole, MANIFEST, Some(manifest.replace("format 9", "format 10").as_bytes()));
-    assert!(other.contains("checkpoint format 10, this program reads format 9"), "{other}");
+    let other = altered(whole, MANIFEST, Some(manifest.replace("format 10", "format 11").as_bytes()));
+    assert!(other.contains("checkpoint format 11, this program reads format 10"), "{other}");
     let edited = altered(whole, MANIFEST, Some(manifest.replace("step = 320", "step = 321").as_bytes()));
     assert!(edited.contains("truncated or altered"), "{edited}");
 }

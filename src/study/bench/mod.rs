@@ -107,7 +107,7 @@ fn target(method: Method, cpu: bool) -> Option<f64> {
         Method::ClosestApproach => [4e9, 3e6],
         Method::Cell => [1e10, 12e6],
         Method::None => [3e10, 40e6],
-        Method::HardSphere | Method::ControlVolume => return None,
+        Method::HardSphere | Method::HalfTurn | Method::ControlVolume => return None,
     };
     Some(if cpu { core * threads() } else { gpu })
 }
@@ -126,7 +126,8 @@ pub fn measure(
 ) -> Result<Measured, StudyError> {
     let mut asked = scene_of(scene.name, scene.text)?;
     asked.output.snapshots = 0;
-    let collides = method != Method::None;
+    // Where particles have no diameter the step is the plan's.
+    let collides = !matches!(method, Method::None | Method::HalfTurn);
     let setting = Setting {
         method: Some(method),
         particles: Some(particles),

@@ -113,6 +113,10 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let rounds = method.has_rounds();
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
+    // (Whose loops over collision cells are not counted.)
+    if method == Method::HalfTurn && ["sort", "collide"].contains(&phase) {
+        return None;
+    }
     Some(match phase {
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);

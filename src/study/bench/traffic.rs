@@ -31,6 +31,15 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     // Its entry and its choice in.
     let matched = 3.0 * WORD;
     let entered = work.newborns * NEWBORN;
+    if method == Method::HalfTurn {
+        match phase {
+            // Cell and place in it twice, the id, and where the cell starts in; the id out; state in and out, and the ids of the cell in.
+            "sort" => return Some(n * (2.0 * PARTICLE + 7.0 * WORD) + filled * WORD),
+            // Where the cells start; the states in, and velocities and spins out.
+            "collide" => return Some(cells * WORD + 1.5 * n * PARTICLE),
+            _ => {}
+        }
+    }
     Some(match phase {
         // Counts in, and the starts out in their place; sums of stretches of cells out.
         "scan" => cells * (2.0 + 1.0 / CHUNK as f64) * WORD,

@@ -13,12 +13,14 @@ const LEAST_ROWS: usize = 4;
 const QUICK: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[2000], &[0.12], &[0.3], &[8]),
     Range::new(Method::Cell, &[2000], &[0.12], &[], &[]),
+    Range::new(Method::HalfTurn, &[2000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[2000], &[0.03], &[0.3], &[2]),
     Range::new(Method::None, &[2000], &[], &[], &[]),
 ];
 const NORMAL: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[4000, 16_000, 64_000], &[0.05, 0.12, 0.3], &[0.1, 0.3, 0.6], &[1, 8]),
     Range::new(Method::Cell, &[4000, 16_000, 64_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[4000, 16_000, 64_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[4000, 16_000, 64_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::None, &[4000, 16_000, 64_000], &[], &[], &[]),
 ];
@@ -31,6 +33,7 @@ const FULL: &[Range<'static>] = &[
         &[1, 2, 4, 8],
     ),
     Range::new(Method::Cell, &[16_000, 64_000, 256_000, 1_024_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[16_000, 64_000, 256_000, 1_024_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[16_000, 64_000, 256_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
     Range::new(Method::None, &[16_000, 64_000, 256_000, 1_024_000], &[], &[], &[]),
 ];

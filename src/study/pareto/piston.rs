@@ -13,12 +13,14 @@ const QUICK: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[2000], &[0.12], &[0.3], &[1, 8]),
     Range::new(Method::HardSphere, &[2000], &[0.03], &[0.3], &[2]),
     Range::new(Method::Cell, &[2000], &[0.12], &[], &[]),
+    Range::new(Method::HalfTurn, &[2000], &[], &[], &[]),
     Range::new(Method::None, &[2000], &[], &[], &[]),
 ];
 const NORMAL: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[2500, 10_000, 40_000], &[0.05, 0.12, 0.3], &[0.3, 0.6], &[1, 8]),
     Range::new(Method::HardSphere, &[2500, 10_000, 40_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::Cell, &[2500, 10_000, 40_000], &[0.05, 0.12, 0.3], &[0.3, 1.0], &[]),
+    Range::new(Method::HalfTurn, &[2500, 10_000, 40_000], &[], &[], &[]),
     Range::new(Method::None, &[2500, 10_000, 40_000], &[], &[], &[]),
 ];
 const FULL: &[Range<'static>] = &[
@@ -31,6 +33,7 @@ const FULL: &[Range<'static>] = &[
     ),
     Range::new(Method::HardSphere, &[10_000, 40_000, 160_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::Cell, &[10_000, 40_000, 160_000, 640_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[10_000, 40_000, 160_000, 640_000], &[], &[], &[]),
     Range::new(Method::None, &[10_000, 40_000, 160_000, 640_000], &[], &[], &[]),
 ];
 

@@ -351,7 +351,8 @@ fn described(point: &Point) -> String {
     if point.occupancy > 0.0 {
         words.push(format!("f = {}", figure(point.occupancy, 3)));
     }
-    if point.step > 0.0 {
+    // (Of a gas without diameters it is no number of collisions.)
+    if point.step > 0.0 && point.method != Method::HalfTurn {
         words.push(format!("x = {}", figure(point.step, 3)));
     }
     if point.rounds > 0 {
@@ -366,6 +367,7 @@ fn style(method: Method) -> ([u8; 3], Shape) {
         Method::ClosestApproach => (PALETTE[0], Shape::Circle),
         Method::Cell => (PALETTE[1], Shape::Square),
         Method::HardSphere => (PALETTE[2], Shape::Triangle),
+        Method::HalfTurn => (PALETTE[4], Shape::Diamond),
         Method::None => (PALETTE[3], Shape::Diamond),
         Method::ControlVolume => (PALETTE[6], Shape::Cross),
     }

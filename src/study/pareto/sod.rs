@@ -9,6 +9,7 @@ use super::{Extent, Range, Trials, model_with};
 const QUICK: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[1000, 4000], &[0.12], &[0.3], &[1, 8]),
     Range::new(Method::Cell, &[1000, 4000], &[0.12], &[], &[]),
+    Range::new(Method::HalfTurn, &[1000, 4000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[4000], &[0.1], &[0.3], &[2]),
     Range::new(Method::None, &[4000], &[], &[], &[]),
 ];
@@ -17,7 +18,9 @@ const NORMAL: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[2500, 10_000], &[0.05, 0.12, 0.3], &[0.1, 0.3, 0.6], &[1, 2, 8]),
     Range::new(Method::ClosestApproach, &[40_000], &[0.05, 0.12, 0.3], &[0.3], &[2, 8]),
     Range::new(Method::Cell, &[2500, 10_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[2500, 10_000], &[], &[], &[]),
     Range::new(Method::Cell, &[40_000], &[0.05, 0.12, 0.3], &[0.3, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[40_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[2500, 10_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
     Range::new(Method::HardSphere, &[40_000], &[0.01, 0.03], &[0.3], &[8]),
     Range::new(Method::None, &[2500, 10_000, 40_000], &[], &[], &[]),
@@ -31,6 +34,7 @@ const FULL: &[Range<'static>] = &[
         &[1, 2, 4, 8],
     ),
     Range::new(Method::Cell, &[10_000, 40_000, 160_000, 640_000, 2_560_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[10_000, 40_000, 160_000, 640_000, 2_560_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[10_000, 40_000, 160_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
     Range::new(Method::None, &[10_000, 40_000, 160_000, 640_000], &[], &[], &[]),
 ];

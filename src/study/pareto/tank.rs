@@ -15,12 +15,14 @@ const FINE: usize = 20;
 const QUICK: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[1000], &[0.12], &[0.3], &[8]),
     Range::new(Method::Cell, &[1000], &[0.12], &[], &[]),
+    Range::new(Method::HalfTurn, &[1000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[1000], &[0.03], &[0.3], &[2]),
     Range::new(Method::None, &[1000], &[], &[], &[]),
 ];
 const NORMAL: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[1000, 2000, 4000], &[0.05, 0.12, 0.3], &[0.3, 0.6], &[1, 8]),
     Range::new(Method::Cell, &[1000, 2000, 4000, 8000], &[0.05, 0.12, 0.3], &[0.3, 1.0], &[]),
+    Range::new(Method::HalfTurn, &[1000, 2000, 4000, 8000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[1000, 2000, 4000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::None, &[1000, 2000, 4000, 8000], &[], &[], &[]),
 ];
@@ -33,6 +35,7 @@ const FULL: &[Range<'static>] = &[
         &[1, 2, 8],
     ),
     Range::new(Method::Cell, &[4000, 16_000, 64_000, 256_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
+    Range::new(Method::HalfTurn, &[4000, 16_000, 64_000, 256_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[4000, 16_000, 64_000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::None, &[4000, 16_000, 64_000, 256_000], &[], &[], &[]),
 ];

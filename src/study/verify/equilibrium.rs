@@ -70,7 +70,9 @@ pub fn ratios(run: &Run) -> [(f64, f64); 2] {
 pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let times = if effort == Effort::Quick { 1 } else { 2 };
     let mut checks = Vec::new();
-    for (method, step_over_tau, steps) in [("closest-approach", 0.1, 5600), ("cell", 0.5, 3200)] {
+    for (method, step_over_tau, steps) in
+        [("closest-approach", 0.1, 5600), ("cell", 0.5, 3200), ("half-turn", 0.6, 3200)]
+    {
         let [spin, gases] = ratios(&mixture(device, method, 3, step_over_tau, times * steps)?);
         checks.push(Check::of(format!("{method}: T_int/T_tr"), 1.0, spin, 0.01));
         checks.push(Check::of(format!("{method}: T1/T2, masses 1:7"), 1.0, gases, 0.01));
@@ -256,9 +258,12 @@ pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Findings, 
         ("closest-approach", &RESTING_NITROGEN),
         ("closest-approach", &RESTING_HELIUM),
         ("cell", &RESTING_HELIUM),
+        ("half-turn", &RESTING_NITROGEN),
+        ("half-turn", &RESTING_HELIUM),
+        ("half-turn", with_spin),
         ("closest-approach", with_spin),
     ];
-    for method in ["closest-approach", "hard-sphere", "cell"] {
+    for method in ["closest-approach", "hard-sphere", "cell", "half-turn"] {
         ways.extend(without_spin.iter().map(|mixture| (method, mixture)));
     }
     let check = |(method, resting): (&str, &RestingGas)| {

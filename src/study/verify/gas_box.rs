@@ -90,7 +90,11 @@ impl EquilibriumBox<'_> {
         2.0 * self.diameter() + self.mean_free_path()
     }
 
+    /// Where particles have no diameter `step_over_tau` is of the time in which thermal speed takes them a mean spacing.
     pub fn time_step(&self) -> f64 {
+        if self.method == "half-turn" {
+            return self.step_over_tau / self.number_density().cbrt() / self.thermal_speed();
+        }
         self.step_over_tau * self.collision_time()
     }
 
@@ -103,24 +107,24 @@ impl EquilibriumBox<'_> {
     pub fn toml(&self) -> String {
         let time_step = self.time_step();
         let rounds = if self.method == "cell" { String::new() } else { format!("rounds = {}\n", self.rounds) };
+        let collisions =
+            format!("occupancy = {}\n{rounds}collision_number = {}\n", self.occupancy, self.collision_number);
+        let collisions = if self.method == "half-turn" { String::new() } else { collisions };
         format!(
             "end_time = {end:e}\nseed = 7\n{gases}\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\n\
              gas = \"inside\"\n{walls}\
              [[chamber]]\nname = \"all\"\npressure = 101325.0\ntemperature = {TEMPERATURE}\ngas = {mixture}\n\
              [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
-             [model]\nmethod = \"{method}\"\nparticles = {particles}\noccupancy = {occupancy}\n\
-             time_step = {time_step:e}\n{rounds}\
-             collision_number = {collision_number}\n\
+             [model]\nmethod = \"{method}\"\nparticles = {particles}\n\
+             time_step = {time_step:e}\n{collisions}\
              [output]\nrows = {rows}\nsnapshots = {snapshots}\n",
             end = time_step * f64::from(self.steps),
             gases = self.gases,
             mixture = self.mixture,
             particles = self.particles,
-            occupancy = self.occupancy,
             method = self.method,
             walls = self.walls,
-            collision_number = self.collision_number,
             rows = self.rows,
             snapshots = self.snapshots,
         )

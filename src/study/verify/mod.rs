@@ -17,6 +17,7 @@ pub mod equilibrium;
 pub mod figures;
 pub mod filling;
 pub mod gas_box;
+pub mod half_turn;
 pub mod holes;
 pub mod losses;
 pub mod mixing;
@@ -114,6 +115,16 @@ pub const CASES: &[Case] = &[
         name: "viscosity",
         law: "decay of vortices as exp(-2 nu k^2 t) (Taylor and Green) with the viscosity of the method",
         run: shear::viscosities,
+    },
+    Case {
+        name: "half-turn-viscosity",
+        law: "half-turn: the same, with gas of the density of the plan, and eight times thinner and denser",
+        run: half_turn::viscosities,
+    },
+    Case {
+        name: "half-turn-orifice",
+        law: "half-turn: discharge into near-vacuum, by the spacings of the particles across the hole",
+        run: half_turn::discharges,
     },
     Case { name: "sod", law: "Sod's shock tube, gamma 7/5, against the exact Riemann solution", run: sod::sod },
     Case { name: "sod-monatomic", law: "the same with gamma 5/3", run: sod::sod_monatomic },

@@ -138,12 +138,12 @@ pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Findings, Study
         Effort::Full => (8000, [(0.1, 250_000), (0.5, 700_000)], 4, 0.015),
     };
     let mut checks = Vec::new();
-    for method in [Method::ClosestApproach, Method::Cell] {
+    for method in [Method::ClosestApproach, Method::Cell, Method::HalfTurn] {
         let (name, compressed) = (method.name(), compressions(device, method, slow, seeds)?);
         let what = format!("{name}: T V^(gamma-1) at 2:1, {SLOW} c0, N = {slow}");
         checks.push(Check::of(what, 1.0, compressed, 0.005));
         // One speed is enough to see the shock of another method.
-        for (speed, particles) in fast.into_iter().skip(usize::from(method == Method::Cell)) {
+        for (speed, particles) in fast.into_iter().skip(usize::from(method != Method::ClosestApproach)) {
             let piston = Piston::shock(particles, speed).by(method);
             let pressure = on_piston(&piston, &piston.run(device)?);
             let what = format!("{name}: p on a piston of {speed} c0 over p1, N = {particles}");

@@ -54,7 +54,8 @@ pub fn viscosity_in(
     let distance = EDGE / (gas.particles as f64).cbrt();
     let mut gas_box = EquilibriumBox { snapshots: 40, ..gas };
     let speed = gas_box.thermal_speed();
-    let rate = 2.0 * FLOOR * distance * speed * (PI / EDGE).powi(2);
+    let expected = if gas.method == "half-turn" { super::half_turn::VISCOSITY } else { FLOOR };
+    let rate = 2.0 * expected * distance * speed * (PI / EDGE).powi(2);
     gas_box.steps = (-LAST.ln() / rate / gas_box.time_step()).ceil() as u32;
     let mut found = Vec::new();
     for seed in 1..=seeds {

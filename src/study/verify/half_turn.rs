@@ -1,0 +1,78 @@
+//! The method `half-turn` against the law, and against what a program of its own found for it (docs/method.md).
+
+use crate::gpu::Device;
+use crate::plan::COLLISION_CELL;
+use crate::scene::Method;
+use crate::simulation::{Model, Options};
+use crate::study::StudyError;
+
+use super::gas_box::EquilibriumBox;
+use super::holes::{discharge_of, emptying_scene};
+use super::shear::viscosity_in;
+use super::witness::model_from;
+use super::{Check, Effort, Findings, run};
+
+/// Kinematic viscosity over d c0 of collision cells of 14 particles in steps of .6 d/c0, known to .03.
+pub const VISCOSITY: f64 = 0.21;
+const KNOWN_TO: f64 = 0.03;
+/// Cd into vacuum against the diameter of a hole over the spacing of the particles before it: .843 - .374 d/D, within .005.
+const DISCHARGE: [f64; 2] = [0.843, 0.374];
+
+/// Kinematic viscosity over d c0 of gas of this many particles, in steps in which thermal speed takes them so many spacings, on a grid made for gas so many
+/// times as dense; and its standard error.
+///
+/// # Errors
+/// If a run fails.
+pub fn viscosity(
+    device: &Device,
+    particles: u64,
+    spacings_flown: f64,
+    denser: f64,
+    seeds: u64,
+) -> Result<(f64, f64), StudyError> {
+    let gas =
+        EquilibriumBox { method: "half-turn", particles, step_over_tau: spacings_flown, ..EquilibriumBox::default() };
+    let edge = 0.5 * COLLISION_CELL / (denser * gas.number_density()).cbrt();
+    viscosity_in(device, gas, seeds, Some(edge))
+}
+
+/// Gas of the density that the grid is made for, and eight times thinner and denser: collision cells follow.
+pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
+    let (particles, seeds) = if effort == Effort::Quick { (16_000, 3) } else { (64_000, 8) };
+    let check = |denser: f64| {
+        let found = viscosity(device, particles, 0.6, denser, seeds)?;
+        let what = format!("nu / (d c0), N = {particles}, gas {} times as dense as planned", 1.0 / denser);
+        Ok(Check::of(what, VISCOSITY, found, KNOWN_TO))
+    };
+    [1.0, 8.0, 0.125].into_iter().map(check).collect()
+}
+
+/// A chamber that empties through a square hole.
+///
+/// # Errors
+/// If no plan can be made for it.
+pub fn emptying(particles: u64) -> Result<Model, StudyError> {
+    let mut scene = emptying_scene()?;
+    scene.model.method = Some(Method::HalfTurn);
+    scene.model.particles = Some(particles);
+    model_from("orifice", scene)
+}
+
+/// By the density in the middle of the time over which the flow is taken.
+pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
+    let numbers: &[u64] = if effort == Effort::Quick { &[100_000] } else { &[50_000, 200_000, 800_000] };
+    let check = |&particles: &u64| {
+        let model = emptying(particles)?;
+        let rows = run(device, &model, Options::default())?.rows;
+        let found = discharge_of(&rows);
+        let before = rows[rows.len() / 2].chambers[0].particles[0] / model.plan.chambers[0].volume;
+        let opening = &model.plan.openings[0];
+        let diameter = 2.0 * (opening.area / std::f64::consts::PI).sqrt();
+        let spacings = diameter * before.cbrt();
+        let [limit, slope] = DISCHARGE;
+        let what = format!("Cd into vacuum, a hole of {spacings:.1} spacings");
+        // The table is of round holes, and its figures scatter by .01.
+        Ok(Check::of(what, limit - slope / spacings, found, 0.02))
+    };
+    numbers.iter().map(check).collect()
+}
