@@ -58,7 +58,7 @@ fn the_quick_chart_of_the_shock_tube() {
         assert!(drawn.contains(part), "{part}");
     }
     let table = Table::of(&out);
-    assert_eq!(table.0.len(), 9);
+    assert_eq!(table.0.len(), 11);
     let rows = 0..table.0.len();
     let place = |row: usize| [table.value(row, "seconds"), table.value(row, "error")];
     let beyond = |row: usize| table.value(row, "beyond_limits") == 1.0;

@@ -11,6 +11,7 @@ mod energy_drift;
 mod equilibrium_box;
 mod equipartition;
 mod filling;
+mod half_turn;
 mod hard_sphere;
 mod heat_curve;
 mod long_steps;
