@@ -55,8 +55,9 @@ pub enum Collisions {
     /// `cap`: the diameter is at most so many mean spacings of the gas. `cell`: they collide within cells of this edge, m, and are
     /// the more viscous to a hole ([`kinetics::viscosity_of_cells`]); else where they crowd ([`kinetics::viscosity_of_crowds`]).
     Particles { diameter: f64, cap: Option<f64>, cell: Option<f64>, moles_per_particle: f64 },
-    /// Those within cells of the same number of particles everywhere, whose viscosity is that of a mean free path of so many mean spacings.
-    Spacings { path: f64, moles_per_particle: f64 },
+    /// Those within cells of the same number of particles everywhere: a hole acts on them as on a mean free path of so many mean spacings, into
+    /// vacuum and by small differences of pressure.
+    Spacings { paths: [f64; 2], moles_per_particle: f64 },
     /// Every hole is in the continuum limit: the gas itself, whose mean free path no vessel sees.
     Continuum,
 }
@@ -343,7 +344,11 @@ impl ControlVolume {
         let upstream = weight * density(a) + (1.0 - weight) * density(b);
         let (diameter, cap, cell) = match self.collisions {
             Collisions::Particles { diameter, cap, cell, .. } => (diameter, cap, cell),
-            Collisions::Spacings { path, .. } => return path * kinetics::mean_spacing(upstream) / length,
+            Collisions::Spacings { paths: [vacuum, slow], .. } => {
+                let ratio = if pa.max(pb) > 0.0 { pa.min(pb) / pa.max(pb) } else { 0.0 };
+                let path = vacuum + (slow - vacuum) * (ratio / super::discharge::SMALL_DIFFERENCE).min(1.0);
+                return path * kinetics::mean_spacing(upstream) / length;
+            }
             Collisions::None | Collisions::Continuum => return 0.0,
         };
         let diameter = kinetics::capped_diameter(diameter, cap, upstream);

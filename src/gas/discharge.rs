@@ -59,7 +59,7 @@ pub const COEFFICIENT_LIMITS: [f64; 2] = [0.583, CONTINUUM_COEFFICIENT];
 /// verify orifice --full` meets within its noise.
 const VACUUM: [[f64; 2]; 6] = [[10.0, 0.60], [3.0, 0.6025], [1.0, 0.6385], [0.3, 0.71], [0.1, 0.78], [0.05, 0.83]];
 /// From this pressure ratio on a difference is small.
-const SMALL_DIFFERENCE: f64 = 0.8;
+pub(super) const SMALL_DIFFERENCE: f64 = 0.8;
 /// s: creeping flow times Kn over free flight.
 const CREEPING: f64 = 0.26;
 /// m: how sharply creeping flow turns into the continuum's.

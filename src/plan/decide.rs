@@ -253,7 +253,10 @@ fn gases(
         None if least > DEFAULT_COLLISION_NUMBER => (least, "the fastest spin exchange of the gas with the most spin"),
         None => (DEFAULT_COLLISION_NUMBER, "rotation relaxes in about five collisions"),
     };
-    reasons.push(Reason { quantity: "collision number".into(), value: significant(number), why: why.into() });
+    // (Where all particles of a cell collide at once there is none.)
+    if scene.model.method != Some(Method::HalfTurn) {
+        reasons.push(Reason { quantity: "collision number".into(), value: significant(number), why: why.into() });
+    }
     let gases = scene.gases.iter().zip(species).enumerate().map(|(index, (gas, species))| {
         let spin_dof = species.spin_dof(temperature);
         let exchange_probability = kinetics::exchange_probability(spin_dof, number).ok_or_else(|| {

@@ -156,8 +156,6 @@ pub const LIMITS: &[Limit] = &[
     // gas before a hole is four times as dense, cells are twelve free paths long at the occupancy of plans, and a hole of .03 acts
     // as one of .13 (`kinetics::viscosity_of_cells`).
     limit_of(Quantity::Knudsen, Some(Method::Cell), AtMost(0.03), "its flow is off by 7 % or more"),
-    // A hole of 13 spacings: .806 of .84 (`docs/method.md`, half-turn).
-    limit_of(Quantity::Knudsen, Some(Method::HalfTurn), AtMost(0.0315), "its flow is off by 4 % or more"),
     // Measured at f = .03: 24 % too much at .1, where the others hold. What rigid spheres press harder drives the flow; no
     // Knudsen number mends it.
     limit_of(

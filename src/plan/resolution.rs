@@ -29,8 +29,10 @@ pub const FASTEST_PAIR: f64 = 6.0;
 const FAST_PARTICLE: f64 = 4.04;
 /// Edge of a collision cell of the method `half-turn` in mean spacings of its gas: 14 particles.
 pub const COLLISION_CELL: f64 = 2.41;
-/// And those that gas of thermal speed flies in its steps.
+/// And those that gas of thermal speed flies in its steps: by the plan, and at most before a run halves them. At 1 its viscosity is half as
+/// much again.
 const SPACINGS_FLOWN: f64 = 0.6;
+const MOST_SPACINGS_FLOWN: f64 = 0.75;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
 const SURELY_FAST: f64 = 4.4;
 
@@ -276,14 +278,15 @@ impl Resolution {
             COLLISION_CELL.powi(3)
         );
         because("cell", format!("{} mm", significant(1e3 * cell)), why);
-        let limit = step_limit(Method::HalfTurn, 0);
         let hottest = states.map(|state| state.number_density).into_iter().fold(0.0, f64::max);
         let densest = MeanState { number_density: hottest, thermal_square: extreme.0 };
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None => (
                 SPACINGS_FLOWN / spacings_flown(1.0, densest),
-                format!("the hottest gas flies {SPACINGS_FLOWN} mean spacings a step, {limit} at most"),
+                format!(
+                    "the hottest gas flies {SPACINGS_FLOWN} mean spacings a step, {MOST_SPACINGS_FLOWN} at most where it is denser"
+                ),
             ),
         };
         let (time_step, steps) = divide(end_time, wanted);
@@ -292,7 +295,7 @@ impl Resolution {
         Self {
             diameter: 0.0,
             rounds: 0,
-            collision_limit: limit,
+            collision_limit: MOST_SPACINGS_FLOWN,
             time_step,
             steps,
             cell,
@@ -335,7 +338,7 @@ fn spacings_flown(time: f64, state: MeanState) -> f64 {
 /// The mean free path, m, by which Knudsen numbers are counted.
 pub(super) fn mean_free_path(method: Method, density: f64, diameter: f64) -> f64 {
     match method {
-        Method::HalfTurn => kinetics::HALF_TURN_PATH * kinetics::mean_spacing(density),
+        Method::HalfTurn => kinetics::HALF_TURN_PATHS[0] * kinetics::mean_spacing(density),
         _ => kinetics::mean_free_path(density, diameter),
     }
 }

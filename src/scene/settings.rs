@@ -170,7 +170,9 @@ pub(super) fn collision_number(
             Some(z) if z.value < least * (1.0 - 1e-12) => {
                 return Err(Problem::value(&z.span, show(z.value), allowed));
             }
-            None if COLLISION_NUMBER < least && !matches!(raw.method, Some(Method::None | Method::ControlVolume)) => {
+            None if COLLISION_NUMBER < least
+                && !matches!(raw.method, Some(Method::None | Method::HalfTurn | Method::ControlVolume)) =>
+            {
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
                 let hint = if cv + GAS_CONSTANT > MOST_MOLAR_HEAT && raw_gas.value.gamma.is_none() {
                     let per_kilogram =

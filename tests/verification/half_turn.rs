@@ -1,5 +1,5 @@
 //! Laws of the method `half-turn`: its viscosity is a third of that of the other methods, where gas is as dense as planned, eight times thinner and
-//! eight times denser; a hole of D/d particle spacings passes Cd = .843 - .374 d/D; spin and gases of masses 1:7 come to one temperature
+//! eight times denser; spin and gases of masses 1:7 come to one temperature
 //! within 1 %; pockets of few particles between walls keep their shares of energy.
 
 use corpuscle::simulation::Options;

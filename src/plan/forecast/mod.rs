@@ -253,7 +253,7 @@ impl<'a> Run<'a> {
             let cell = (method == Method::Cell).then(|| cell_edge(density, diameter));
             // Measured biases belong to the diameter of the mean gas.
             let states = course.solve(match method {
-                Method::HalfTurn => Collisions::Spacings { path: kinetics::HALF_TURN_PATH, moles_per_particle },
+                Method::HalfTurn => Collisions::Spacings { paths: kinetics::HALF_TURN_PATHS, moles_per_particle },
                 _ => Collisions::Particles { diameter, cap: None, cell, moles_per_particle },
             });
             let holes = bias::differences(&states, limit);

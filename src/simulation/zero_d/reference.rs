@@ -1,7 +1,7 @@
 //! The control volume of a run: the same chambers, openings and curves without space. The reference of runs of
 //! particles, and the method `control-volume` itself.
 
-use crate::gas::kinetics::HALF_TURN_PATH;
+use crate::gas::kinetics::HALF_TURN_PATHS;
 use crate::gas::{
     Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at,
 };
@@ -48,7 +48,7 @@ fn volume(model: &Model) -> ControlVolume {
             Method::None => Collisions::None,
             Method::ControlVolume => Collisions::Continuum,
             Method::HalfTurn => {
-                Collisions::Spacings { path: HALF_TURN_PATH, moles_per_particle: plan.moles_per_particle }
+                Collisions::Spacings { paths: HALF_TURN_PATHS, moles_per_particle: plan.moles_per_particle }
             }
             _ => Collisions::Particles {
                 diameter: plan.diameter,

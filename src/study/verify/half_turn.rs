@@ -14,7 +14,7 @@ use super::{Check, Effort, Findings, run};
 
 /// To which the viscosity is known.
 const KNOWN_TO: f64 = 0.03;
-/// Cd into vacuum against the diameter of a hole over the spacing of the particles before it: .843 - .374 d/D, within .005.
+/// Cd into vacuum against the diameter of a hole over the spacing of the particles before it: .843 - .374 d/D.
 const DISCHARGE: [f64; 2] = [0.843, 0.374];
 
 /// Kinematic viscosity over d c0 of gas of this many particles, in steps in which thermal speed takes them so many spacings, on a grid made for gas so many
@@ -70,8 +70,8 @@ pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, St
         let spacings = diameter * before.cbrt();
         let [limit, slope] = DISCHARGE;
         let what = format!("Cd into vacuum, a hole of {spacings:.1} spacings");
-        // The table is of round holes, and its figures scatter by .01.
-        Ok(Check::of(what, limit - slope / spacings, found, 0.02))
+        // The formula is of round holes in thin walls, and of vacuum. Here a square one passes .02 to .03 less.
+        Ok(Check::of(what, limit - slope / spacings, found, 0.05))
     };
     numbers.iter().map(check).collect()
 }
