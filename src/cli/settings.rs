@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::partition::By;
 use crate::plan::doubts_of;
 use crate::scene::{Scene, load};
-use crate::simulation::{BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model};
+use crate::simulation::{BalanceMode, BalanceOptions, Ghosts, HaloOptions, Model, mesh_doubts};
 
 use super::CliError;
 use super::arguments::{
@@ -28,8 +28,11 @@ pub fn scene_of(raw: &SceneArguments) -> Result<Scene, CliError> {
 
 /// The scene, its walls and its plan. `path` stands in the message if they are not sound, with what no vessel has: it may be why.
 pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
-    let doubts = doubts_of(&scene);
-    Model::new(scene).map_err(|error| CliError::model(path, error).doubting(&doubts))
+    let asked = scene.clone();
+    Model::new(scene).map_err(|error| {
+        let doubts = [doubts_of(&asked), mesh_doubts(&asked)].concat();
+        CliError::model(path, error).doubting(&doubts)
+    })
 }
 
 /// The same where the command line may wish an accuracy or set budgets. A wish sets aside how many particles the file asks

@@ -110,8 +110,8 @@ impl Vessel {
         Some((kind, meeting.middle))
     }
 
-    /// In how many solids of a wall a place is.
-    fn depth_of(&self, wall: usize, place: [f64; 3]) -> i32 {
+    /// In how many solids of a wall a place is; what lies outside of a cavity is one.
+    pub fn depth_of(&self, wall: usize, place: [f64; 3]) -> i32 {
         let mut depth = i32::from(self.walls[wall].cavity);
         self.lines_through(place, |crossing| {
             if crossing.wall as usize == wall && crossing.x > place[0] {

@@ -6,16 +6,22 @@
 //! that no ray meets is missed: one narrower than the triangles around it are far apart, as at the foot of a wedge. The
 //! same ray backwards, through the solid, measures bodies.
 
-use super::Vessel;
 use super::sampling::map;
+use super::{Triangle, Vessel};
 use glam::DVec3;
 
 /// Pairs of a ray and a triangle that are tried at most: of larger meshes fewer triangles send out rays.
 const MOST_TRIALS: usize = 100_000_000;
+/// The same beside one wall, which is looked at several times where it moves.
+const MOST_SIDE_TRIALS: usize = 20_000_000;
 /// Barycentric places of the rays in a triangle.
 const PLACES: [[f64; 3]; 4] = [[1.0 / 3.0; 3], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8]];
 /// Cosine of the largest angle between a ray and the wall that it meets.
 const FACING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Cosine of the least angle between a direction and the normal of a side along it.
+const BESIDE: f64 = 0.1;
+/// Places along each edge of such a side.
+const SIDE_PLACES: usize = 12;
 /// Of the vessel's size: what is nearer touches.
 const ROUNDING: f64 = 1e-9;
 
@@ -62,9 +68,19 @@ pub struct Narrowest {
     pub body: Option<f64>,
 }
 
+fn shorter(a: Passage, b: Passage) -> Passage {
+    if b.length < a.length { b } else { a }
+}
+
+/// Barycentric places of a triangle, close enough together to find what is only a part of a side in the gas.
+fn side_places() -> impl Iterator<Item = [f64; 3]> {
+    let share = |k: usize| (k as f64 + 1.0 / 3.0) / SIDE_PLACES as f64;
+    let places = (0..SIDE_PLACES).flat_map(move |i| (0..SIDE_PLACES - i).map(move |j| [share(i), share(j)]));
+    places.map(|[u, v]| [1.0 - u - v, u, v])
+}
+
 impl Narrowest {
     fn and(self, other: Narrowest) -> Narrowest {
-        let shorter = |a: Passage, b: Passage| if b.length < a.length { b } else { a };
         Narrowest {
             gap: self.gap.into_iter().chain(other.gap).reduce(shorter),
             body: self.body.into_iter().chain(other.body).reduce(f64::min),
@@ -74,17 +90,8 @@ impl Narrowest {
 
 impl Vessel {
     pub fn narrowest(&self) -> Narrowest {
-        let place = |index: u32| DVec3::from(self.vertices[index as usize]);
-        let facets: Vec<Facet> = self
-            .triangles
-            .iter()
-            .map(|triangle| {
-                let corners = triangle.vertices.map(place);
-                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-                Facet { wall: triangle.wall, corners, normal }
-            })
-            .collect();
-        let size = DVec3::from(self.bounds.1).distance(DVec3::from(self.bounds.0));
+        let facets = self.facets();
+        let size = self.size();
         let every = (facets.len() * facets.len() * PLACES.len()).div_ceil(MOST_TRIALS).max(1);
         let found = map(facets.len().div_ceil(every), |index, _| {
             let own = &facets[index * every];
@@ -92,6 +99,41 @@ impl Vessel {
             from_places.fold(Narrowest::default(), Narrowest::and)
         });
         found.into_iter().fold(Narrowest::default(), Narrowest::and)
+    }
+
+    /// The narrowest gap between the sides of a wall that lie along a direction and face away from its middle, and another wall.
+    pub fn gap_beside(&self, wall: usize, along: DVec3) -> Option<Passage> {
+        let facets = self.facets();
+        let is_own = |facet: &&Facet| facet.wall as usize == wall;
+        let corners = || facets.iter().filter(is_own).flat_map(|facet| facet.corners);
+        let middle = corners().sum::<DVec3>() / corners().count().max(1) as f64;
+        let is_side = |facet: &&Facet| {
+            facet.normal.dot(along).abs() < BESIDE && facet.normal.dot(facet.corners[0] - middle) > 0.0
+        };
+        let sides: Vec<&Facet> = facets.iter().filter(is_own).filter(is_side).collect();
+        let trials = sides.len() * facets.len() * (SIDE_PLACES * SIDE_PLACES);
+        let every = trials.div_ceil(MOST_SIDE_TRIALS).max(1);
+        let least = ROUNDING * self.size();
+        let found = map(sides.len().div_ceil(every), |index, _| {
+            let gaps =
+                side_places().filter_map(|place| self.through_place(&facets, sides[index * every], &place, least).gap);
+            gaps.filter(|gap| gap.walls[0] != gap.walls[1]).reduce(shorter)
+        });
+        found.into_iter().flatten().reduce(shorter)
+    }
+
+    fn facets(&self) -> Vec<Facet> {
+        let place = |index: u32| DVec3::from(self.vertices[index as usize]);
+        let facet = |triangle: &Triangle| {
+            let corners = triangle.vertices.map(place);
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+            Facet { wall: triangle.wall, corners, normal }
+        };
+        self.triangles.iter().map(facet).collect()
+    }
+
+    fn size(&self) -> f64 {
+        DVec3::from(self.bounds.1).distance(DVec3::from(self.bounds.0))
     }
 
     /// What the line along the normal through a place of a facet measures, before it and behind.

@@ -140,14 +140,16 @@ impl Plate {
                 mesh.quad([low[b], low[a], high[a], high[b]], self.side_face);
             }
             first += n;
+            let middle = (self.lower.level + self.upper.level) / 2.0;
             mesh.holes.push(FoundHole {
                 name: hole.name.clone(),
                 wall,
-                center: self.frame.point(hole.center, (self.lower.level + self.upper.level) / 2.0).to_array(),
+                center: self.frame.point(hole.center, middle).to_array(),
                 normal: self.frame.n.to_array(),
                 thickness: self.upper.level - self.lower.level,
                 area: area(&hole.points),
                 perimeter: perimeter(&hole.points),
+                outline: hole.points.iter().map(|&corner| self.frame.point(corner, middle).to_array()).collect(),
             });
         }
         Ok(())

@@ -120,7 +120,9 @@ impl Vessel {
         }
         for hole in &mut moved.holes {
             let way = by[hole.wall as usize];
-            hole.center = std::array::from_fn(|axis| hole.center[axis] + way[axis]);
+            for place in std::iter::once(&mut hole.center).chain(&mut hole.outline) {
+                *place = std::array::from_fn(|axis| place[axis] + way[axis]);
+            }
         }
         moved.index(|_| true);
         moved

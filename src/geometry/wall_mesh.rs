@@ -50,6 +50,8 @@ pub struct FoundHole {
     /// m2, of the polygon that is cut.
     pub area: f64,
     pub perimeter: f64,
+    /// The corners of that polygon, half-way through the wall.
+    pub outline: Vec<[f64; 3]>,
 }
 
 /// What was done to a mesh.

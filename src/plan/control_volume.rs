@@ -3,7 +3,7 @@
 use super::amounts::{Amounts, highest_temperature};
 use super::population::{openings, silent_orifices};
 use super::resolution::{LADDER_LEVELS, STEPS_PER_INTERVAL, TALLY_EVERY};
-use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason};
+use super::{ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, notes};
 use crate::gas::Species;
 use crate::geometry::Grid;
 use crate::scene::{Method, Scene};
@@ -67,8 +67,10 @@ pub fn plan(
         volume,
         particles: vec![0; scene.gases.len()],
     });
+    let mut inventory = Inventory::of(scene, measured, amounts);
+    inventory.notes.extend(notes::gaps_beside(scene, measured, false));
     Ok(Plan {
-        inventory: Inventory::of(scene, measured, amounts),
+        inventory,
         method: Method::ControlVolume,
         particles: 0,
         initial_particles: 0,

@@ -108,9 +108,9 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let short = steps.and_then(|[asked, own]| plausible::short_step(scene, asked, own));
     inventory.doubts.extend([many, short, long].into_iter().flatten().map(|doubt| scene.lines.told(doubt)));
     inventory.notes.extend(notes::touching(scene, measured));
-    if !narrow {
-        inventory.notes.extend(notes::narrow_gap(scene, measured));
-    }
+    let narrow_gap = if narrow { None } else { notes::narrow_gap(scene, measured) };
+    inventory.notes.extend(notes::gaps_beside(scene, measured, narrow || narrow_gap.is_some()));
+    inventory.notes.extend(narrow_gap);
     Ok(Plan {
         inventory,
         method,

@@ -28,6 +28,8 @@ pub struct Inventory {
     /// What is no warning, and its author may not know.
     pub notes: Vec<String>,
     inflow: bool,
+    /// Whether a wall moves.
+    pub moves: bool,
     /// m3 of gas space in no chamber; 0 where it is no more than holes have.
     empty: f64,
 }
@@ -77,6 +79,7 @@ impl Inventory {
             vents,
             doubts: doubts.into_iter().map(|doubt| scene.lines.told(doubt)).collect(),
             empty: Some(measured.empty_space()).filter(|empty| *empty > IN_HOLES * measured.gas_volume).unwrap_or(0.0),
+            moves: measured.motion.is_some(),
             inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
         }
     }
@@ -130,7 +133,9 @@ impl Inventory {
 
     fn contents(&self, name: String, gas: &Contents) -> Vec<String> {
         let state = format!("{}, {} K", self.shown(gas.pressure, Dimension::Pressure), significant(gas.temperature));
-        let state = if std::ptr::eq(gas, &self.end) { format!("{state} if closed, no heat lost") } else { state };
+        let without = if self.moves { ", without the work of moving walls" } else { "" };
+        let state =
+            if std::ptr::eq(gas, &self.end) { format!("{state} if closed, no heat lost{without}") } else { state };
         let volume = format!("{} ({} L)", self.shown(gas.volume, Dimension::Volume), significant(1e3 * gas.volume));
         vec![name, volume, self.shown(gas.mass, Dimension::Mass), state]
     }

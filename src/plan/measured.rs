@@ -36,8 +36,12 @@ pub struct Measured {
     pub open_to_empty: bool,
     /// Pairs of chambers between which a part of the border is neither wall nor a hole of one.
     pub touching: Vec<[usize; 2]>,
-    /// Holes that join no two chambers.
-    pub no_openings: Vec<NoOpening>,
+    /// Holes that join no two chambers, or only with a part of their areas.
+    pub hindered: Vec<Hindered>,
+    /// Gaps round walls that part two chambers, or that move.
+    pub gaps_beside: Vec<GapBeside>,
+    /// Of the walls that move.
+    pub strokes: Vec<Stroke>,
     /// Walls that move and have no gas before them at any time.
     pub dry_motions: Vec<usize>,
     /// Surfaces of the scene that have none.
@@ -92,13 +96,44 @@ pub struct MeasuredWall {
     pub outside: f64,
 }
 
-/// A hole that joins no two chambers.
+/// A hole that is no opening between two chambers, or not with all of its area.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NoOpening {
+pub struct Hindered {
     pub name: String,
     pub wall: usize,
-    /// That of the gas on both sides; none where a side has no gas.
-    pub chamber: Option<usize>,
+    /// m2, as drawn.
+    pub area: f64,
+    pub why: Hindrance,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hindrance {
+    /// The gas on both sides is that of one.
+    OneChamber(usize),
+    /// Of its area the share that is open at some time of the run, the wall that covers most of the rest, and whether its middle joins
+    /// two chambers at the start.
+    Covered { open: f64, by: usize, joins: bool },
+}
+
+/// A gap between the side of a wall and another wall.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GapBeside {
+    pub gap: Passage,
+    pub wall: usize,
+    /// The chambers that the wall parts; none of a wall that moves.
+    pub chambers: Option<[usize; 2]>,
+}
+
+/// How far a wall moves in the whole run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    /// Index of the motion.
+    pub motion: usize,
+    /// m, to and fro.
+    pub way: f64,
+    /// The chamber that is shortest along the motion, of those that the wall borders on, and its length, m.
+    pub chamber: usize,
+    pub length: f64,
 }
 
 /// Where a vent is.

@@ -47,9 +47,9 @@ pub use forecast::{
 };
 pub use inventory::Inventory;
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
-pub use measured::{Measured, MeasuredMotion, MeasuredVent, MeasuredWall, NoOpening};
+pub use measured::{GapBeside, Hindered, Hindrance, Measured, MeasuredMotion, MeasuredVent, MeasuredWall, Stroke};
 pub use planned::{ChamberPlan, GasPlan, OpeningPlan, Plan, VentPlan};
-pub use plausible::by_scene as doubts_of;
+pub use plausible::{by_meshes as doubts_of_meshes, by_scene as doubts_of};
 pub use reason::Reason;
 pub use resolution::{COLLISION_CELL, FASTEST_PAIR, LADDER_TAIL, PER_CELL};
 pub use text::significant;

@@ -1,17 +1,23 @@
 //! What a scene does that it may well mean, and its author may not know: told as notes, which are no warnings.
 
 use super::text::{as_written, significant};
-use super::{Measured, NoOpening};
+use super::{GapBeside, Hindered, Hindrance, Measured, MeasuredVent};
+use crate::gas::vent::opens;
 use crate::geometry::Passage;
-use crate::scene::{Chamber, Dimension, Scene};
+use crate::scene::{Chamber, Dimension, GasSide, Scene, Vent};
 
 /// Of the edge of a cube of all gas: a gap that is narrower may be one that was to be closed.
 const NARROW: f64 = 0.02;
+/// Of the pressure in a chamber: one outside that is lower may be above the atmosphere.
+const GAUGE: f64 = 0.3;
+/// Share by which two pressures differ that were meant to be the same.
+const SAME: f64 = 1e-3;
 
 /// Of the holes and the vents, with the line of each in the file. `shut`: vents that no gas opens, with the absolute pressure at which
 /// each would, Pa.
 pub fn of_scene(scene: &Scene, measured: &Measured, shut: &[(&str, f64)]) -> Vec<String> {
-    let holes = measured.no_openings.iter().map(|hole| no_opening(scene, hole));
+    let holes = measured.hindered.iter().map(|hole| hindered(scene, hole));
+    let open = scene.vents.iter().zip(&measured.vents).filter_map(|vent| open_at_start(scene, vent));
     let shut = shut.iter().map(|&(name, absolute)| {
         format!(
             "vent `{name}`: it opens at {} absolute, which neither its chamber has at the start nor all gas together at the end: it \
@@ -19,7 +25,8 @@ pub fn of_scene(scene: &Scene, measured: &Measured, shut: &[(&str, f64)]) -> Vec
             pressure(scene, absolute)
         )
     });
-    holes.chain(shut).map(|note| scene.lines.told(note)).collect()
+    let vents = open.chain(unlike_outsides(scene, measured)).chain(shut);
+    holes.chain(vents).map(|note| scene.lines.told(note)).collect()
 }
 
 /// Of chambers of unlike gas that touch, in a run of particles.
@@ -57,19 +64,108 @@ fn mixing(scene: &Scene, pair: [usize; 2]) -> Option<String> {
     })
 }
 
-fn no_opening(scene: &Scene, hole: &NoOpening) -> String {
-    let wall = &scene.walls[hole.wall].name;
-    match hole.chamber {
-        Some(chamber) => format!(
-            "hole `{}` of wall `{wall}`: the gas on both its sides is that of chamber `{}`, so it is no opening between chambers. Give \
-             the gas behind it a [[chamber]] of its own if that was meant",
-            hole.name, scene.chambers[chamber].name
-        ),
-        None => format!(
-            "hole `{}` of wall `{wall}`: no gas lies before one of its sides, so nothing flows through it. Move the hole, or what covers it",
-            hole.name
-        ),
+fn hindered(scene: &Scene, hole: &Hindered) -> String {
+    let name = |wall: usize| &scene.walls[wall].name;
+    let subject = format!("hole `{}` of wall `{}`", hole.name, name(hole.wall));
+    let (open, by, joins) = match hole.why {
+        Hindrance::OneChamber(chamber) => {
+            return format!(
+                "{subject}: the gas on both its sides is that of chamber `{}`, so it is no opening between chambers. Give the gas behind \
+                 it a [[chamber]] of its own if that was meant",
+                scene.chambers[chamber].name
+            );
+        }
+        Hindrance::Covered { open, by, joins } => (open, by, joins),
+    };
+    let encloses = scene.walls[by].gas == GasSide::Inside;
+    let area = |si: f64| significant(si / scene.units.factor(Dimension::Area));
+    let (covered, whose) = if encloses {
+        (format!("lies outside of wall `{}`, which encloses the gas", name(by)), "into the gas".to_string())
+    } else {
+        (format!("is covered by wall `{}`", name(by)), "or that wall".to_string())
+    };
+    if open == 0.0 {
+        return format!(
+            "{subject}: no gas lies before one of its sides: it {covered}. Nothing flows through it: move the hole {whose}"
+        );
     }
+    let counted =
+        if joins { "Plans and control volumes count all of it" } else { "The plan knows of no opening there" };
+    format!(
+        "{subject}: about {} of its {} {} are open: the rest {covered}. {counted}: move the hole {whose} if that was not meant",
+        significant(libm::round(100.0 * open) / 100.0 * hole.area / scene.units.factor(Dimension::Area)),
+        area(hole.area),
+        scene.units.symbol(Dimension::Area),
+    )
+}
+
+/// Vents with a positive opening pressure that are open from the start.
+fn open_at_start(scene: &Scene, (vent, place): (&Vent, &MeasuredVent)) -> Option<String> {
+    let chamber = &scene.chambers[place.chamber];
+    if vent.opening_pressure <= 0.0 || !opens(vent, false, chamber.pressure) {
+        return None;
+    }
+    let question = if vent.external_pressure < GAUGE * chamber.pressure {
+        "Is `external_pressure` gauge? It is absolute"
+    } else {
+        "Its pressure of opening holds nothing back"
+    };
+    Some(format!(
+        "vent `{}`: it is open from the start: chamber `{}` has {}, {} more than outside, and it opens at {} more. {question}",
+        vent.name,
+        chamber.name,
+        pressure(scene, chamber.pressure),
+        pressure(scene, chamber.pressure - vent.external_pressure),
+        pressure(scene, vent.opening_pressure),
+    ))
+}
+
+/// Vents of one chamber that lead to unlike pressures: the first two of each.
+fn unlike_outsides(scene: &Scene, measured: &Measured) -> Vec<String> {
+    let vents: Vec<(&Vent, usize)> =
+        scene.vents.iter().zip(&measured.vents).map(|(vent, place)| (vent, place.chamber)).collect();
+    let first = |chamber: usize| vents.iter().find(|(_, own)| *own == chamber).map(|(vent, _)| *vent);
+    let unlike = |chamber: usize| {
+        let one = first(chamber)?;
+        let differs = |(vent, own): &&(&Vent, usize)| {
+            *own == chamber && (vent.external_pressure - one.external_pressure).abs() > SAME * one.external_pressure
+        };
+        let (other, _) = vents.iter().find(differs)?;
+        Some(format!(
+            "vents `{}` and `{}` of chamber `{}`: outside of one are {}, outside of the other {}: do they lead to unlike places? \
+             `external_pressure` is absolute, and 101325 Pa where it is not given",
+            one.name,
+            other.name,
+            scene.chambers[chamber].name,
+            pressure(scene, one.external_pressure),
+            pressure(scene, other.external_pressure),
+        ))
+    };
+    (0..scene.chambers.len()).filter_map(unlike).collect()
+}
+
+/// Gaps round walls that part chambers or move. `told`: that the narrowest gap between two walls is told otherwise.
+pub fn gaps_beside(scene: &Scene, measured: &Measured, told: bool) -> Vec<String> {
+    let known = measured.smallest_gap.filter(|_| told).map(|gap| gap.walls);
+    let note = |beside: &GapBeside| {
+        let gap = beside.gap;
+        let wall = &scene.walls[beside.wall].name;
+        let flows = match beside.chambers {
+            Some(pair) => {
+                let [a, b] = pair.map(|chamber| &scene.chambers[chamber].name);
+                format!("chambers `{a}` and `{b}` are open to each other beside this wall")
+            }
+            None => "gas flows round the wall as it moves".to_string(),
+        };
+        let length = significant(gap.length / scene.units.factor(Dimension::Length));
+        Some(format!(
+            "wall `{wall}`: a gap of {length} {} lies {}, so {flows}. Let the walls overlap if they were meant to touch",
+            scene.units.symbol(Dimension::Length),
+            between(scene, &gap, scene.units.length())?
+        ))
+    };
+    let gaps = measured.gaps_beside.iter().filter(|beside| Some(beside.gap.walls) != known);
+    gaps.filter_map(note).map(|note| scene.lines.told(note)).collect()
 }
 
 /// The narrowest gap, if it lies between two walls, and few gaps that are meant are as narrow.

@@ -20,7 +20,8 @@ impl Plan {
             self.render_particles(&mut row);
         }
         let reference = format!("{} K", significant(self.temperature_reference));
-        row("final temperature", reference, "mean of all gas, no heat lost");
+        let without = if self.inventory.moves { ", without the work of moving walls" } else { "" };
+        row("final temperature", reference, &format!("mean of all gas, no heat lost{without}"));
         if !self.left_out.is_empty() {
             let lacks = format!("the scene lacks {}", self.left_out.join(", "));
             row("not compiled", format!("{} features", self.left_out.len()), &lacks);

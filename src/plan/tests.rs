@@ -68,7 +68,9 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         walls: vec![],
         open_to_empty: false,
         touching: vec![],
-        no_openings: vec![],
+        hindered: vec![],
+        gaps_beside: vec![],
+        strokes: vec![],
         dry_motions: vec![],
         dry_surfaces: vec![],
     };

@@ -25,7 +25,10 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
     raw.orifice.iter().for_each(|at| add("orifice", &at.value.name, &at.span));
     raw.probe.iter().for_each(|at| add("probe", &at.value.name, &at.span));
     raw.surface.iter().for_each(|at| add("surface", &at.value.name, &at.span));
-    raw.vent.iter().for_each(|at| add("vent", &at.value.name, &at.span));
+    for vent in &raw.vent {
+        add("vent", &vent.value.name, &vent.span);
+        add("vents", &vent.value.name, &vent.span);
+    }
     raw.motion.iter().for_each(|at| add("motion of wall", &at.value.wall, &at.span));
     for wall in &raw.wall {
         let part = |part: &At<_>| line(&part.span);

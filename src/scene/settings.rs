@@ -173,20 +173,41 @@ pub(super) fn collision_number(
             None if COLLISION_NUMBER < least
                 && !matches!(raw.method, Some(Method::None | Method::HalfTurn | Method::ControlVolume)) =>
             {
+                if cv + GAS_CONSTANT > MOST_MOLAR_HEAT && raw_gas.value.gamma.is_none() {
+                    return Err(implausible_heat(gas, cv, raw_gas, units));
+                }
                 let found = format!("a gas for which the default collision number {COLLISION_NUMBER} is too small");
-                let hint = if cv + GAS_CONSTANT > MOST_MOLAR_HEAT && raw_gas.value.gamma.is_none() {
-                    let per_kilogram =
-                        "its heat capacity is more than 20 R: is it per kilogram? Multiply it by the molar mass";
-                    other_system(cv + GAS_CONSTANT, gas.molar_mass, units).unwrap_or_else(|| per_kilogram.into())
-                } else {
-                    "give `collision_number` in `[model]`".to_string()
-                };
-                return Err(Problem::value(&raw_gas.span, found, allowed).hint(&hint));
+                let hint = "give `collision_number` in `[model]`";
+                return Err(Problem::value(&raw_gas.span, found, allowed).hint(hint));
             }
             _ => {}
         }
     }
     Ok(())
+}
+
+/// A heat capacity that no gas has, as a molar one: at its own line.
+fn implausible_heat(gas: &Gas, cv: f64, raw_gas: &At<RawGas>, units: UnitSystem) -> Problem {
+    let raw = &raw_gas.value;
+    let (key, span, si) = match (&raw.cp, &raw.cv) {
+        (Some(at), _) => ("cp", &at.span, cv + GAS_CONSTANT),
+        (_, Some(at)) => ("cv", &at.span, cv),
+        _ => ("heat capacity", &raw_gas.span, cv),
+    };
+    let shown = |si: f64| {
+        format!("{:.4}", si / units.factor(Quantity::MolarHeat)).trim_end_matches('0').trim_end_matches('.').to_string()
+    };
+    let unit = units.symbol(Quantity::MolarHeat);
+    let found = format!("a molar {key} of {} {unit}, more than any gas here has", shown(si));
+    let allowed = format!(
+        "at most {} {unit} (20 R), or a `collision_number` in [model] for the {:.3} internal degrees of freedom of {:?}",
+        shown(MOST_MOLAR_HEAT),
+        2.0 * cv / GAS_CONSTANT - 3.0,
+        gas.name
+    );
+    let per_kilogram = "its heat capacity is more than 20 R: is it per kilogram? Multiply it by the molar mass";
+    let hint = other_system(cv + GAS_CONSTANT, gas.molar_mass, units).unwrap_or_else(|| per_kilogram.into());
+    Problem::value(span, found, allowed).hint(&hint)
 }
 
 pub(super) fn output(raw: &RawOutput) -> Result<OutputRequest, Problem> {

@@ -8,6 +8,8 @@ mod meshes;
 mod mistakes;
 mod plan;
 mod plausible;
+mod vents;
+mod walls;
 
 use std::path::{Path, PathBuf};
 

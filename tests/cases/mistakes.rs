@@ -199,7 +199,7 @@ fn a_solid_that_sticks_out_is_told() {
 }
 
 /// A tank of a metre, and what stands in it.
-fn metre(walls: &str, chambers: &str, more: &str) -> String {
+pub fn metre(walls: &str, chambers: &str, more: &str) -> String {
     format!(
         "end_time = 1e-3\n[[gas]]\nname = \"n2\"\nmolar_mass = 0.028\ngamma = 1.4\n[[gas]]\nname = \"he\"\nmolar_mass = 0.004\n\
          gamma = 1.6667\n[[wall]]\nname = \"tank\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\ngas = \"inside\"\n{walls}\n\
@@ -207,15 +207,15 @@ fn metre(walls: &str, chambers: &str, more: &str) -> String {
     )
 }
 
-fn chamber(name: &str, region: &str, state: &str) -> String {
+pub fn chamber(name: &str, region: &str, state: &str) -> String {
     let region = if region.is_empty() { String::new() } else { format!("region = {{ {region} }}\n") };
     format!("[[chamber]]\nname = \"{name}\"\n{region}{state}\n")
 }
 
-const AIR: &str = "pressure = 1e5\ntemperature = 300\ngas = \"n2\"";
-const LEFT: &str = "box = { min = [0, 0, 0], max = [0.5, 1, 1] }";
+pub const AIR: &str = "pressure = 1e5\ntemperature = 300\ngas = \"n2\"";
+pub const LEFT: &str = "box = { min = [0, 0, 0], max = [0.5, 1, 1] }";
 
-fn model(text: &str) -> Model {
+pub fn model(text: &str) -> Model {
     Model::new(parse(text, "scene.toml", Path::new("")).unwrap()).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 

@@ -9,16 +9,17 @@ mod named;
 mod places;
 mod range;
 mod shapes;
+mod strokes;
 mod systems;
 mod times;
 mod units;
 
-use super::Measured;
 use super::amounts::Contents;
 use super::text::{as_written, significant};
+use super::{Measured, MeasuredWall};
 use crate::scene::{
-    Course, Dimension, GAS_CONSTANT, Gas, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape, SurfaceId, UnitSystem,
-    Vent, VentFlow, Wall, WallHeat,
+    Course, Curve, Dimension, GAS_CONSTANT, Gas, HeatTransfer, JetSpeed, Method, Orifice, Scene, Shape, SurfaceId,
+    UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
 use named::Named;
 use range::{Kind, Range, largest, most, range_of};
@@ -58,10 +59,7 @@ fn of_scene(scene: &Scene) -> Vec<String> {
 /// The same, and by its meshes, where its walls and its gas are, and all its gas at the end.
 pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String> {
     let mut found = of_scene(scene);
-    for (wall, measured) in scene.walls.iter().zip(&measured.walls).filter(|(wall, _)| is_mesh(wall)) {
-        let sides = (0..3).map(|axis| measured.max[axis] - measured.min[axis]);
-        found.extend(extent(scene.units, wall, largest(sides)));
-    }
+    found.extend(of_meshes(scene, &measured.walls));
     let range = range_of(Kind::Pressure);
     if end.pressure > range.most && scene.chambers.iter().all(|chamber| chamber.pressure <= range.most) {
         let all = Named { subject: "all gas with all inflow".into(), key: "mean pressure", units: scene.units };
@@ -69,7 +67,19 @@ pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String>
         found.push(all.beyond(range, end.pressure, question));
     }
     found.extend(places::doubts(scene, measured));
+    found.extend(measured.strokes.iter().filter_map(|stroke| strokes::hardly_moves(scene, stroke)));
     found
+}
+
+/// Meshes that are too large or too small, as their walls were measured; with their lines.
+pub fn by_meshes(scene: &Scene, walls: &[MeasuredWall]) -> Vec<String> {
+    of_meshes(scene, walls).into_iter().map(|doubt| scene.lines.told(doubt)).collect()
+}
+
+fn of_meshes(scene: &Scene, walls: &[MeasuredWall]) -> Vec<String> {
+    let meshes = scene.walls.iter().zip(walls).filter(|(wall, _)| is_mesh(wall));
+    let sides = |own: &MeasuredWall| largest((0..3).map(|axis| own.max[axis] - own.min[axis]));
+    meshes.filter_map(|(wall, own)| extent(scene.units, wall, sides(own))).collect()
 }
 
 /// Below the range degrees Celsius are likely.
@@ -219,6 +229,10 @@ fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
             (!range.holds(most(curve))).then(|| named("discharge").beyond(range, most(curve), question))
         }
         VentFlow::DischargeByPressure(curve) => named("discharge_by_pressure").check(Kind::Discharge, most(curve)),
+        VentFlow::LeakVelocity(curve) if has_swapped_columns(curve) => {
+            let question = ": a point is [pressure above the outside, velocity], are its columns swapped?";
+            Some(named("leak_velocity").beyond(range_of(Kind::Speed), most(curve), question))
+        }
         VentFlow::LeakVelocity(curve) => named("leak_velocity").check(Kind::Speed, most(curve)),
     };
     vec![
@@ -231,6 +245,12 @@ fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
         if vent.opening_pressure > 0.0 { opening.check(Kind::Pressure, vent.opening_pressure) } else { None },
         flow,
     ]
+}
+
+/// A leak velocity that is faster than any, over pressures that are lower than any.
+fn has_swapped_columns(curve: &Curve) -> bool {
+    let pressures = largest(curve.points.iter().map(|point| point[0]));
+    !range_of(Kind::Speed).holds(most(curve)) && pressures > 0.0 && pressures < range_of(Kind::Pressure).least
 }
 
 /// Points of a curve over the pressure above the external one that begin about there.

@@ -39,6 +39,11 @@ pub fn factor_of(unit: &str, dimension: Dimension) -> f64 {
     UNITS.iter().find(|known| known.0 == dimension && known.1 == unit).map_or(1.0, |known| known.2)
 }
 
+/// The names of the list.
+pub fn units_of(dimension: Dimension) -> impl Iterator<Item = &'static str> {
+    UNITS.iter().filter(move |known| known.0 == dimension).map(|known| known.1)
+}
+
 /// How much farther from what is usual than the nearest another unit may lie to be named beside it, in powers of ten: pressures in
 /// hPa and kPa are both common.
 const AS_LIKELY: f64 = 0.4;

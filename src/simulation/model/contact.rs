@@ -1,49 +1,16 @@
-//! Which walls that move and which surfaces meet gas at any time, and which holes join no two chambers.
+//! Which walls that move and which surfaces meet gas at any time.
 
 use glam::DVec3;
 
 use super::facing::parts;
 use super::moving::Moving;
-use super::places::{along, chamber_of};
-use crate::geometry::{FoundHole, Triangle, Vessel};
-use crate::plan::NoOpening;
+use crate::geometry::{Triangle, Vessel};
 use crate::scene::Scene;
 
 /// Of a run: moments at which walls are looked at.
 const MOMENTS: u32 = 8;
 /// How far before a triangle gas is looked for, over its longest edge.
 const BEFORE: f64 = 1e-4;
-
-/// The gas on both sides of a hole: the chamber of each, none where there is no gas.
-pub struct Sides(pub [Option<usize>; 2]);
-
-impl Sides {
-    pub fn of(scene: &Scene, vessel: &Vessel, hole: &FoundHole) -> Sides {
-        // A little beyond either face of the wall.
-        let reach = 0.5 * hole.thickness + 1e-3 * hole.area.sqrt();
-        let side = |sign: f64| chamber_of(scene, vessel, along(hole.center, hole.normal, sign * reach));
-        Sides([side(-1.0), side(1.0)])
-    }
-}
-
-/// Holes with gas of one chamber on both sides, or, where no wall moves, without gas on one.
-pub fn no_openings(scene: &Scene, vessel: &Vessel) -> Vec<NoOpening> {
-    let found = vessel.holes.iter().filter_map(|hole| {
-        let chamber = match Sides::of(scene, vessel, hole).0 {
-            [Some(a), Some(b)] if a == b => Some(a),
-            // A wall that moves may uncover it. Gas space in no chamber is told as such.
-            [None, _] | [_, None] if scene.motions.is_empty() && is_covered(vessel, hole) => None,
-            _ => return None,
-        };
-        Some(NoOpening { name: hole.name.clone(), wall: hole.wall as usize, chamber })
-    });
-    found.collect()
-}
-
-fn is_covered(vessel: &Vessel, hole: &FoundHole) -> bool {
-    let reach = 0.5 * hole.thickness + 1e-3 * hole.area.sqrt();
-    [-1.0, 1.0].iter().any(|sign| !vessel.is_gas(along(hole.center, hole.normal, sign * reach)))
-}
 
 /// The walls that move and have no gas before them at any time.
 pub fn dry_motions(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<usize> {
@@ -70,20 +37,36 @@ pub fn dry_surfaces(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<usiz
 
 /// Whether it is so of the walls at none of some moments of the run.
 fn never(scene: &Scene, vessel: &Vessel, moving: &Moving, is_so: impl Fn(&Vessel) -> bool) -> bool {
-    let later = |moment: u32| scene.end_time * f64::from(moment) / f64::from(MOMENTS);
+    !is_so(vessel) && later(scene, vessel, moving).all(|vessel| !is_so(&vessel))
+}
+
+/// The walls at some moments of the run after its start, up to its end; none where no wall moves.
+pub fn later(scene: &Scene, vessel: &Vessel, moving: &Moving) -> impl Iterator<Item = Vessel> {
     let moments = if moving.is_empty() { 0 } else { MOMENTS };
-    !is_so(vessel) && (1..=moments).all(|moment| !is_so(&moving.vessel_at(vessel, later(moment))))
+    (1..=moments).map(|moment| moving.vessel_at(vessel, scene.end_time * f64::from(moment) / f64::from(MOMENTS)))
 }
 
 /// Whether gas lies before a place of these triangles, and what is behind it is as it should be.
 fn meets_gas(vessel: &Vessel, own: impl Fn(&Triangle) -> bool, behind: impl Fn([f64; 3]) -> bool) -> bool {
-    vessel.triangles.iter().filter(|triangle| own(triangle)).any(|triangle| {
+    lifted(vessel, own).any(|[before, back]| vessel.is_gas(before) && behind(back))
+}
+
+/// Places of the gas just before these triangles, of so many at most that are looked at.
+pub fn places_before(vessel: &Vessel, own: impl Fn(&Triangle) -> bool, most: usize) -> impl Iterator<Item = [f64; 3]> {
+    let all = parts().count() * vessel.triangles.iter().filter(|triangle| own(triangle)).count();
+    let some = lifted(vessel, own).step_by(all.div_ceil(most).max(1));
+    some.map(|[before, _]| before).filter(|&before| vessel.is_gas(before))
+}
+
+/// Places just before and just behind them.
+fn lifted(vessel: &Vessel, own: impl Fn(&Triangle) -> bool) -> impl Iterator<Item = [[f64; 3]; 2]> {
+    vessel.triangles.iter().filter(move |triangle| own(triangle)).flat_map(|triangle| {
         let [a, b, c] = triangle.vertices.map(|vertex| DVec3::from(vessel.vertices[vertex as usize]));
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let lift = BEFORE * longest * (b - a).cross(c - a).normalize_or_zero();
-        parts().any(|(u, v)| {
+        parts().map(move |(u, v)| {
             let place = a + u * (b - a) + v * (c - a);
-            vessel.is_gas((place + lift).to_array()) && behind((place - lift).to_array())
+            [(place + lift).to_array(), (place - lift).to_array()]
         })
     })
 }

@@ -47,7 +47,7 @@ pub enum ModelError {
     #[diagnostic(help("let the side lie in the wall that is to take it along"))]
     SideOfTwo { chamber: String, walls: String },
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
-    #[diagnostic(help("a disc has its centre on the wall, and a face belongs to a box; `chamber` must border on it"))]
+    #[diagnostic(help("a disc has its centre on the wall, and `face` is a part of it; `chamber` must border on it"))]
     VentNowhere { vent: String },
     #[error("vent \"{vent}\": its place borders on {borders}")]
     #[diagnostic(help("name the chamber whose gas it lets out, or leave `chamber` out"))]

@@ -84,11 +84,16 @@ pub fn facing(scene: &Scene, vessel: &Vessel, surface: &Surface) -> Result<Vec<F
 
 /// The middles of the equal parts of a triangle, along two of its edges.
 pub fn parts() -> impl Iterator<Item = (f64, f64)> {
-    let place = |k: u32, third: f64| (f64::from(k) + third) / f64::from(PARTS);
-    (0..PARTS).flat_map(move |i| {
-        (0..PARTS - i).flat_map(move |j| {
+    parts_of(PARTS)
+}
+
+/// The same of so many parts along an edge.
+pub fn parts_of(count: u32) -> impl Iterator<Item = (f64, f64)> {
+    let place = move |k: u32, third: f64| (f64::from(k) + third) / f64::from(count);
+    (0..count).flat_map(move |i| {
+        (0..count - i).flat_map(move |j| {
             let upright = Some((place(i, 1.0 / 3.0), place(j, 1.0 / 3.0)));
-            let turned = (i + j + 2 <= PARTS).then(|| (place(i, 2.0 / 3.0), place(j, 2.0 / 3.0)));
+            let turned = (i + j + 2 <= count).then(|| (place(i, 2.0 / 3.0), place(j, 2.0 / 3.0)));
             upright.into_iter().chain(turned)
         })
     })

@@ -1,11 +1,14 @@
 //! What the plan needs to know of the walls.
 
-use super::contact::{Sides, dry_motions, dry_surfaces, no_openings};
+use super::clearances::gaps_beside;
+use super::contact::{dry_motions, dry_surfaces};
+use super::holes::{Sides, hindered};
 use super::moving::{Moving, extent};
 use super::outlook::{borders, is_open_to_empty};
+use super::strokes::strokes;
 use super::surface_models::SurfaceModels;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
-use crate::plan::{Measured, MeasuredVent, MeasuredWall};
+use crate::plan::{Measured, MeasuredVent, MeasuredWall, doubts_of_meshes};
 use crate::scene::{Opening, Scene};
 
 /// What the plan needs to know of the geometry.
@@ -29,7 +32,9 @@ pub fn measured(
         bounds_min,
         bounds_max,
         touching: borders(scene, vessel, &openings),
-        no_openings: no_openings(scene, vessel),
+        hindered: hindered(scene, vessel, moving),
+        gaps_beside: gaps_beside(scene, vessel, moving),
+        strokes: strokes(scene, vessel),
         dry_motions: dry_motions(scene, vessel, moving),
         dry_surfaces: dry_surfaces(scene, vessel, moving),
         openings,
@@ -45,6 +50,14 @@ pub fn measured(
         modelled_surfaces: surface_models.placed.iter().map(|placed| (placed.surface, placed.chamber)).collect(),
         walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
+}
+
+/// Meshes that are as large or as small as no vessel is: known also of a scene that is refused.
+pub fn mesh_doubts(scene: &Scene) -> Vec<String> {
+    let Ok(vessel) = Vessel::build(&scene.walls) else { return Vec::new() };
+    let walls: Vec<MeasuredWall> =
+        vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(&vessel, index, wall)).collect();
+    doubts_of_meshes(scene, &walls)
 }
 
 pub fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {

@@ -2,14 +2,17 @@
 //! no device.
 
 pub(super) mod build;
+mod clearances;
 mod contact;
 pub(super) mod error;
 pub(super) mod facing;
 pub(super) mod flow_only;
+mod holes;
 pub(super) mod measure;
 pub(super) mod moving;
 pub(super) mod orifices;
 pub(super) mod outlook;
 pub(super) mod patches;
 pub(super) mod places;
+mod strokes;
 pub(super) mod surface_models;

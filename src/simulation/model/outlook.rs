@@ -95,7 +95,7 @@ pub fn is_open_to_empty(scene: &Scene, vessel: &Vessel) -> bool {
 }
 
 /// Points of the surface of a region with the unit normal outwards and the area that each stands for, m2.
-fn surface_of(region: &Region) -> Vec<(DVec3, DVec3, f64)> {
+pub(super) fn surface_of(region: &Region) -> Vec<(DVec3, DVec3, f64)> {
     let count = f64::from(POINTS);
     let place = |k: u32| (f64::from(k) + 0.5) / count;
     let grid = || (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (i, j)));
