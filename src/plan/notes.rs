@@ -133,12 +133,13 @@ fn unlike_outsides(scene: &Scene, measured: &Measured) -> Vec<String> {
         let (other, _) = vents.iter().find(differs)?;
         Some(format!(
             "vents `{}` and `{}` of chamber `{}`: outside of one are {}, outside of the other {}: do they lead to unlike places? \
-             `external_pressure` is absolute, and 101325 Pa where it is not given",
+             `external_pressure` is absolute, and {} where it is not given",
             one.name,
             other.name,
             scene.chambers[chamber].name,
             pressure(scene, one.external_pressure),
             pressure(scene, other.external_pressure),
+            pressure(scene, 101_325.0),
         ))
     };
     (0..scene.chambers.len()).filter_map(unlike).collect()
