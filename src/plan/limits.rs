@@ -210,7 +210,7 @@ pub const LIMITS: &[Limit] = &[
         AtLeast(2.0),
         "pairs collide again and again, and the gas is too viscous",
     ),
-    // Of fewer than six no velocity gradient is known: nu is .45 d c0 at 7, .58 at 4 (docs/method.md).
+    // Of fewer than six no velocity gradient is known. A program of its own found nu .45 d c0 at 7 and .58 at 4.
     limit_of(
         Quantity::CellParticles,
         Some(Method::HalfTurn),

@@ -89,7 +89,7 @@ fn told(model: &Model, options: Options<'_>) -> Vec<Quantity> {
 
 #[test]
 fn starved_cells_are_told_before_a_run_and_in_it() {
-    let planned = |model: &Model| model.plan.warnings.iter().any(|text| text.contains("particles in a cell"));
+    let planned = |model: &Model| model.plan.warnings.iter().any(|text| text.contains("particles in a collision cell"));
     let starved = divided([1.4e4, 1e5], "cell", 0.3);
     assert!(planned(&starved), "{:?}", starved.plan.warnings);
     assert!(told(&starved, Options::default()).contains(&Quantity::CellParticles));
