@@ -243,7 +243,25 @@ fn share_of_translation(translation: f32, spin: f32, a: f32, b: f32, few: bool, 
     return select(before, 1.0 / (1.0 + exp(-turned)), log(unit_interval(draw.y)) < ln);
 }
 
-// Of a particle.
+// What is kept of the particles: their mean velocity beyond that of the first, and the gradient of the velocity, by components, about the middle of
+// their places, in edges of a cell from the first.
+struct Fit {
+    origin: vec3<u32>,
+    middle: vec3<f32>,
+    reference: vec3<f32>,
+    mean: vec3<f32>,
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+}
+
+// What the gradient adds to the mean velocity at a place.
+fn flow_at(fit: Fit, place: vec3<u32>) -> vec3<f32> {
+    let away = edges_between(fit.origin, place) - fit.middle;
+    return vec3<f32>(dot(fit.x, away), dot(fit.y, away), dot(fit.z, away));
+}
+
+// The mass of a particle, over the reference mass.
 fn mass_of(tag: u32) -> f32 {
     return gases[kind_of(tag)].mass;
 }
@@ -305,13 +323,11 @@ fn relax(begin: u32, count: u32, group: u32) {
     let determinant = determinant_of(places, adjoint);
     let third = (places.diagonal.x + places.diagonal.y + places.diagonal.z) / 3.0;
     let fitted = number >= LEAST_FITTED && determinant > LEAST_DETERMINANT * third * third * third;
-    var gradient_x = vec3<f32>(0.0);
-    var gradient_y = vec3<f32>(0.0);
-    var gradient_z = vec3<f32>(0.0);
+    var fit = Fit(origin, middle, reference, mean, vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
     if (fitted) {
-        gradient_x = times(adjoint, flow_x - momentum.x * middle) / determinant;
-        gradient_y = times(adjoint, flow_y - momentum.y * middle) / determinant;
-        gradient_z = times(adjoint, flow_z - momentum.z * middle) / determinant;
+        fit.x = times(adjoint, flow_x - momentum.x * middle) / determinant;
+        fit.y = times(adjoint, flow_y - momentum.y * middle) / determinant;
+        fit.z = times(adjoint, flow_z - momentum.z * middle) / determinant;
     } else {
         atomicAdd(&counters[UNFITTED], number);
     }
@@ -328,9 +344,8 @@ fn relax(begin: u32, count: u32, group: u32) {
         }
         let motion = sorted[s].motion;
         let m = mass_of(place.w);
-        let y = edges_between(origin, place.xyz) - middle;
-        let flow = vec3<f32>(dot(gradient_x, y), dot(gradient_y, y), dot(gradient_z, y));
-        let c = ((motion.xyz - reference) - mean) - flow;
+        let flow = flow_at(fit, place.xyz);
+        let c = ((motion.xyz - fit.reference) - fit.mean) - flow;
         let own = m * dot(c, c);
         twice += own;
         stress = plus_square(stress, m, c);
@@ -381,9 +396,8 @@ fn relax(begin: u32, count: u32, group: u32) {
         }
         let motion = sorted[s].motion;
         let m = mass_of(place.w);
-        let y = edges_between(origin, place.xyz) - middle;
-        let flow = vec3<f32>(dot(gradient_x, y), dot(gradient_y, y), dot(gradient_z, y));
-        let c = ((motion.xyz - reference) - mean) - flow;
+        let flow = flow_at(fit, place.xyz);
+        let c = ((motion.xyz - fit.reference) - fit.mean) - flow;
         let velocity = reference + (mean + (flow + stretch * rotated(c, rotation)));
         var own_spin = motion.w;
         if (has_spin) {

@@ -56,7 +56,7 @@ struct Step {
     flight: u32,
     // Newborns of the step that follows in the interval, where particles are counted for it as they fly (binned.wgsl).
     next_newborns: u32,
-    // Of the tiles of the method `half-turn`, the number of the step modulo 6, and that of the step that follows.
+    // The number of the step modulo 6, which tells where the tiles of the method `half-turn` lie, and that of the step that follows.
     lattice: u32,
     next_lattice: u32,
 }

@@ -136,7 +136,7 @@ pub struct Vented {
 struct SmoothSpan {
     start: f64,
     end: f64,
-    /// Of each source, whether it flows in it.
+    /// Whether each source flows in it.
     flowing: Vec<bool>,
 }
 

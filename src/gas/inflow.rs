@@ -72,7 +72,7 @@ pub struct InflowParticles<'a> {
     pub gases: &'a [Species],
     pub moles_per_particle: f64,
     pub seed: u64,
-    /// Of the first to enter.
+    /// The id of the first to enter.
     pub first_id: u32,
 }
 

@@ -29,8 +29,8 @@ pub const FASTEST_PAIR: f64 = 6.0;
 const FAST_PARTICLE: f64 = 4.04;
 /// Edge of a collision cell of the method `half-turn` in mean spacings of its gas: 14 particles.
 pub const COLLISION_CELL: f64 = 2.41;
-/// And those that gas of thermal speed flies in its steps: by the plan, and at most before a run halves them. At 1 its viscosity is half as
-/// much again.
+/// Mean spacings that gas of thermal speed flies in a step of the method `half-turn`: by the plan, and at most before a run halves the step. At 1 its
+/// viscosity is half as much again.
 const SPACINGS_FLOWN: f64 = 0.6;
 const MOST_SPACINGS_FLOWN: f64 = 0.75;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
@@ -278,8 +278,8 @@ impl Resolution {
             COLLISION_CELL.powi(3)
         );
         because("cell", format!("{} mm", significant(1e3 * cell)), why);
-        let hottest = states.map(|state| state.number_density).into_iter().fold(0.0, f64::max);
-        let densest = MeanState { number_density: hottest, thermal_square: extreme.0 };
+        let most = states.map(|state| state.number_density).into_iter().fold(0.0, f64::max);
+        let densest = MeanState { number_density: most, thermal_square: extreme.0 };
         let (wanted, why) = match request.time_step {
             Some(step) => (step, "asked for, cut to divide the end time".to_string()),
             None => (

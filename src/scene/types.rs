@@ -368,7 +368,7 @@ pub enum Method {
     HardSphere,
     /// Pairs drawn at random within a cell collide; ideal-gas pressure, long steps, many particles.
     Cell,
-    /// The particles of a cell collide all at once, by half a turn of their stress: a third to a fifth of the viscosity of the others.
+    /// The particles of a cell collide all at once, by half a turn about an axis of their stress: a third of the viscosity of `closest-approach`.
     HalfTurn,
     /// Free flight without collisions.
     None,

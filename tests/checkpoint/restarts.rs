@@ -86,10 +86,10 @@ fn a_run_that_switches_goes_on_from_any_step() {
     assert!(case.said.contains(" as a control volume: asked for"), "{}", case.said);
 }
 
-/// The other methods with collisions.
+/// The other methods with collisions; where the tiles of half-turn lie follows from the step.
 #[test]
 fn cells_and_rigid_spheres_go_on_from_any_step() {
-    for (seed, method) in [(5, Method::Cell), (6, Method::HardSphere)] {
+    for (seed, method) in [(5, Method::Cell), (6, Method::HardSphere), (13, Method::HalfTurn)] {
         let mut scene = tank(0.004);
         scene.model.method = Some(method);
         restarts(&scene, seed, [2, 1, 3, 1]);

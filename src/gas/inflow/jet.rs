@@ -33,7 +33,7 @@ pub fn jet_mach(speed: JetSpeed, stagnation: f64, mixture: &Mixture, gases: &[Sp
     })
 }
 
-/// Of a flow at a Mach number, K: h(Ts) + u^2/2 = h(T0) with u^2 = Ma^2 gamma R Ts / M.
+/// The static temperature of a flow at a Mach number, K: h(Ts) + u^2/2 = h(T0) with u^2 = Ma^2 gamma R Ts / M.
 fn temperature_at_mach(stagnation: f64, mach: f64, mixture: &Mixture, gases: &[Species]) -> f64 {
     if thermo::is_constant(mixture, gases) {
         let gamma = thermo::heat_capacity_ratio(mixture, gases, stagnation);
