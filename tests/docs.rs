@@ -138,8 +138,8 @@ fn documents_name_only_what_is_there() {
 #[test]
 fn what_is_not_there_is_found() {
     let text = "# A Heading: one\n\
-        [good](README.md) [good](docs/scenes.md#units) [good](#a-heading-one) [web](https://example.org/none)\n\
-        [bad](docs/none.md) [bad](docs/scenes.md#none) [bad](#none) ![bad](docs/figures/none.svg)\n\
+        [good](README.md) [good](docs/reference/scenes.md#units) [good](#a-heading-one) [web](https://example.org/none)\n\
+        [bad](docs/none.md) [bad](docs/reference/scenes.md#none) [bad](#none) ![bad](docs/figures/none.svg)\n\
         `src/lib.rs`, `./scripts/run.sh scenes/tank.toml --particles 20000`, `shaders/*.wgsl`, `settle.wgsl`,\n\
         `results/tank/none.csv`, `a / b`, `src/none/`, `none.wgsl`, `shaders/none*.wgsl`\n\
         ```sh\ncorpuscle check scenes/none.toml\n```\n";
@@ -149,7 +149,7 @@ fn what_is_not_there_is_found() {
         "none.wgsl",
         "shaders/none*.wgsl",
         "docs/none.md",
-        "docs/scenes.md#none",
+        "docs/reference/scenes.md#none",
         "#none",
         "docs/figures/none.svg",
     ];

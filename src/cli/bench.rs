@@ -32,7 +32,7 @@ pub fn bench(raw: BenchArguments) -> Result<(), CliError> {
     let adapter = device.adapter();
     if adapter.is_cpu() && adapter.has_old_mesa() {
         let driver = &adapter.info.driver_info;
-        say(&format!("driver: {driver}; one from 25 on is faster (docs/performance.md, \"Which Mesa\")\n"))?;
+        say(&format!("driver: {driver}; one from 25 on is faster (docs/reference/performance.md, \"Which Mesa\")\n"))?;
     }
     let (mut all, mut failed) = (Vec::new(), Vec::new());
     for scene in scenes {

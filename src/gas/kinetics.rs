@@ -116,7 +116,7 @@ pub fn viscosity_of_crowds(occupancy: f64) -> f64 {
 pub const ACROSS_CELLS: f64 = 16.0 / (45.0 * PI);
 
 /// How many times as viscous as the gas itself collisions within cells make it; `edge`: of a cell, over the mean free path. A hole acts on
-/// such gas as one of so many times its Knudsen number: how far that holds, `docs/limits.md`, `cell-edge`.
+/// such gas as one of so many times its Knudsen number: how far that holds, `docs/reference/limits.md`, `cell-edge`.
 pub fn viscosity_of_cells(edge: f64) -> f64 {
     1.0 + ACROSS_CELLS * edge * edge
 }

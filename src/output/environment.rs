@@ -33,7 +33,7 @@ pub struct AdapterRecord {
     pub driver: String,
     pub driver_info: String,
     pub device_type: String,
-    /// That of the kernels (`docs/performance.md`, "What a software device does"); empty in the record of an older version.
+    /// That of the kernels (`docs/reference/performance.md`, "What a software device does"); empty in the record of an older version.
     #[serde(default)]
     pub form: String,
     pub limits: BTreeMap<String, u64>,

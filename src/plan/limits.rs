@@ -1,5 +1,5 @@
 //! The limits within which a run of particles is right: one table. The plan and the guards of a run (`simulation/guards.rs`)
-//! warn beyond them, and `corpuscle stability` measures where they lie ([docs/limits.md](../../docs/limits.md)).
+//! warn beyond them, and `corpuscle stability` measures where they lie ([docs/reference/limits.md](../../docs/reference/limits.md)).
 //!
 //! A limit is of a quantity and of one method, or of all that have no limit of their own. What is not in the table was
 //! not found to break anything.

@@ -2,7 +2,7 @@
 //!
 //! Two types stand for the two stages: the raw types are the file as written (serde reads them,
 //! schemars describes them), [`Scene`] is what it means, every default and name resolved. On the way
-//! every number is checked and converted, once. docs/scenes.md describes the format.
+//! every number is checked and converted, once. docs/reference/scenes.md describes the format.
 
 mod entries;
 mod errors;

@@ -3,7 +3,7 @@
 //! Serde reads these types and schemars describes them, so that the file format, its errors and its
 //! JSON schema cannot drift apart. Unknown keys are refused everywhere. Doc comments here are the
 //! schema's descriptions: they are written for the author of a scene. Units are those of the file
-//! (`units`); docs/scenes.md has the table.
+//! (`units`); docs/reference/scenes.md has the table.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

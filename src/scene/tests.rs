@@ -331,7 +331,7 @@ fn what_is_left_out_gets_its_default() {
 
 #[test]
 fn the_smallest_scene_of_the_reference_is_a_scene() {
-    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenes.md")).unwrap();
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/scenes.md")).unwrap();
     let example = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     assert_eq!(parsed(example).walls.len(), 1);
     // It is the smallest: without its wall it is none.

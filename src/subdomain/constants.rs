@@ -54,7 +54,7 @@ pub struct Features {
 }
 
 /// The most particle-steps of a run on a software device with [`RUNTIME_CONSTANTS`]: up to here they save more in compilation than they cost in steps
-/// (`docs/performance.md`).
+/// (`docs/reference/performance.md`).
 pub const MOST_WITH_RUNTIME_CONSTANTS: f64 = 1e8;
 
 /// Constants that are numbers of a scene, which kernels can read from a uniform. (What branches ask of constants alone is compiled in.)

@@ -143,7 +143,7 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
 
 /// The measured table of the specification, section 2: the mean error of the density of free flight and of closest approach at 40,000
 /// particles is .0589 and .0301, of closest approach at 10,000 .0420, each +-5 %; `cell` is as good as closest approach. Its .0533 of
-/// rigid spheres is at an occupancy of .1 of the gas on the left (docs/accuracy.md, `sod-table`); the chart's is of the mean gas, where
+/// rigid spheres is at an occupancy of .1 of the gas on the left (docs/reference/accuracy.md, `sod-table`); the chart's is of the mean gas, where
 /// `corpuscle verify sod-table` has .078, worse than free flight.
 #[test]
 #[ignore = "minutes: cargo test --release --test cli pareto:: -- --ignored"]

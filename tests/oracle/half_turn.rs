@@ -1,4 +1,4 @@
-//! Collision cells and the half-turn of their particles, in f64 (docs/method.md).
+//! Collision cells and the half-turn of their particles, in f64 (docs/explanation/method.md).
 
 use crate::oracle::vector::{Vector, dot, minus, norm};
 

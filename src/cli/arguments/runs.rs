@@ -25,7 +25,7 @@ pub struct SceneArguments {
     pub seed: Option<u64>,
 }
 
-/// What a run shall be worth, or may cost; docs/planner.md.
+/// What a run shall be worth, or may cost; docs/explanation/planner.md.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "What the plan shall choose by")]
 pub struct WishArguments {

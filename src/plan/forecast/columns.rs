@@ -7,7 +7,7 @@ use crate::scene::Method;
 /// What a plan is worth, and what it costs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Forecast {
-    /// Relative, of the worst column: see `docs/planner.md`.
+    /// Relative, of the worst column: see `docs/explanation/planner.md`.
     pub error: f64,
     /// s of device time, at so many particle-steps a second.
     pub seconds: f64,

@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(b - a, 400.0);
     }
 
-    /// What each particle costs, as `docs/performance.md` has it.
+    /// What each particle costs, as `docs/reference/performance.md` has it.
     #[test]
     fn the_floor_is_that_of_the_documents() {
         let work =

@@ -5,7 +5,7 @@
 pub enum Effort {
     /// Two values of each axis, known badly: to see that it works.
     Quick,
-    /// What `docs/limits.md` is made with.
+    /// What `docs/reference/limits.md` is made with.
     Usual,
     /// More values, more particles.
     Full,

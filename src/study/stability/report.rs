@@ -162,7 +162,7 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
         let _ = writeln!(page, "{}", guard(limit));
     }
     page +=
-        "\nThat of the time step depends on the rounds: [docs/method.md](method.md#what-the-plan-decides-and-why).\n";
+        "\nThat of the time step depends on the rounds: [method](../explanation/method.md#what-the-plan-decides-and-why).\n";
     for (axis, points) in maps {
         let (values, rows) = rows(axis, points);
         let _ = writeln!(page, "\n## {}\n\n{}; {}.\n", axis.name, capital(axis.what), axis.runs);
@@ -241,7 +241,7 @@ mod tests {
     /// The page is made once in a while; its table of guards is that of today.
     #[test]
     fn the_guards_of_the_page_are_those_of_the_table() {
-        let page = include_str!("../../../docs/limits.md");
+        let page = include_str!("../../../docs/reference/limits.md");
         let table = page.split("\n\n").find(|part| part.starts_with("| quantity")).unwrap();
         let expected: Vec<String> = LIMITS.iter().map(guard).collect();
         assert_eq!(table.lines().skip(2).collect::<Vec<_>>(), expected);

@@ -1,4 +1,4 @@
-//! The method `half-turn` against the law, and against what a program of its own found for it (docs/method.md).
+//! The method `half-turn` against the law, and against what a program of its own found for it (docs/explanation/method.md).
 
 use crate::gpu::Device;
 use crate::plan::COLLISION_CELL;

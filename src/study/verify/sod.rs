@@ -42,7 +42,7 @@ const LIMITS: [Limits; 3] = [
     // The defaults of the plan.
     (Method::ClosestApproach, None, [0.024, 1.05 * 0.045]),
     (Method::Cell, Some(0.1), [0.025, 1.05 * 0.046]),
-    // Of single runs .0131 and .0255, of which the noise is more than half (docs/method.md).
+    // Of single runs .0131 and .0255, of which the noise is more than half (docs/explanation/method.md).
     (Method::HalfTurn, None, [0.0155, 0.031]),
 ];
 
