@@ -2,7 +2,7 @@
 //! binds: on_demand_dispatches as dispatches
 //! phase: choose lost
 // Each particle picks its earliest possible collision: at the closest approach, or, of rigid spheres, where they touch
-// or at once if they overlap and approach (specification, section 2).
+// or at once if they overlap and approach (docs/explanation/method.md, "Collisions").
 //
 // Reads `sorted`, `flights` and the lists of neighbours behind them; writes `choices` (partner's index or NOBODY, time).
 // One thread per entry of `rechoose`: only a particle that may collide can choose anybody, and later only one that

@@ -3,7 +3,7 @@
 //! phase: settle
 // Settle, part 2: the collisions of this round.
 //
-// Closest-approach collision (specification, section 2): the relative velocity is turned by chi with
+// Closest-approach collision (docs/explanation/method.md, "Collisions"): the relative velocity is turned by chi with
 // cos(chi/2) = b/sigma, perpendicular to the miss vector, so that the virial r . g' is zero. Rigid spheres are thrown
 // back along the line of their centres.
 //

@@ -1,4 +1,4 @@
-// The collision diameter, which follows the density where gas is dense (specification, section 2): of a pair the smaller
+// The collision diameter, which follows the density where gas is dense (method.md, "Collisions"): of a pair the smaller
 // of its two. What is left of a particle's cross-section there is in the upper half of its flight's `collisions`.
 
 // The largest collision diameter, m.

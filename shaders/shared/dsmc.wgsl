@@ -1,6 +1,6 @@
 //! uses: step.wgsl particle.wgsl newborn.wgsl lists.wgsl turns.wgsl spin.wgsl
 // The collisions of the method `cell` in one part of a cell (direct simulation Monte Carlo without a time
-// counter, specification, section 2).
+// counter, docs/explanation/method.md, "Collisions").
 //
 // Of the N particles of a part of volume V, floor(N (N-1) / 2  pi sigma^2 g_max dt / V + U) candidate pairs are
 // drawn; each collides with the probability g / g_max and goes off in a random direction. g_max = 2 max |v - u|, u

@@ -1,4 +1,4 @@
-// Gases with a heat capacity that depends on the temperature (specification, section 3 "cp(T)"): at an exchange of the
+// Gases with a heat capacity that depends on the temperature (method.md, "Heat capacities"): at an exchange of the
 // energy E a mode is sampled with weight h_K x^K / Gamma(nu0+K+2), x = E / k T_ref, and its beta is nu0 + K.
 
 // Whether a gas has more than one mode. Else not a line more is compiled than constant heat capacities need.

@@ -1,7 +1,7 @@
 //! uses: step.wgsl grid.wgsl local.wgsl particle.wgsl cap.wgsl nearness.wgsl turns.wgsl neighbour_list.wgsl
 // The search for the particles near enough to collide with a particle in this step, whatever the rounds do to
 // their velocities: mid-step points nearer than `near2` says, in the longest steps the cell edge (which the plan makes at
-// least sqrt(sigma^2 + (g_max dt/2)^2), specification, section 2); by up to two units of packing more. Cells that lie
+// least sqrt(sigma^2 + (g_max dt/2)^2), method.md, "Collisions"); by up to two units of packing more. Cells that lie
 // farther away are passed over.
 //
 // Reads `midpoints`, `cells`, `cell_start`, where the diameter is capped the flights in `neighbours`; writes lists in `neighbours`.

@@ -1,6 +1,6 @@
 //! uses: particle.wgsl gas.wgsl philox.wgsl modes.wgsl
 // What a collision does to the two particles beyond turning them: spin exchange (Larsen-Borgnakke,
-// specification, section 3), i before j, i the lower id; new velocities about the common centre of mass; and what
+// method.md, "Spin exchange"), i before j, i the lower id; new velocities about the common centre of mass; and what
 // rounding does to the pair's energy goes into spin.
 
 override SPIN: bool = true;

@@ -57,8 +57,8 @@ fn normals(a: u32, b: u32) -> vec2<f32> {
     return sqrt(-2.0 * log(unit_interval(a))) * vec2<f32>(cos(angle), sin(angle));
 }
 
-// The velocity of a particle that leaves with the temperature of the wall (specification, section 4 "Rigid
-// wall"): v_n = sqrt(-2 kT/m ln U) along the normal, normal distributions across it; `thermal` is kT/m.
+// The velocity of a particle that leaves with the temperature of the wall (docs/explanation/method.md,
+// "Walls"): v_n = sqrt(-2 kT/m ln U) along the normal, normal distributions across it; `thermal` is kT/m.
 fn emitted(normal: vec3<f32>, thermal: f32, tag: u32, hit: u32, word: u32) -> vec3<f32> {
     let draw = wall_draw(tag, hit, 1u);
     // Three normal numbers less their part along the normal are two across it, whatever the axes.

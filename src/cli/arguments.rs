@@ -8,8 +8,7 @@ use std::ffi::OsString;
 
 use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
-use runs::EXIT_CODES;
-
+pub use runs::EXIT_CODES;
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,
@@ -141,6 +140,9 @@ pub struct CompletionsArguments {
 pub struct ManArguments {
     /// The page of this verb instead of the program's
     pub verb: Option<String>,
+    /// Print the reference of all verbs, as Markdown
+    #[arg(long, conflicts_with = "verb")]
+    pub markdown: bool,
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
-//! `corpuscle man`: from the same definition as the help.
+//! `corpuscle man`: the man pages, and the reference page of the documents, from the same definition as the help.
 
 use clap::CommandFactory;
 
 use super::CliError;
 use super::arguments::{Arguments, ManArguments};
+use super::reference;
 use super::terminal::say;
 
 /// In the foot of every page.
@@ -13,6 +14,9 @@ pub fn man(raw: ManArguments) -> Result<(), CliError> {
     let mut command = Arguments::command();
     // Gives the verbs their full names and the options that all share.
     command.build();
+    if raw.markdown {
+        return say(&reference::page(&command));
+    }
     let page = match raw.verb {
         None => command,
         Some(asked) => match command.find_subcommand(&asked) {

@@ -14,6 +14,7 @@ mod error;
 mod man;
 mod pareto;
 mod plan;
+mod reference;
 mod refine;
 mod resume;
 mod run;

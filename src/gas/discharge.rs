@@ -1,5 +1,5 @@
 //! Flow through a resolved hole between two chambers, from free flight over creeping flow to the continuum
-//! (specification, section 4 "Resolved hole").
+//! (docs/explanation/method.md, "Openings").
 //!
 //! Coefficients are over the isentropic flow of the upstream gas at the pressure ratio Q down/up (choked below the critical
 //! one). Between free flight and the continuum,
@@ -23,13 +23,13 @@
 //! the rest of F as a bulk flow: the upstream mixture with its enthalpy. k is what is left of effusion beside diffusion through the
 //! hole, 4 D / (pi R) with D = 1.2 nu, and the share of effusion that the table into vacuum has, within .1.
 //!
-//! The length of Kn is the hole's radius. The specification does not say. With the radius this solver finds
+//! The length of Kn is the hole's radius. The prototype does not say. With the radius this solver finds
 //! Cd .77 at Kn .1 (`tests/verification/orifice.rs`) against the table's .78; with the diameter the table would
 //! ask for .78 at lambda = .2 radii, where kinetic theory has 1.2 times the effusion, Cd .70.
 //!
 //! The figures for Q = .8 are over the isentropic flow at that Q: over the choked one .18 at Kn 1 would be 1.54 times free flight, where
 //! free flight and Sampson's creeping flow (.334/Kn of it) together are 1.33 times it. `corpuscle verify small-difference --full` finds .178
-//! there, the specification's .18, but .399 at Kn .1 with 120,000 particles, where the specification has .29, and .389 with the method `cell`.
+//! there, the prototype's .18, but .399 at Kn .1 with 120,000 particles, where the prototype has .29, and .389 with the method `cell`.
 //! With 8000 it finds .293 +- .016: spheres that fill a third of the space are more viscous than their Kn says
 //! ([`kinetics::viscosity_of_crowds`]).
 //!
@@ -47,15 +47,15 @@ use std::sync::LazyLock;
 use super::{Species, kinetics, thermo};
 use crate::scene::{GAS_CONSTANT, Mixture};
 
-/// Discharge coefficient of a thin orifice into vacuum in the continuum (specification, section 4, from memory of the literature).
+/// Discharge coefficient of a thin orifice into vacuum in the continuum (method.md, "Openings").
 pub const CONTINUUM_COEFFICIENT: f64 = 0.84;
 /// By small differences of pressure: pi / (pi + 2), the contraction of a free jet (Kirchhoff 1869).
 const INCOMPRESSIBLE_COEFFICIENT: f64 = 0.61;
-/// Cd of free flight through a hole, and of a thin orifice in the continuum, over choked isentropic flow (specification,
-/// section 4).
+/// Cd of free flight through a hole, and of a thin orifice in the continuum, over choked isentropic flow (method.md,
+/// "Openings").
 pub const COEFFICIENT_LIMITS: [f64; 2] = [0.583, CONTINUUM_COEFFICIENT];
 /// (Kn, Cd) into vacuum, over choked flow.
-/// The specification, whose figures are good to .02, has none between .3 and 10: those at 3 and 1 are [`published`], which `corpuscle
+/// The prototype, whose figures are good to .02, has none between .3 and 10: those at 3 and 1 are [`published`], which `corpuscle
 /// verify orifice --full` meets within its noise.
 const VACUUM: [[f64; 2]; 6] = [[10.0, 0.60], [3.0, 0.6025], [1.0, 0.6385], [0.3, 0.71], [0.1, 0.78], [0.05, 0.83]];
 /// From this pressure ratio on a difference is small.
@@ -69,7 +69,7 @@ const HALF_EFFUSION: f64 = 1.0 / 3.0;
 
 /// Flow of a monatomic gas through a thin circular orifice into vacuum over that of free flight, against the rarefaction
 /// parameter `sqrt(pi) / (2 Kn)`: direct simulations by Sharipov (J. Fluid Mech. 518, 2004; Varoutis, Valougeorgis and Sharipov, J.
-/// Vac. Sci. Technol. A 27, 2009, length 0), from memory, as the specification's .84 is.
+/// Vac. Sci. Technol. A 27, 2009, length 0), from memory, as the prototype's .84 is.
 const ORIFICE: [(f64, f64); 9] = [
     (0.1, 1.014),
     (0.5, 1.068),
@@ -86,7 +86,7 @@ const MEASURED_GAMMA: f64 = 1.4;
 /// come to rest instead of ringing about equal pressure also where no particles make the flow creep.
 const CHORD: f64 = 1e-4;
 
-/// The specification's figure for this Knudsen number, if it is one of its four.
+/// The prototype's figure for this Knudsen number, if it is one of its four.
 pub fn specified(knudsen: f64) -> Option<f64> {
     let of_table = VACUUM.iter().find(|[kn, _]| *kn == knudsen && !BETWEEN.contains(kn))?;
     Some(of_table[1])
@@ -111,7 +111,7 @@ pub fn continuum_by_excess(behind: f64) -> Vec<[f64; 2]> {
     RATIOS.iter().map(|&ratio| [behind * (1.0 / ratio - 1.0), continuum_coefficient(ratio)]).collect()
 }
 
-/// The Knudsen numbers in the table that the specification does not have.
+/// The Knudsen numbers in the table that the prototype does not have.
 pub const BETWEEN: [f64; 2] = [1.0, 3.0];
 
 /// Discharge coefficient of a gas of gamma 1.4 into vacuum by published simulations: its flow rises from free flight to the continuum as

@@ -1,4 +1,4 @@
-//! Exact injection through orifices (specification, section 4 "Orifice").
+//! Exact injection through orifices (docs/explanation/method.md, "Inflow").
 //!
 //! **When.** Particle n of a gas enters when the moles of it that have flowed through all orifices reach (n + 1/2) nu, so the
 //! injected mass is within half a particle of the curves' integral at every time, per gas. **Where.** Of the orifices that have

@@ -1,7 +1,7 @@
 //! The gas at rest at the start of a run.
 //!
 //! Positions are uniform in each chamber (rejection from its bounding box); velocities Maxwell, spin energy
-//! Gamma(zeta/2) kT (specification, section 1) or as its modes have it ([`Species`]). Then each chamber is made exact: its total momentum is
+//! Gamma(zeta/2) kT (method.md, "The gas") or as its modes have it ([`Species`]). Then each chamber is made exact: its total momentum is
 //! shifted to zero and its translational energy scaled to 3/2 N kT by one factor for all its gases (several
 //! factors would bring the momentum back), and the spin energy of each gas to its mean. A chamber with a
 //! single particle keeps its momentum: it could not have the energy otherwise.

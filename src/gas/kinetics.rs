@@ -1,5 +1,5 @@
-//! Kinetic theory of the modelled gas: rates, lengths and the spin exchange (specification, notation and
-//! sections 1 to 3).
+//! Kinetic theory of the modelled gas: rates, lengths and the spin exchange (docs/explanation/method.md, "The gas",
+//! "Collisions", "Spin exchange").
 //!
 //! Works per molecule, per particle or per mole alike: only kT/m enters, passed as `thermal_square`
 //! = kT/m = R T / M, m2/s2. Number densities are those of the particles, 1/m3.
@@ -50,7 +50,7 @@ pub fn occupancy(number_density: f64, diameter: f64) -> f64 {
 }
 
 /// Pressure of rigid spheres over n k T at an occupancy f: (1 + f + f^2 - f^3) / (1 - f)^3 (Carnahan and Starling
-/// 1969; specification, section 2).
+/// 1969; docs/explanation/method.md, "Collisions").
 pub fn rigid_compressibility(occupancy: f64) -> f64 {
     let f = occupancy;
     (1.0 + f + f * f - f * f * f) / ((1.0 - f) * (1.0 - f) * (1.0 - f))
@@ -80,7 +80,7 @@ pub fn capped_diameter(diameter: f64, cap: Option<f64>, number_density: f64) -> 
 }
 
 /// The mean free path that belongs to the measured viscosity of closest-approach, in units of the mean
-/// spacing d (specification, section 2): .83, .79, .69, .66 at f = .1, .12, .2, .4. Below f = .1 the
+/// spacing d (docs/explanation/method.md, "Collisions"): .83, .79, .69, .66 at f = .1, .12, .2, .4. Below f = .1 the
 /// kinetic lambda/d scaled to meet the table; constant above .4.
 pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     const TABLE: [[f64; 2]; 4] = [[0.1, 0.83], [0.12, 0.79], [0.2, 0.69], [0.4, 0.66]];
@@ -135,8 +135,8 @@ pub fn least_collision_number(spin_dof: f64) -> f64 {
 }
 
 /// The probability P that a particle takes part in the spin exchange of a collision, for a collision
-/// number Z: P = (1 - sqrt(1 - 2 a P0)) / a, a = zeta / (zeta + 4), P0 = (1 + zeta/4) / Z (specification,
-/// section 3). Zero for zeta = 0; `None` where Z is less than [`least_collision_number`].
+/// number Z: P = (1 - sqrt(1 - 2 a P0)) / a, a = zeta / (zeta + 4), P0 = (1 + zeta/4) / Z (docs/explanation/method.md,
+/// "Spin exchange"). Zero for zeta = 0; `None` where Z is less than [`least_collision_number`].
 pub fn exchange_probability(spin_dof: f64, collision_number: f64) -> Option<f64> {
     if spin_dof <= 0.0 {
         return Some(0.0);
@@ -171,7 +171,7 @@ mod tests {
         assert!(close(path, 66e-9, 0.03), "{path}");
     }
 
-    /// The table of the specification, section 2.
+    /// The table of docs/explanation/method.md, "Collisions".
     #[test]
     fn rigid_spheres_press_harder() {
         for (f, expected) in [(0.01, 1.041), (0.03, 1.130), (0.1, 1.521), (0.2, 2.406), (0.3, 3.974)] {
@@ -201,7 +201,7 @@ mod tests {
     }
 
     /// At the usual occupancy the kinetic mean free path counts; denser gas is more viscous than by that: at a third of the space .55 d c0
-    /// (specification, section 2) where the kinetic path has .24.
+    /// (docs/explanation/method.md, "Collisions") where the kinetic path has .24.
     #[test]
     fn crowds_are_more_viscous() {
         assert_eq!([0.0, 0.05, 0.12].map(viscosity_of_crowds), [1.0; 3]);

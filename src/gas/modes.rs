@@ -1,5 +1,5 @@
 //! From a curve cp(T) to a partition function: the weights h_K >= 0 of [`Modes`] by non-negative least squares
-//! (specification, section 3 "cp(T)").
+//! (docs/explanation/method.md, "Heat capacities").
 //!
 //! With u = (nu0 + L) R T the internal energy, L = d ln h / d ln T and cv = (nu0 + L + dL/dlnT) R. The target h of a
 //! curve follows from L by integration; sums S_j = sum_K K^j h_K T^K over the target are S_0 = 1, S_1 = L, S_2 = L^2 +

@@ -1,4 +1,4 @@
-//! The one table of random draws (specification, section 9): no two draws of a run share a key.
+//! The one table of random draws (docs/explanation/method.md, "Equal bits"): no two draws of a run share a key.
 //!
 //! Every draw is [`philox4x32_10`](super::philox4x32_10) of a counter under the key [`key`]`(seed, purpose)`
 //! `= [seed bits 0..32, seed bits 32..56 << 8 | purpose]`. Counters by purpose:

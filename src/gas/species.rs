@@ -1,8 +1,8 @@
 //! A gas as it is modelled: its mass and its internal (spin) energy.
 //!
 //! A constant heat capacity is that of zeta = 2 cv/R - 3 internal degrees of freedom. One that depends on the
-//! temperature is that of a partition function q = T^nu0 sum_K h_K T^K, h_K >= 0 ([`Modes`]; specification,
-//! section 3 "cp(T)"): a gas whose internal energy e has the density of states g(e) ~ sum_K h_K e^(nu0+K-1) /
+//! temperature is that of a partition function q = T^nu0 sum_K h_K T^K, h_K >= 0 ([`Modes`]; method.md,
+//! "Heat capacities"): a gas whose internal energy e has the density of states g(e) ~ sum_K h_K e^(nu0+K-1) /
 //! Gamma(nu0+K), hence e/kT that of Gamma(nu0+K) where K is sampled in proportion to h_K T^K. Energies count from
 //! 0 K in either case.
 //!

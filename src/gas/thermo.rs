@@ -1,4 +1,4 @@
-//! Molar thermodynamics of mixtures (specification, section 1).
+//! Molar thermodynamics of mixtures (docs/explanation/method.md, "The gas").
 //!
 //! Energies count from 0 K: U = sum n u(T), H = U + n R T, with the u of [`Species`].
 

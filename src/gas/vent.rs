@@ -1,4 +1,4 @@
-//! Flow out through a vent or a leaking wall (specification, section 4 "Modelled vent, porosity, leak").
+//! Flow out through a vent or a leaking wall (docs/explanation/method.md, "Vents and leaks").
 //!
 //! Wang and Nefske: G = C23 p / sqrt(R T / M) sqrt(2 gamma/(gamma-1) (Q^(2/gamma) - Q^((gamma+1)/gamma))),
 //! Q = max(pe/p, critical). A fabric: G = rho v(p - pe). What leaves takes the enthalpy of the gas inside with it.
@@ -9,7 +9,7 @@ use super::discharge::isentropic;
 use crate::scene::{GAS_CONSTANT, Vent, VentFlow};
 
 /// Beyond this share of p / sqrt(R T / M) a flux can no longer be modelled by a probability in proportion to the
-/// normal speed without clipping it (specification, section 4).
+/// normal speed without clipping it (docs/explanation/method.md, "Vents and leaks").
 pub const UNCLIPPED: f64 = 0.125;
 
 /// A uniform gas.

@@ -1,4 +1,4 @@
-//! Heat between a gas and a wall that keeps its temperature (specification, section 4 "Rigid wall").
+//! Heat between a gas and a wall that keeps its temperature (docs/explanation/method.md, "Walls").
 //!
 //! Per gas c cbar/4 moles of concentration c hit a square metre in a second and bring (2 + zeta/2) R T each; a share
 //! alpha of them leaves with (2 + zeta/2) R T_w. So alpha = 1 is the coefficient

@@ -1,5 +1,5 @@
 //! The gas of each cell of the grid: its volume and, where walls part it, its parts. The collision rate of the method
-//! `cell` is a number of pairs over a volume (specification, section 2), so what is left of a cell by the walls counts,
+//! `cell` is a number of pairs over a volume (method.md, "Collisions"), so what is left of a cell by the walls counts,
 //! and gas on the two sides of a plate are two parts.
 //!
 //! Volumes are those of [`block_volumes`](super::block_volumes) for blocks of one cell, good to about 1e-3 of a cell.

@@ -1,4 +1,4 @@
-//! The one global cell grid and the fixed-point positions that live on it (specification, section 9).
+//! The one global cell grid and the fixed-point positions that live on it (docs/explanation/method.md, "Equal bits").
 //!
 //! A position is three u32, in quanta of `cell / 2^cell_bits` from `origin`, the same on every axis.
 //! The cell of a position is `position >> cell_bits`: integer arithmetic, equal on every device.

@@ -3,7 +3,7 @@
 //! - particles: initial + injected = inside + outside + vented, with none outside the vessel;
 //! - mass: start + injected = end + vented;
 //! - energy: U0 + integral of h dm in + work of moving walls = U + integral of h dm out + heat to the walls
-//!   (specification, section 4).
+//!   (docs/explanation/method.md, "Inflow").
 //!
 //! - momentum, where the scene names surfaces and so what the walls received is tallied: start + injected =
 //!   end + to the walls, within a share of M sqrt(2 U / M), the momentum of all gas flying one way at its
@@ -79,7 +79,7 @@ pub struct CollisionCells {
 /// What an audit lets pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AuditLimits {
-    /// Relative, of mass and of energy (specification, section 8: 1e-4).
+    /// Relative, of mass and of energy (docs/reference/accuracy.md: 1e-4).
     pub mass_error: f64,
     pub energy_error: f64,
     /// Relative to the momentum of all gas flying one way.
@@ -87,7 +87,7 @@ pub struct AuditLimits {
     /// m.
     pub wall_overshoot: f64,
     pub truncated_flights: u64,
-    /// Above it a warning (specification, section 2: 3 %).
+    /// Above it a warning (docs/explanation/method.md, "Collisions": 3 %).
     pub lost_collision_fraction: f64,
     /// Above it a warning.
     pub clipped_fraction: f64,

@@ -1,6 +1,6 @@
 //! The record of what a run ran on: `environment.json`.
 //!
-//! Same bits mean the same adapter model and driver (specification, section 9): this file says which they were.
+//! Same bits mean the same adapter model and driver (method.md, "Equal bits"): this file says which they were.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

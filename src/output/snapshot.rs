@@ -2,7 +2,7 @@
 //! `snapshots/particles.pvd`, and the walls once as `snapshots/walls.vtp`.
 //!
 //! Each particle is a vertex cell, so that thresholds and selections work on single particles. Positions
-//! are f64 because fixed-point positions hold 31 bits (specification, section 9); what is only looked at is f32.
+//! are f64 because fixed-point positions hold 31 bits (method.md, "Equal bits"); what is only looked at is f32.
 
 use std::fs;
 use std::path::{Path, PathBuf};

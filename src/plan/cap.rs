@@ -1,4 +1,4 @@
-//! What holds the collision diameter down where gas is denser than in the mean (specification, section 2).
+//! What holds the collision diameter down where gas is denser than in the mean (method.md, "Collisions").
 
 use super::limits::{Quantity, limit};
 use super::text::significant;
@@ -6,7 +6,7 @@ use super::{PlanError, Reason};
 use crate::gas::kinetics;
 use crate::scene::{DiameterCap, Method, Scene};
 
-/// sigma = .7 n^(-1/3), f = .18: what is larger buys almost no resolution (specification, sections 2 and 6).
+/// sigma = .7 n^(-1/3), f = .18: what is larger buys almost no resolution (docs/explanation/method.md, "Collisions").
 const SPACINGS: f64 = 0.7;
 /// A diameter larger than the plan's own is kept up to 1.5 times the mean density, where the cap of the plan's own begins:
 /// the noise of a block is no dense gas. (Not beyond the occupancy from which on a plan warns.)

@@ -6,7 +6,7 @@ use super::{Measured, PlanError, Reason};
 use crate::gas::{Species, fit};
 use crate::scene::{HeatCapacity, Scene};
 
-/// A curve that no gas can have within this is refused (specification, section 3).
+/// A curve that no gas can have within this is refused (docs/explanation/method.md, "Heat capacities").
 const LARGEST_RESIDUAL: f64 = 0.01;
 /// Beyond the coldest and the hottest that the scene names: gas that expands, and what is noise.
 const COLDER: f64 = 0.8;

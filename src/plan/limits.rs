@@ -141,7 +141,7 @@ pub const LIMITS: &[Limit] = &[
         Quantity::LostCollisions,
         None,
         AtMost(0.03),
-        "the gas is too viscous, and spin and translation part (specification, section 2)",
+        "the gas is too viscous, and spin and translation part (docs/explanation/method.md, Collisions)",
     ),
     limit_of(Quantity::Occupancy, None, AtMost(0.3), "it costs search time and buys no resolution"),
     // Carnahan and Starling: 1 % at f = .0025.
@@ -200,7 +200,7 @@ pub const LIMITS: &[Limit] = &[
         "a pair does not meet after a wall in the same step, and spin falls behind translation",
     ),
     limit_of(Quantity::Flight, None, AtMost(1.0001), "the time step lets particles fly past whole cells"),
-    // Specification, section 6: all but one in a thousand.
+    // docs/explanation/method.md, "What the plan decides, and why": all but one in a thousand.
     limit_of(Quantity::FastParticles, None, AtMost(FAST_TAIL), "they pass gas that they should have met"),
     // Of the collisions in a cell one in ten is with the partner of the last at two particles and one free path, and changes
     // nothing: `tests/verification/starved.rs`, which finds the gas of two a few per cent more viscous than that of full cells.
@@ -251,7 +251,7 @@ pub fn limit(quantity: Quantity, method: Method) -> Option<&'static Limit> {
     of(Some(method)).or_else(|| of(None))
 }
 
-/// Largest x = dt/tau with at most 2 % of the events lost: specification, section 2, for up to four rounds; for eight,
+/// Largest x = dt/tau with at most 2 % of the events lost: method.md, "Collisions", for up to four rounds; for eight,
 /// measured in `tests/verification`; between them by steps. Without rounds that of the method `cell`. Of `half-turn` the mean spacings that gas of thermal
 /// speed flies, beyond which it becomes as much more viscous as steps are longer.
 pub fn step_limit(method: Method, rounds: u32) -> f64 {

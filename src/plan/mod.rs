@@ -1,5 +1,5 @@
-//! What will be modelled and why: a [`Scene`](crate::scene::Scene) becomes a [`Plan`] (specification,
-//! section 6).
+//! What will be modelled and why: a [`Scene`](crate::scene::Scene) becomes a [`Plan`] (docs/explanation/method.md,
+//! "What the plan decides, and why").
 //!
 //! All moles of the run are shared evenly: one `moles_per_particle` nu for every gas, so that mixtures
 //! thermalise to one temperature (section 1). The density, diameter and mean free path are those of the

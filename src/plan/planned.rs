@@ -99,7 +99,7 @@ pub struct GasPlan {
     pub molar_mass: f64,
     /// zeta; of a heat capacity that depends on the temperature, that at `temperature_reference`.
     pub spin_dof: f64,
-    /// P of specification section 3.
+    /// P of docs/explanation/method.md, "Spin exchange".
     pub exchange_probability: f64,
     /// Initial and injected.
     pub particles: u64,

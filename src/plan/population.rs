@@ -30,7 +30,7 @@ fn wanted_knudsen(method: Method, occupancy: f64) -> f64 {
     (WANTED_KNUDSEN / worse).min(guard)
 }
 
-/// N_stat = 5.1 V / (cbar A T_w eps^2) and N_res = V / d^3, d = Kn l / .79 (specification, section 6).
+/// N_stat = 5.1 V / (cbar A T_w eps^2) and N_res = V / d^3, d = Kn l / .79 (method.md, "What the plan decides, and why").
 ///
 /// The area is not a part of the scene: A = V^(2/3) / 16, a sixteenth of the face of a cube of the gas
 /// volume (.0096 m2 for 60 L). Also why.

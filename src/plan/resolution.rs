@@ -12,11 +12,11 @@ pub const STEPS_PER_INTERVAL: u32 = 32;
 pub const TALLY_EVERY: u32 = 8;
 /// Particles in a mean block of the coarse grid, at least.
 pub(super) const PER_BLOCK: f64 = 64.0;
-/// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (specification, section 2).
+/// Particles in a cell of the method `cell`: the middle of the 4 to 8 of the measured viscosity (method.md, "Collisions").
 pub const PER_CELL: f64 = 6.0;
 /// In thin gas: one thread collides all of a cell.
 const MOST_PER_CELL: f64 = 20.0;
-/// f = .12, i.e. sigma = .61 d, lambda = sigma (specification, section 6).
+/// f = .12, i.e. sigma = .61 d, lambda = sigma (docs/explanation/method.md, "What the plan decides, and why").
 const DEFAULT_OCCUPANCY: f64 = 0.12;
 /// Of rigid spheres, whose pressure is 4 % off there.
 const RIGID_OCCUPANCY: f64 = 0.01;

@@ -1,5 +1,5 @@
 //! Vents and walls that exchange heat, before the run: how much flows at the start, and whether a probability of
-//! passing can give it (specification, section 4 "Modelled vent, porosity, leak").
+//! passing can give it (docs/explanation/method.md, "Vents and leaks").
 
 use super::limits::{Quantity, Warning};
 use super::{Measured, MeasuredVent, VentPlan};

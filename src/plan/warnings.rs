@@ -9,8 +9,8 @@ use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
 use crate::scene::{Chamber, GAS_CONSTANT, Method, Scene};
 
-/// Share of collision events lost, by x = dt/tau (first column) for 1 to 4 rounds (specification,
-/// section 2; measured at f = .1, +-.01; gains taken as zero).
+/// Share of collision events lost, by x = dt/tau (first column) for 1 to 4 rounds (docs/explanation/method.md,
+/// "Collisions"; measured at f = .1, +-.01; gains taken as zero).
 const LOST: [[f64; 5]; 6] = [
     [0.0, 0.0, 0.0, 0.0, 0.0],
     [0.05, 0.055, 0.002, 0.006, 0.001],

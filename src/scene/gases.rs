@@ -152,7 +152,7 @@ fn constant_of(cp: &NumberOr<f64>) -> f64 {
     }
 }
 
-/// Least rotational collision number with which the exchange probability of specification section 3
+/// Least rotational collision number with which the exchange probability of docs/explanation/method.md, "Spin exchange"
 /// exists: (1 + zeta/4) / (1 - a/2), a = zeta / (zeta + 4).
 pub(super) fn least_collision_number(zeta: f64) -> f64 {
     (1.0 + zeta / 4.0) / (1.0 - 0.5 * zeta / (zeta + 4.0))

@@ -149,7 +149,7 @@ fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
     })
 }
 
-/// Z must be large enough for every gas that has internal energy (specification, section 3).
+/// Z must be large enough for every gas that has internal energy (docs/explanation/method.md, "Spin exchange").
 pub(super) fn collision_number(
     raw: &RawModel,
     gases: &[Gas],

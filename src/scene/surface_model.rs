@@ -1,6 +1,6 @@
 //! What walls do to the gas that hits them: each wall has a surface model, and named parts of it may have their own.
 
-/// A surface that keeps its temperature and takes heat from the gas, or gives it (specification, section 4 "Rigid wall").
+/// A surface that keeps its temperature and takes heat from the gas, or gives it (docs/explanation/method.md, "Walls").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallHeat {
     /// K.

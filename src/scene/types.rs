@@ -271,7 +271,7 @@ pub enum JetSpeed {
     Velocity(f64),
 }
 
-/// A drifting inflow; without it the orifice emits a Maxwell speed distribution (specification, section 4).
+/// A drifting inflow; without it the orifice emits a Maxwell speed distribution (docs/explanation/method.md, "Inflow").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet {
     pub speed: JetSpeed,
@@ -302,7 +302,7 @@ pub struct Surface {
     pub face: Option<Face>,
 }
 
-/// Where a wall lets gas out: a vent or a leaking fabric, modelled (specification, section 4). What leaves is gone.
+/// Where a wall lets gas out: a vent or a leaking fabric, modelled (method.md, "Vents and leaks"). What leaves is gone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vent {
     pub name: String,

@@ -28,8 +28,8 @@ fn flown(method: Method, diameter: f64) -> f64 {
 }
 
 /// The square of the distance, in packed units, below which particles of the largest diameter may meet in a step. In the
-/// longest that is a cell's edge, of which the fastest pairs fly what it has beyond the diameter (specification, section
-/// 2). In a step of so many `halvings` they fly less.
+/// longest that is a cell's edge, of which the fastest pairs fly what it has beyond the diameter (method.md,
+/// "What the plan decides, and why"). In a step of so many `halvings` they fly less.
 pub(super) fn near2(plan: &Plan, halvings: u32) -> u32 {
     packed2(plan.method, plan.diameter / plan.grid.cell, halvings)
 }

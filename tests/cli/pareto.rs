@@ -41,7 +41,7 @@ impl Table {
 }
 
 /// The chart has its files; the front is what no row within its limits beats; the order of the methods at one number of
-/// particles is that of the specification, section 2: free flight and rigid spheres are far off, more particles are
+/// particles is that of method.md, "Collisions": free flight and rigid spheres are far off, more particles are
 /// better. An error is known to some 5 % of itself from one seed.
 #[test]
 fn the_quick_chart_of_the_shock_tube() {
@@ -141,13 +141,13 @@ fn what_cannot_be_charted_is_refused_with_the_reason() {
     assert!(code == 0 && ["sod", "tank", "orifice", "piston"].iter().all(|name| text.contains(name)), "{text}");
 }
 
-/// The measured table of the specification, section 2: the mean error of the density of free flight and of closest approach at 40,000
+/// The measured table of method.md, "Collisions": the mean error of the density of free flight and of closest approach at 40,000
 /// particles is .0589 and .0301, of closest approach at 10,000 .0420, each +-5 %; `cell` is as good as closest approach. Its .0533 of
 /// rigid spheres is at an occupancy of .1 of the gas on the left (docs/reference/accuracy.md, `sod-table`); the chart's is of the mean gas, where
 /// `corpuscle verify sod-table` has .078, worse than free flight.
 #[test]
 #[ignore = "minutes: cargo test --release --test cli pareto:: -- --ignored"]
-fn the_chart_of_the_shock_tube_has_the_order_of_the_specification() {
+fn the_chart_of_the_shock_tube_has_the_order_of_the_prototype() {
     let folder = tempfile::tempdir().unwrap();
     let (code, _, err) = outcome(&["pareto", "sod", "--out", folder.path().to_str().unwrap()]);
     assert_eq!(code, 0, "{err}");

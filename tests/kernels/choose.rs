@@ -1,4 +1,4 @@
-//! `choose` against the f64 rule 3 (specification, section 2).
+//! `choose` against the f64 rule 3 (docs/explanation/method.md, "Collisions").
 
 use corpuscle::subdomain::{FULL_SHARE, GpuFlight, GpuParticle, GpuStep};
 

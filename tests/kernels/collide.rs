@@ -1,4 +1,4 @@
-//! `collide`, `collide_crowded` and `collide_divided`: who collides, how often, and what is conserved (specification, section 2).
+//! `collide`, `collide_crowded` and `collide_divided`: who collides, how often, and what is conserved (method.md, "Collisions").
 
 use std::f64::consts::PI;
 

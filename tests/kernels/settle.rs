@@ -1,4 +1,4 @@
-//! `settle` against the f64 collision (specification, sections 2 and 3).
+//! `settle` against the f64 collision (docs/explanation/method.md, "Collisions").
 
 use std::collections::BTreeSet;
 

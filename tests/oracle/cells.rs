@@ -1,4 +1,4 @@
-//! Fixed-point positions and cells (specification, section 9), in exact integers. The only floating-point
+//! Fixed-point positions and cells (method.md, "Equal bits"), in exact integers. The only floating-point
 //! numbers are the f32 products that move a position, each rounded once as IEEE 754 says.
 
 /// Cells per axis, quanta per cell = 2^`bits`, f32 quanta per metre.

@@ -1,4 +1,4 @@
-//! One collision of the closest-approach method (specification, sections 2 and 3).
+//! One collision of the closest-approach method (docs/explanation/method.md, "Collisions").
 
 use super::random::{philox, unit_interval};
 use super::vector::{Vector, along, cross, dot, minus, norm, scaled, unit};

@@ -106,7 +106,7 @@ fn periodic_rate(x: f64, rounds: u32, steps: u32) -> (f64, f64, Simulation) {
     (ratio, (1.0 / simulation.collisions as f64).sqrt(), simulation)
 }
 
-/// The collision rate is n pi sigma^2 gbar to 1.5 % with three rounds and x = .1 (specification, section 8);
+/// The collision rate is n pi sigma^2 gbar to 1.5 % with three rounds and x = .1 (docs/reference/accuracy.md);
 /// no collision has a virial.
 #[test]
 fn the_periodic_collision_rate_is_that_of_kinetic_theory() {
@@ -114,14 +114,14 @@ fn the_periodic_collision_rate_is_that_of_kinetic_theory() {
     assert!((ratio - 1.0).abs() < 0.015 + 2.0 * error, "{ratio} +- {error}");
     assert!(simulation.virial < 1e-6, "{}", simulation.virial);
     assert!((simulation.lost as f64) < 0.01 * simulation.collisions as f64);
-    // The check can fail: one round at x = .5 loses a third (specification, table of lost events: .648).
+    // The check can fail: one round at x = .5 loses a third (prototype, table of lost events: .648).
     let (one_round, _, short) = periodic_rate(0.5, 1, 30);
     assert!((one_round - 0.648).abs() < 0.03, "{one_round}");
     assert!(short.lost > 0);
 }
 
 /// Wall pressure is 2 Wk / 3V at f = .1, for a gas with spin, and no energy is lost. The tolerance is the
-/// specification's .5 % and three standard errors of the impulse of H hits, 1.13 / sqrt(H).
+/// prototype's .5 % and three standard errors of the impulse of H hits, 1.13 / sqrt(H).
 #[test]
 fn wall_pressure_is_ideal_and_energy_is_kept() {
     let gas = Gas::with_collision_number(1.0, 2.0, 5.0);

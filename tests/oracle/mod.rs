@@ -1,6 +1,6 @@
 //! A small independent reference of the corpuscular method in f64 and plain loops, for tests only.
 //!
-//! It follows the specification (sections 2, 3 and 9) and takes no code from `src`. Test binaries include it
+//! It follows docs/explanation/method.md and takes no code from `src`. Test binaries include it
 //! with `#[path = "../oracle/mod.rs"] mod oracle;` and each uses its own part.
 
 pub mod cells;

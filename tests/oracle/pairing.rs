@@ -1,4 +1,4 @@
-//! Mutual choice (specification, section 2, rule 4).
+//! Mutual choice (docs/explanation/method.md, "Collisions").
 
 use super::collision::{Body, meeting};
 use super::vector::Vector;

@@ -1,4 +1,4 @@
-//! Whole steps of the closest-approach method (specification, sections 2 and 3) in a box, f64, O(N^2).
+//! Whole steps of the closest-approach method (docs/explanation/method.md, "Collisions") in a box, f64, O(N^2).
 
 use super::collision::{Body, Draws, Gas, Meeting, collide};
 use super::pairing::{Candidates, choices, mutual};

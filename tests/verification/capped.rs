@@ -1,5 +1,5 @@
 //! Laws: where the diameter is capped, block by block from noisy densities, the gas still presses with n k T
-//! (specification, section 2: sigma may depend on position; section 8: within .5 %), and collides by the cross-section
+//! (method.md, "Collisions": sigma may depend on position; within .5 %), and collides by the cross-section
 //! that is left: (cap/sigma)^2 n^(-2/3).
 //!
 //! Statistics: the pressure as in `wall_pressure`. A block's density counts less one standard error, an eighth for the

@@ -1,4 +1,4 @@
-//! Laws of the method `cell` (specification, sections 2 and 8): the gas presses with p = n k T at long and short steps;
+//! Laws of the method `cell` (method.md, "Collisions"): the gas presses with p = n k T at long and short steps;
 //! collisions come at the rate n pi sigma^2 gbar within 1.5 %, also in cells that walls cut and part; spin and gases of
 //! masses 1:7 come to one temperature within 1 %; spin relaxes in the collision number asked for, within 5 %.
 

@@ -1,4 +1,4 @@
-//! Laws: away from walls a particle collides n pi sigma^2 gbar times a second (specification, section 8:
+//! Laws: away from walls a particle collides n pi sigma^2 gbar times a second (docs/reference/accuracy.md:
 //! within 1.5 % for R = 3, x <= .1); fewer rounds lose more events (section 2), and the count of lost
 //! events says how many.
 //!
@@ -49,7 +49,7 @@ fn the_rate_is_the_same_in_steps_that_density_cuts() {
     assert!((rate.core - 1.0).abs() < 0.015, "{:.4} +- {:.4}", rate.core, rate.error);
 }
 
-/// The specification's table at x = .2: .814, .947, .982 of the theory's rate for R = 1, 2, 3.
+/// The prototype's table at x = .2: .814, .947, .982 of the theory's rate for R = 1, 2, 3.
 #[test]
 fn fewer_rounds_lose_more_collisions_and_say_so() {
     let device = device();

@@ -1,5 +1,5 @@
-//! Law: without collisions n cbar A / 4 particles a second leave through a hole of area A (specification,
-//! sections 4 and 8: within 3 %). The walls are specular, so the hole's side wall sends nothing back: a
+//! Law: without collisions n cbar A / 4 particles a second leave through a hole of area A (docs/explanation/method.md,
+//! "Openings": within 3 %). The walls are specular, so the hole's side wall sends nothing back: a
 //! particle keeps its velocity along the hole's axis and so comes through.
 //!
 //! Particles of speed v leave at v A / (4 V), the fast first, so after a time t

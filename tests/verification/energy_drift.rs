@@ -1,4 +1,4 @@
-//! Law: collisions and walls keep the energy (specification, section 8: within 1e-5 over 1e5 steps, which
+//! Law: collisions and walls keep the energy (docs/reference/accuracy.md: within 1e-5 over 1e5 steps, which
 //! at x = .15 are 15,000 collisions per particle). In the fast tier 2,000 steps and a fiftieth of that.
 //!
 //! What rounding takes from a pair goes into spin, and where neither gas has spin into the scale of its relative velocity.

@@ -1,5 +1,5 @@
 //! Laws: from any start the degrees of freedom come to one temperature, T_int = T_tr, T1 = T2 for masses
-//! 1:7 (specification, section 8: within 1 % for R = 3, x <= .2); and T_tr - T_int decays as
+//! 1:7 (docs/reference/accuracy.md: within 1 % for R = 3, x <= .2); and T_tr - T_int decays as
 //! exp(-(1 + zeta/3) s / Z), s the collisions per particle (section 3: measured Z within 5 %).
 //!
 //! Pressure and energy checks never see a breach of these: with R = 1 the energies stay 1.5 % apart at
@@ -35,7 +35,7 @@ fn spin_and_both_gases_come_to_one_temperature() {
 }
 
 /// The check can fail: one round leaves the light gas hotter by 2 % at x = .2 and by 5 % at x = 1
-/// (specification, section 2).
+/// (docs/explanation/method.md, "Collisions").
 #[test]
 fn one_round_at_long_steps_breaks_equipartition() {
     let [_, gases] = ratios(&mixture(1, 0.5, 480));

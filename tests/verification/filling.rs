@@ -1,4 +1,4 @@
-//! Laws of a closed tank that is filled (specification, sections 4 and 8): its energy is U0 + integral h dm
+//! Laws of a closed tank that is filled (docs/explanation/method.md, "Inflow"): its energy is U0 + integral h dm
 //! of the mass injected, within 1e-4; the mass injected is within half a particle per gas of the curve's
 //! integral; its enthalpy is cp T0.
 

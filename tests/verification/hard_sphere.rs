@@ -1,4 +1,4 @@
-//! Law of the method `hard-sphere` (specification, section 2, table for x = .1, R = 2, N = 8000): its pressure on walls
+//! Law of the method `hard-sphere` (docs/explanation/method.md, "Collisions"): its pressure on walls
 //! over n k T is 1.039 at f = .01 and 1.486 at f = .1, near that of rigid spheres (Carnahan-Starling: 1.041, 1.521)
 //! and not the ideal gas's.
 //!

@@ -1,4 +1,4 @@
-//! Laws of a heat capacity cp = a + b T + c T^2 (specification, section 3 "cp(T)"): in equilibrium the spin energy has
+//! Laws of a heat capacity cp = a + b T + c T^2 (method.md, "Heat capacities"): in equilibrium the spin energy has
 //! the mean u(T) - 3/2 R T and the variance T^2 (cv - 3/2 R) of the curve at every temperature, from whatever start; a
 //! closed tank that is filled has U = U0 + integral h dm within 1e-4, with h the integral of cp, and comes to the
 //! temperature that the integral of cv asks for.

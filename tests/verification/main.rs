@@ -1,4 +1,4 @@
-//! Whole runs against closed forms: the reference cases of the specification, section 8.
+//! Whole runs against closed forms: the reference cases of docs/reference/accuracy.md.
 //!
 //! Each case states its law, takes its tolerance from the statistics of the run (a fixed seed makes the
 //! outcome of each the same every time), and shows that the check fails where the law does not hold.

@@ -1,4 +1,4 @@
-//! Laws of mixtures (specification, section 1: equal moles per particle): two gases that start apart come to equal shares
+//! Laws of mixtures (method.md, "The gas": equal moles per particle): two gases that start apart come to equal shares
 //! everywhere and to one temperature; of a mixture that flows in each gas brings its share of the curve's integral to
 //! within half a particle, and a mixture at rest has its shares of the particles.
 

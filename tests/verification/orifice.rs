@@ -1,7 +1,7 @@
 //! Law: gas with collisions leaves a chamber for near-vacuum at Cd times the choked isentropic flow, Cd that of
-//! specification, section 4, at the Knudsen number of the hole: .78 at .1, less where the gas is thinner.
+//! docs/explanation/method.md, "Openings", at the Knudsen number of the hole: .78 at .1, less where the gas is thinner.
 //!
-//! The specification does not say what length its Knudsen number has. It is the hole's radius: with the
+//! The prototype does not say what length its Knudsen number has. It is the hole's radius: with the
 //! diameter the same table would ask for .78 at lambda = .2 radii. (Kinetic theory has 1.33 times the effusion,
 //! Cd = .583 x 1.33 = .775, at lambda = .1 radii, and 1.2 times, .70, at .2.)
 //!

@@ -1,4 +1,4 @@
-//! Laws of moving walls (specification, section 8 "piston"): slow compression to half the volume leaves T V^(gamma-1)
+//! Laws of moving walls (docs/reference/accuracy.md): slow compression to half the volume leaves T V^(gamma-1)
 //! alone within half a percent; a fast piston feels the pressure behind the shock that it drives (Rankine and Hugoniot);
 //! nothing is lost, whatever meets a piston: particles in its corners, newborns, gas on both of its sides.
 

@@ -37,7 +37,7 @@ fn a_collision_at_closest_approach_has_no_virial() {
 #[test]
 fn shock_tubes_are_those_of_the_exact_solution() {
     passes("sod");
-    // Free flight has a mean |difference| of .06 in the density and .16 in the velocity (specification, section 2).
+    // Free flight has a mean |difference| of .06 in the density and .16 in the velocity (method.md, "Collisions").
     let (checks, _) = sod::against(&device(), 40_000, 1.4, Method::None, 0).expect("a run");
     checks.iter().for_each(fails);
 }
@@ -62,7 +62,7 @@ fn expansion_into_a_vacuum_is_that_of_the_exact_solution() {
 #[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify sound` runs the case too"]
 fn a_standing_wave_has_the_speed_of_sound() {
     passes("sound");
-    // Rigid spheres of f = .1 have sound that is 15 % faster (specification, section 2).
+    // Rigid spheres of f = .1 have sound that is 15 % faster (docs/explanation/method.md, "Collisions").
     let rigid = Setting {
         method: Some(Method::HardSphere),
         particles: Some(24_000),
@@ -75,7 +75,7 @@ fn a_standing_wave_has_the_speed_of_sound() {
 #[test]
 fn vortices_decay_with_the_viscosity_of_the_method() {
     passes("viscosity");
-    // At f = .2 it is .54 (specification, section 2), where .65 is allowed a tenth of it.
+    // At f = .2 it is .54 (docs/explanation/method.md, "Collisions"), where .65 is allowed a tenth of it.
     fails(&shear::at_occupancy(&device(), 0.2, 8000, 3).expect("a run"));
 }
 

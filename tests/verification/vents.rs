@@ -1,5 +1,5 @@
 //! Law: what leaves through a modelled vent takes the enthalpy of the gas inside with it, so that a vessel empties
-//! isentropically: d lnT / d lnN = 2/(3 + zeta) = gamma - 1 (specification, section 4 "Modelled vent, porosity, leak",
+//! isentropically: d lnT / d lnN = 2/(3 + zeta) = gamma - 1 (docs/explanation/method.md, "Vents and leaks",
 //! and section 8: within .01 at beta <= .02 in units of the thermal speed). And the flow is that of Wang and Nefske: choked, T/T0 =
 //! x^(gamma-1) of the part x of the mass that is left, dx/dt = -K x^((gamma+1)/2), x = (1 + (gamma-1)/2 K t)^(-2/(gamma-1)),
 //! K = C23 A/V .6847 sqrt(R T0 / M).
@@ -42,7 +42,7 @@ fn a_vessel_empties_isentropically() {
     assert!(run.rows.iter().all(|row| (row.vents[0].wanted_discharge - pores()).abs() < 1e-9));
 }
 
-/// The reference case of the specification, section 8, to its tolerance.
+/// The reference case of docs/reference/accuracy.md, to its tolerance.
 #[test]
 #[ignore = "minutes on a software device: scripts/test.sh --long"]
 fn a_vessel_empties_isentropically_within_a_hundredth() {

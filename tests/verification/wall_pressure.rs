@@ -1,4 +1,4 @@
-//! Law: whatever the occupancy, the gas presses on its walls with p = n k T (specification, sections 1, 2
+//! Law: whatever the occupancy, the gas presses on its walls with p = n k T (docs/explanation/method.md, "The gas"
 //! and 8: within .5 %).
 //!
 //! Statistics: H independent hits give the pressure to 1.13 / sqrt(H) (section 6). On all six faces of a

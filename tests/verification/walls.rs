@@ -1,5 +1,5 @@
 //! Law: a wall that takes heat by a coefficient h cools the gas as dT/dt = -(T - T_w)/tau, tau = n cv / (h A); a gas
-//! within walls of its own temperature keeps it, its pressure n R T / V and its equipartition (specification, section 4
+//! within walls of its own temperature keeps it, its pressure n R T / V and its equipartition (method.md, "Walls"
 //! "Rigid wall").
 //!
 //! Statistics: a share alpha of the hits is exchanged, N alpha cbar A t / (4 V) of them until t; each changes the energy

@@ -92,7 +92,7 @@ pub struct EmulationArguments {
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub struct VerifyArguments {
-    /// The cases to run; unless named all, with --quick those of laws, not of the specification's figures
+    /// The cases to run; unless named all, with --quick those of laws, not of the prototype's figures
     #[arg(value_name = "CASE")]
     pub cases: Vec<String>,
     /// As much as minutes allow (the default)

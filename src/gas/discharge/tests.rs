@@ -35,14 +35,14 @@ fn measured_coefficients_are_met() {
     for [kn, cd] in VACUUM {
         assert!((coefficient(kn, 0.0) - cd).abs() < 1e-12);
     }
-    // The specification's at Q = .8 are good to .02.
+    // The prototype's at Q = .8 are good to .02.
     for [kn, cd] in [[1.0, 0.18], [0.1, 0.40]] {
         assert!((over_isentropic(kn, 0.8) - cd).abs() < 0.02, "{kn}: {}", over_isentropic(kn, 0.8));
         assert!((over_isentropic(kn, 0.95) - cd).abs() > 0.02);
     }
 }
 
-/// The specification's figures and published ones are of the same flow, and the table has the published between them.
+/// The prototype's figures and published ones are of the same flow, and the table has the published between them.
 #[test]
 fn published_discharges_are_those_of_the_table() {
     for [knudsen, cd] in VACUUM {

@@ -1,11 +1,11 @@
-//! What a run costs: particle-steps times the memory traffic of one (specification, section 7), scaled to what the device
+//! What a run costs: particle-steps times the memory traffic of one (docs/reference/performance.md), scaled to what the device
 //! does. A rough estimate: dense moments take shorter steps and small runs wait for the device.
 
 use crate::plan::resolution::Resolution;
 use crate::plan::warnings::lost_events;
 use crate::scene::Method;
 
-/// Bytes of a particle-step (specification, section 7): search of the neighbours; collide, move, bin, scan and scatter; a
+/// Bytes of a particle-step (docs/reference/performance.md): search of the neighbours; collide, move, bin, scan and scatter; a
 /// further round; `cell`; `none`.
 const SEARCH: f64 = 40.0;
 const REST: f64 = 88.0 + 12.0 + 72.0;
@@ -57,7 +57,7 @@ impl Cost {
 mod tests {
     use super::*;
 
-    /// One round at the usual step is the specification's 212 bytes; further ones look at ever fewer particles.
+    /// One round at the usual step is the prototype's 212 bytes; further ones look at ever fewer particles.
     #[test]
     fn traffic_of_a_particle_step() {
         let closest = |rounds| bytes(Method::ClosestApproach, rounds, USUAL_STEP, USUAL_IN_CELL);

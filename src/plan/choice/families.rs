@@ -1,4 +1,4 @@
-//! The ways to run a scene that the plan chooses from: methods, occupancies, rounds (specification, section 6, points 3 to 5),
+//! The ways to run a scene that the plan chooses from: methods, occupancies, rounds (method.md, "What the plan decides, and why"),
 //! lengths of the step.
 
 use crate::gas::kinetics;
@@ -18,7 +18,7 @@ pub struct Family {
     pub stretch: f64,
 }
 
-/// Mean free path of the molecules over the size of the vessel from which on they do not meet (specification, section 2).
+/// Mean free path of the molecules over the size of the vessel from which on they do not meet (method.md, "Collisions").
 const FREE_KNUDSEN: f64 = 1.0;
 /// Rounds of pairing that are compared.
 const ROUNDS: [u32; 2] = [8, 4];
@@ -139,7 +139,7 @@ fn methods(
         (None, Some(asked)) => why.push(format!("not the method control-volume, which has no `{asked}`")),
         (None, None) => methods.push(Method::ControlVolume),
     }
-    // Specification, section 6, point 5.
+    // docs/explanation/method.md, "What the plan decides, and why".
     let open = scene.orifices.is_empty()
         && scene.vents.is_empty()
         && measured.openings.is_empty()

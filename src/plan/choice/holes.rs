@@ -1,4 +1,4 @@
-//! Whether a hole that is resolved should rather be modelled (specification, section 6.2): where resolving it takes more
+//! Whether a hole that is resolved should rather be modelled (docs/explanation/planner.md): where resolving it takes more
 //! particles than the statistics do, and only the flow through it matters, a `[[vent]]` does.
 //!
 //! The plan cannot know what matters, and a vent is another scene: gas that leaves is gone, and of the chamber behind it

@@ -1,6 +1,6 @@
 //! The plan of a scene that wishes an accuracy or has a budget: of all families of runs ([`families`]) and numbers of
 //! particles the cheapest whose forecast error is small enough, or the most accurate that the budget pays for
-//! (specification, section 6, "no more than a scene needs").
+//! (docs/explanation/method.md, "What the plan decides, and why").
 //!
 //! Explicit keys of `[model]` are constraints. What comes out is a request with every choice in it: the plan of that
 //! request, made as any other's, is the plan of the run.

@@ -85,7 +85,7 @@ impl Choice {
         for vent in &plan.vents {
             let length = (vent.area / std::f64::consts::PI).sqrt();
             let volume: f64 = plan.chambers.iter().map(|chamber| chamber.volume).sum();
-            // d = Kn l / .79 (specification, section 6).
+            // d = Kn l / .79 (docs/explanation/method.md, "What the plan decides, and why").
             let resolved = volume / (0.1 * length / 0.79f64).powi(3);
             let why = format!("exact in mass; resolved at Kn 0.1 it would take {} particles", grouped(resolved as u64));
             reasons.push(reason(&format!("vent {}", vent.name), "modelled".into(), why));

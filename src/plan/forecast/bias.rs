@@ -5,29 +5,29 @@ use super::course::{Course, Moment};
 use crate::gas::{State, kinetics, value_inside};
 use crate::scene::{Jet, Method, Orifice};
 
-/// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (specification, section 2).
+/// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (method.md, "Collisions").
 const CELL_PATH: f64 = 0.9;
 /// And of the method `half-turn`: viscosity .21 d c0 over .783 c0.
 const HALF_TURN_PATH: f64 = 0.21 / 0.783;
 /// T_int/T_tr falls by a tenth of the share of lost collisions: .985 where .186 are lost, .946 where .538 are
-/// (specification, section 2).
+/// (docs/explanation/method.md, "Collisions").
 const UNEQUAL_PER_LOST: f64 = 0.1;
 /// Sod's tube, 160,000 particles at f = .1: mean |rho - exact| .0218 of the left's density, so of the mean, .5625
-/// (specification, section 2); its effective mean free path .83 d, d = (.01 m3 / 160,000)^(1/3), over its length, 1 m; and what
+/// (method.md, "Collisions"); its effective mean free path .83 d, d = (.01 m3 / 160,000)^(1/3), over its length, 1 m; and what
 /// is left less what is right over the mean density.
 const SOD_ERROR: f64 = 0.0218 / 0.5625;
 const SOD_PATH: f64 = 0.83 * 3.968e-3;
 const SOD_STEP: f64 = 0.875 / 0.5625;
 /// N^-.26 at a fixed shape is (lambda/L)^.78.
 const SOD_EXPONENT: f64 = 0.78;
-/// By how much the coefficient of an orifice may be off: the specification gives its .84 as "about", its table is good to .02.
+/// By how much the coefficient of an orifice may be off: the prototype gives its .84 as "about", its table is good to .02.
 pub const DISCHARGE_UNKNOWN: f64 = 0.02 / 0.84;
 /// Thrust of a choked jet over p A, and of a slow one over (p - p_outside) A; both times the discharge coefficient.
 const CHOKED_THRUST: f64 = 1.27;
 const SLOW_THRUST: f64 = 2.0;
 const COEFFICIENT: f64 = 0.84;
 
-/// The mean free path (over d) that the viscosity measured for a method says (specification, section 2). Of `cell` that by which fronts go:
+/// The mean free path (over d) that the viscosity measured for a method says (method.md, "Collisions"). Of `cell` that by which fronts go:
 /// by its viscosity it is 1.2 (`corpuscle verify viscosity-floor --full`).
 pub fn effective_path(method: Method, occupancy: f64) -> f64 {
     match method {
@@ -117,7 +117,7 @@ mod tests {
         (found / expected - 1.0).abs() < tolerance
     }
 
-    /// The rows of the specification's table of Sod's tube, of which only one is a constant here, within 12 %.
+    /// The rows of the prototype's table of Sod's tube, of which only one is a constant here, within 12 %.
     #[test]
     fn fronts_meet_the_table_of_sod_s_tube() {
         let rows = [

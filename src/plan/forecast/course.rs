@@ -2,7 +2,7 @@
 //!
 //! Chambers that touch without a wall are one here. Equations and integration are those of [`ControlVolume`]; the
 //! limit of infinitely many particles has its holes in the continuum (or, of free flight, in the kinetic limit), a run
-//! of particles has them at the Knudsen number of the particles (specification, section 4 "Resolved hole").
+//! of particles has them at the Knudsen number of the particles (docs/explanation/method.md, "Openings").
 
 use super::outlook::Outlook;
 use crate::gas::{Collisions, ControlVolume, HeatedWall, OpenVent, Reservoir, Source, Species, State, thermo};

@@ -1,5 +1,5 @@
 //! Statistical noise: by how much the pressures of finitely many particles scatter, as variances relative to the square of
-//! the pressure (specification, section 6, point 1; the others are derived here).
+//! the pressure (docs/explanation/method.md, "Noise"; the others are derived here).
 //!
 //! The initial gas has exactly its energy and number in every chamber (`gas::initial`), inflow exactly its mass and
 //! enthalpy: noise comes from what chambers exchange, from translation and spin, and from where particles are just now.
@@ -21,7 +21,7 @@ pub fn grown(time: f64, memory: f64) -> f64 {
     1.0 - libm::exp(-2.0 * time / memory)
 }
 
-/// Of H independent hits of a wall: 1.13^2 / H, 4 / (pi H) (specification, section 6).
+/// Of H independent hits of a wall: 1.13^2 / H, 4 / (pi H) (method.md, "Noise").
 pub fn of_hits(hits: f64) -> f64 {
     4.0 / (PI * hits)
 }
@@ -43,7 +43,7 @@ pub fn of_axis(particles: f64, collision_time: f64, window: f64) -> f64 {
 }
 
 /// Of all gas in a closed chamber: energy of N particles goes to and fro between translation and spin, var = (2/(3 N))
-/// zeta/(3 + zeta); forgotten in Z tau / (1 + zeta/3) (specification, section 3). Never begins without collisions.
+/// zeta/(3 + zeta); forgotten in Z tau / (1 + zeta/3) (method.md, "Spin exchange"). Never begins without collisions.
 pub fn of_spin(particles: f64, spin_dof: f64, memory: f64, time: f64, window: f64) -> f64 {
     if !memory.is_finite() || spin_dof <= 0.0 {
         return 0.0;
@@ -142,9 +142,9 @@ mod tests {
         assert!(near(grown(1e-3, 1.0), 2e-3, 1e-2) && near(grown(10.0, 1.0), 1.0, 1e-6));
     }
 
-    /// The specification's figure: .0051 predicted at so many hits.
+    /// The prototype's figure: .0051 predicted at so many hits.
     #[test]
-    fn noise_of_hits_is_the_specification_s() {
+    fn noise_of_hits_is_the_prototype_s() {
         let hits = (1.13f64 / 0.0051).powi(2);
         assert!(near(of_hits(hits).sqrt(), 0.0051, 2e-3));
     }

@@ -1,7 +1,7 @@
 //! Rows of the history: averages over a window of whole step intervals, from the integer tallies.
 //!
 //! Of a zone of volume V with N particles of nu moles, mass M and thermal kinetic energy
-//! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (specification, section 1). Of a surface: the
+//! W = Wk - M u^2 / 2: p = 2 W / (3 V), T = 2 W / (3 N nu R) (docs/explanation/method.md, "The gas"). Of a surface: the
 //! normal impulse of its hits over area and time.
 
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Step size and collision diameters follow the state. The step (specification, section 9): a ladder of powers of two,
+//! Step size and collision diameters follow the state. The step (method.md, "What the plan decides, and why"): a ladder of powers of two,
 //! changed only between intervals, from integer tallies, so that the collision limit x = dt n pi sigma^2 gbar holds
 //! for all but a small share of the particles, and |v| dt <= cell for 99.9 % of them.
 

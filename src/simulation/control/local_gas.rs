@@ -1,5 +1,5 @@
 //! What the tallies of the coarse blocks say of the gas in them: density and heat, and from them the rate of
-//! collisions and the share that is left of the cross-section where gas is dense (specification, sections 2 and 9).
+//! collisions and the share that is left of the cross-section where gas is dense (method.md, "Collisions").
 
 use crate::gas::kinetics;
 use crate::plan::Plan;

@@ -1,5 +1,5 @@
 //! What the walls that are no mirrors do in an interval: the share of the hits that take the temperature of the
-//! wall, and the probability of passing a vent (specification, section 4).
+//! wall, and the probability of passing a vent (docs/explanation/method.md, "Walls").
 //!
 //! Both follow from the gas of a wall's chamber, as the integer tallies of an earlier interval have it: the same on
 //! any number of ranks. A vent passes P = beta |v_n|, beta = 2 G / p for the flux G; for a mixture beta in proportion to

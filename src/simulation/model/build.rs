@@ -138,7 +138,7 @@ impl Survey {
 }
 
 /// What is chosen for a scene with a wish; with the part of the scene that is left where holes are modelled, if that is the better
-/// choice (specification, section 6.2).
+/// choice (docs/explanation/planner.md).
 fn chosen(scene: &Scene, seen: &Survey) -> Result<(Choice, Option<(Scene, Survey)>), ModelError> {
     let whole = seen.outlook(scene);
     let resolved = choose(scene, &seen.measured, &whole);

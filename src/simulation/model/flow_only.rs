@@ -1,5 +1,5 @@
 //! A scene whose holes are modelled: of holes that a scene says only the flow matters of (`flow_only`) a part of the scene is
-//! made, what is inside of their box, with a `[[vent]]` in their place (specification, section 6.2). What is behind them is
+//! made, what is inside of their box, with a `[[vent]]` in their place (docs/explanation/planner.md). What is behind them is
 //! left out; only its pressure is left.
 //!
 //! Nothing that the scene asks to know may be left out, nor a part of a chamber that stays; else the reason is told.

@@ -1,4 +1,4 @@
-//! When a run of particles goes on as a control volume (specification, section 6, point 5: right where pressures are
+//! When a run of particles goes on as a control volume (method.md, "From particles to a control volume": right where pressures are
 //! uniform), and with what.
 //!
 //! Uniform are pressures that differ from that of their chamber by no more than noise. Over the time asked for, of every

@@ -1,4 +1,4 @@
-//! The method `control-volume`: a run, or the rest of one (`switch`), without particles (specification, section 6: right
+//! The method `control-volume`: a run, or the rest of one (`switch`), without particles (method.md, "The method control-volume": right
 //! where pressures are uniform).
 //!
 //! Each chamber is uniform; `reference` has its equations. A row has the state in the middle of its window, and what

@@ -102,7 +102,7 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Free flight reads and writes each state once: the 64 bytes of the specification, section 7.
+    /// Free flight reads and writes each state once: the 64 bytes of docs/reference/performance.md.
     #[test]
     fn free_flight_moves_each_state_in_and_out() {
         let work = Work { steps: 10.0, particle_steps: 1000.0, bounces: 7.0, ..Work::default() };

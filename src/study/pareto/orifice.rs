@@ -45,7 +45,7 @@ pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
         about: format!(
             "Gas leaves a chamber of {:.3} L through a square hole of {:.0} mm into near-vacuum for {:.1} ms. The error is \
              |Cd / {CONTINUUM_COEFFICIENT} - 1|, Cd the mean flow over the choked isentropic one. The reference is that of a \
-             thin orifice in a continuum, a figure of the literature (specification, section 4, from memory) that is itself \
+             thin orifice in a continuum, a figure of the literature (docs/explanation/method.md, Openings) that is itself \
              good to some 2 %, as is the gas of so small a chamber: smaller errors say nothing. What is seen is how far a \
              mean free path that is not small against the hole keeps the flow from that of a continuum. Occupancy and x are \
              those of the chamber at the start.",

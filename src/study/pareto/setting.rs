@@ -138,7 +138,7 @@ mod tests {
         assert!((0..6).all(distinct));
     }
 
-    /// x and f are those asked for, by the definitions of the specification's notation.
+    /// x and f are those asked for, by the definitions of docs/explanation/method.md.
     #[test]
     fn a_model_has_the_occupancy_and_the_step_of_its_setting() {
         let setting = Setting {

@@ -16,7 +16,7 @@ use crate::study::verify::{Check, Run, model_from, scene_of};
 
 use super::{Effort, ROUNDS};
 
-/// Allowed of p over n k T and of the collision rate, relative (specification, sections 2 and 8: .5 % and 1.5 %, and 3 %
+/// Allowed of p over n k T and of the collision rate, relative (method.md, "Collisions": .5 % and 1.5 %, and 3 %
 /// lost), and of temperatures that should be one.
 pub(super) const PRESSURE: f64 = 0.01;
 const RATE: f64 = 0.03;

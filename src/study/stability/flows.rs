@@ -18,9 +18,9 @@ use crate::subdomain::GpuParticle;
 use super::Effort;
 use super::at_rest::{BLOCKS, PRESSURE, TEMPERATURES, of_any};
 
-/// What guards allow a resolved hole (specification, section 6).
+/// What guards allow a resolved hole (docs/explanation/method.md, "What the plan decides, and why").
 const FLOW: f64 = 0.07;
-/// At 160,000 particles, and how it falls with their number (specification, section 8: .024; section 2: N^-.26).
+/// At 160,000 particles, and how it falls with their number (docs/reference/accuracy.md: .024, as N^-.26).
 const PROFILE: f64 = 0.024;
 /// Of the pressure behind a shock that is a few mean free paths wide, and of its excess.
 const ON_PISTON: [f64; 2] = [0.05, 0.2];
@@ -206,7 +206,7 @@ const STAGNATION: f64 = 600.0;
 const STRONGEST: f64 = 1.4;
 
 /// A closed box into which a jet blows as much gas as was in it. What it has become when it is at rest again depends on
-/// no Mach number: energy is U0 and the enthalpy that came in (specification, section 8: 1e-4), p V of it 2/(3 + zeta), and spin
+/// no Mach number: energy is U0 and the enthalpy that came in (docs/reference/accuracy.md: 1e-4), p V of it 2/(3 + zeta), and spin
 /// has its share.
 pub(super) fn mach(device: &Device, method: Method, mach: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let particles = match effort {

@@ -161,8 +161,7 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
     for limit in LIMITS {
         let _ = writeln!(page, "{}", guard(limit));
     }
-    page +=
-        "\nThat of the time step depends on the rounds: [method](../explanation/method.md#what-the-plan-decides-and-why).\n";
+    page += "\nThat of the time step depends on the rounds: [method](../explanation/method.md#what-the-plan-decides-and-why).\n";
     for (axis, points) in maps {
         let (values, rows) = rows(axis, points);
         let _ = writeln!(page, "\n## {}\n\n{}; {}.\n", axis.name, capital(axis.what), axis.runs);

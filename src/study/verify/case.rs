@@ -35,7 +35,7 @@ impl Case {
 pub struct Findings {
     pub checks: Vec<Check>,
     pub charts: Vec<Curves>,
-    /// What is to be said of the specification's figures that were found to be otherwise.
+    /// What is to be said of the prototype's figures that were found to be otherwise.
     pub notes: Vec<String>,
 }
 

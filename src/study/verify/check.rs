@@ -10,7 +10,7 @@ pub struct Check {
     pub tolerance: f64,
     /// Standard error of `measured`; 0 where it is a number of the run and no estimate.
     pub error: f64,
-    /// The reference is a figure of the specification that runs do not find, as a note of the case tells.
+    /// The reference is a figure of the prototype that runs do not find, as a note of the case tells.
     pub disputed: bool,
 }
 
@@ -40,7 +40,7 @@ impl Check {
     }
 }
 
-/// How far from a disputed figure a measured one may be, as a part of it: the specification's are of single runs.
+/// How far from a disputed figure a measured one may be, as a part of it: the prototype's are of single runs.
 const DISPUTED: f64 = 0.2;
 
 /// Standard errors that a tolerance must have.

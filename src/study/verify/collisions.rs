@@ -19,7 +19,7 @@ pub struct PressureRatio {
     /// collisions. The last is zero for closest-approach, and the first averages to a difference of boundary terms over
     /// the window, sqrt(2/N) / 6 x edge / (c0 T_w) of the pressure.
     pub error: f64,
-    /// Of as many independent hits, 1.13 / sqrt(H) (specification, section 6).
+    /// Of as many independent hits, 1.13 / sqrt(H) (docs/explanation/method.md, "Noise").
     pub of_hits: f64,
 }
 
@@ -86,7 +86,7 @@ pub fn rigid_pressure_ratio(device: &Device, occupancy: f64, steps: u32) -> Resu
     Ok(((ratio, ratio * error_of_hits(hits as f64)), run.outcome.steps))
 }
 
-/// Steps, and wall pressure over n k T of rigid spheres by the specification's table, section 2 (x = .1, R = 2,
+/// Steps, and wall pressure over n k T of rigid spheres by the prototype's table (x = .1, R = 2,
 /// N = 8000), whose own error is taken for half a per cent.
 pub const RIGID: [(f64, u32, f64); 2] = [(0.01, 480, 1.039), (0.1, 1280, 1.486)];
 
@@ -281,7 +281,7 @@ pub(super) fn virials(device: &Device, effort: Effort) -> Result<Findings, Study
     Ok(vec![Check::of(quantity, 0.0, (found, 0.0), 1e-6)].into())
 }
 
-/// The specification's table of lost collisions, section 2: rounds, x, rate over theory (good to .01). The first is
+/// The prototype's table of lost collisions: rounds, x, rate over theory (good to .01). The first is
 /// that of all collisions.
 const RATES: [(u32, f64, f64, f64); 5] =
     [(3, 0.1, 1.0, 0.015), (1, 0.2, 0.814, 0.02), (2, 0.2, 0.947, 0.02), (3, 0.2, 0.982, 0.02), (4, 0.2, 0.994, 0.02)];

@@ -1,4 +1,4 @@
-//! A tank that is filled with a gas of cp = a + b T + c T^2 (specification, section 3): U = U0 + integral h dm, and the
+//! A tank that is filled with a gas of cp = a + b T + c T^2 (method.md, "Heat capacities"): U = U0 + integral h dm, and the
 //! temperature that the integral of cv asks for. The curve is integrated here in closed form, without the solver's
 //! partition function.
 

@@ -250,7 +250,7 @@ pub fn energy_drift(
 const QUICK_DRIFT: (u32, u64, f64) = (2000, 2000, 2e-7);
 const FULL_DRIFT: (u32, u64, f64) = (100_000, 500, 2e-6);
 
-/// Within 2e-7 in 2,000 steps, and in 1e5 steps within 2e-6, a fifth of what the specification allows (section 8).
+/// Within 2e-7 in 2,000 steps, and in 1e5 steps within 2e-6, a fifth of what is allowed.
 pub(super) fn conservation(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (steps, particles, tolerance) = if effort == Effort::Quick { QUICK_DRIFT } else { FULL_DRIFT };
     let [without_spin @ .., with_spin] = &RESTING_MIXTURES;

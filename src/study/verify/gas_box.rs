@@ -1,5 +1,5 @@
 //! A gas at rest in a cube, the scene of most closed forms: what it is made of, and what follows from that
-//! by the formulas of the specification (section "Notation"), written here once more, independently.
+//! by the formulas of docs/explanation/method.md, written here once more, independently.
 
 use std::f64::consts::PI;
 

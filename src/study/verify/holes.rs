@@ -239,7 +239,7 @@ pub fn discharge_of(rows: &[Row]) -> (f64, f64) {
     ((first / last).ln() / passed, (first / last).ln() / passed / (first - last).sqrt())
 }
 
-/// The specification's, section 4 (good to .02), whose Knudsen number is of the hole's radius.
+/// The prototype's (good to .02), whose Knudsen number is of the hole's radius.
 const KNUDSEN: [f64; 4] = [0.1, 0.3, 10.0, 0.05];
 
 /// Particles of a full run.
@@ -258,7 +258,7 @@ const STEADY: [f64; 2] = [0.9e-4, 1.5e-4];
 
 /// A quarter of a chamber with a square hole of the same size, cut at planes of symmetry, which are mirrors, and near vacuum behind it.
 ///
-/// At an occupancy of .2 gas is as viscous as one of a mean free path of .69 spacings (specification, section 2), which
+/// At an occupancy of .2 gas is as viscous as one of a mean free path of .69 spacings (method.md, "Collisions"), which
 /// decides how many particles there are.
 fn quarter(knudsen: f64) -> Result<Model, StudyError> {
     let spacing = knudsen * RADIUS / 0.69;
@@ -325,7 +325,7 @@ fn discharge_of_quarter(device: &Device, knudsen: f64) -> Result<(f64, f64), Stu
     Ok((left / expected, left.sqrt() / expected))
 }
 
-/// Nothing passes against what the specification does not have.
+/// Nothing passes against what the prototype does not have.
 fn figure(knudsen: f64) -> f64 {
     gas::specified(knudsen).unwrap_or(f64::NAN)
 }
@@ -363,7 +363,7 @@ pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, St
         findings.charts.push(
             Curves::new("orifice", "Discharge of a hole into near-vacuum".into(), "log10 Kn of the radius", "Cd")
                 .line("found", sorted(found))
-                .reference("specification", sorted(table.collect()))
+                .reference("prototype", sorted(table.collect()))
                 .reference(
                     "published",
                     (-17..=10).map(|k| f64::from(k) / 10.0).map(|x| [x, gas::published(10f64.powf(x))]).collect(),
@@ -418,7 +418,7 @@ pub fn emptied(device: &Device, particles: u64, change: impl Fn(&mut Scene)) -> 
     Ok(Findings { charts: vec![chart], ..vec![check, course(&model, &rows, particles)].into() })
 }
 
-/// The particles that stay, against the isentropic balance of both chambers with the specification's discharge coefficients at
+/// The particles that stay, against the isentropic balance of both chambers with the prototype's discharge coefficients at
 /// the Knudsen number and pressures of the moment: the largest difference over the run, in those of the start.
 ///
 /// The table is good to .02, which shifts ln N by as much of its way; and where half of the particles have left, chance

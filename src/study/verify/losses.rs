@@ -1,4 +1,4 @@
-//! What a vessel loses: heat to its walls, and gas through pores (specification, section 4).
+//! What a vessel loses: heat to its walls, and gas through pores (docs/explanation/method.md, "Walls").
 
 use std::f64::consts::PI;
 
@@ -154,7 +154,7 @@ pub fn slope(run: &Run) -> (f64, f64) {
     (temperatures / (after / before).ln(), 1.4 * (2.0 / 7.0 / (before - after)).sqrt())
 }
 
-/// To .01 (specification, section 8), a third of which takes 105,000 particles; to what 10,000 can tell else.
+/// To .01 (docs/reference/accuracy.md), a third of which takes 105,000 particles; to what 10,000 can tell else.
 pub(super) fn leak(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, tolerance) = if effort == Effort::Quick { (10_000, 0.035) } else { (120_000, 0.01) };
     let end_time = 0.7 / rate(pores());

@@ -1,5 +1,5 @@
 //! Two gases that start apart, at one pressure and two temperatures, come to equal shares everywhere and to one
-//! temperature (specification, section 1: equal moles per particle).
+//! temperature (docs/explanation/method.md, "The gas": equal moles per particle).
 
 use crate::gpu::Device;
 use crate::simulation::Options;

@@ -37,7 +37,7 @@ pub use check::{Check, Verdict};
 pub(crate) use witness::model_from;
 pub use witness::{Run, Witness, run, scene_of};
 
-/// All cases, those of the specification's figures last.
+/// All cases, those of the prototype's figures last.
 pub fn all_cases() -> impl Iterator<Item = &'static Case> {
     CASES.iter().chain(figures::FIGURES)
 }

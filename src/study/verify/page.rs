@@ -13,7 +13,7 @@ use super::{Case, Findings, Verdict, all_cases};
 const TITLE: &str = "# Accuracy";
 const ALIGNMENT: &str = "|---|---|--:|--:|--:|--:|---|";
 const FAILED: &str = "## What failed";
-const NOTES: &str = "## Where the specification's figures are others";
+const NOTES: &str = "## Where the prototype's figures are others";
 const LAWS: &str = "## The laws";
 
 /// A page by its parts.
@@ -163,7 +163,7 @@ impl Page {
              Reference cases and what a run gave for them, as printed by\n\n```sh\n{}\n```\n\n\
              on {}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
              a check passes if the measured figure is within it, and if its standard error is at most a third of it. One that \
-             differs is of a figure that the specification has and runs do not find.\n\n",
+             differs is of a figure that the prototype has and runs do not find.\n\n",
             self.command, self.device
         );
         let _ = writeln!(text, "{}.\n\n| {} |", tally.in_words(failures.len()), TITLES.join(" | "));

@@ -1,4 +1,4 @@
-//! Pistons: slow compression to half the volume against the adiabatic law (specification, section 8), and pistons that
+//! Pistons: slow compression to half the volume against the adiabatic law (docs/reference/accuracy.md), and pistons that
 //! drive a shock against Rankine and Hugoniot.
 //!
 //! Speeds are in c0 = sqrt(kT/m) of the gas at rest. A slow piston (.02 c0) leaves T V^(gamma-1) alone. A fast one,

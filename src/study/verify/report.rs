@@ -55,7 +55,7 @@ impl Tally {
         if self.differ > 0 {
             let (verb, figures) =
                 if self.differ == 1 { ("differs", "a disputed figure") } else { ("differ", "disputed figures") };
-            let _ = write!(words, ", {} {verb} from {figures} of the specification", self.differ);
+            let _ = write!(words, ", {} {verb} from {figures} of the prototype", self.differ);
         }
         match failed {
             0 => {}
@@ -114,7 +114,7 @@ mod tests {
         let found = Findings { charts: vec![chart], ..vec![good, bad, other].into() };
         let failed = [(&CASES[1], "no\n  room".to_owned())];
         let page = Page::new(&[(&CASES[0], found)], &failed, "corpuscle verify", "a device", "figures").text();
-        let summary = "1 of 3 pass, 1 differs from a disputed figure of the specification, 1 case failed.";
+        let summary = "1 of 3 pass, 1 differs from a disputed figure of the prototype, 1 case failed.";
         assert!(page.contains(summary), "{page}");
         assert!(page.contains(&format!("\n- `{}`: no room.\n", CASES[1].name)), "{page}");
         assert!(

@@ -18,7 +18,7 @@ use super::statistics::mean_and_error;
 use super::witness::{model_from, scene_of, unsound};
 use super::{Check, Effort, Findings, run};
 
-/// Kinematic viscosity over d c0 of closest approach at f = .1 (specification, section 2), known to 10 %.
+/// Kinematic viscosity over d c0 of closest approach at f = .1 (method.md, "Collisions"), known to 10 %.
 pub const FLOOR: f64 = 0.65;
 /// And of the method `half-turn`, with collision cells of 14 particles in steps of .6 d/c0, known to .03.
 pub const HALF_TURN_FLOOR: f64 = 0.21;
@@ -52,7 +52,7 @@ pub fn viscosity_in(
     seeds: u64,
     cell: Option<f64>,
 ) -> Result<(f64, f64), StudyError> {
-    // Some .65 d c0 (specification, section 2): the time in which the vortices fall to LAST.
+    // Some .65 d c0 (docs/explanation/method.md, "Collisions"): the time in which the vortices fall to LAST.
     let distance = EDGE / (gas.particles as f64).cbrt();
     let mut gas_box = EquilibriumBox { snapshots: 40, ..gas };
     let speed = gas_box.thermal_speed();

@@ -30,12 +30,12 @@ pub fn profile(
     Ok((model, profile))
 }
 
-/// Particles of the specification's limits, and how mean differences fall with them: as N^-.26 at fixed occupancy
+/// Particles of the prototype's limits, and how mean differences fall with them: as N^-.26 at fixed occupancy
 /// (section 2).
 const PARTICLES: f64 = 160_000.0;
 const POWER: f64 = -0.26;
 
-/// A method, and at most what its mean |difference| of the density (specification, section 8) and of the velocity (its table
+/// A method, and at most what its mean |difference| of the density (docs/reference/accuracy.md) and of the velocity (its table
 /// of section 2 and the 5 % to which that is known) is at 160,000 particles and f = .1.
 type Limits = (Method, Option<f64>, [f64; 2]);
 const LIMITS: [Limits; 3] = [

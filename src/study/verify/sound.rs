@@ -99,7 +99,7 @@ fn solved(mut m: [[f64; 4]; 3]) -> [f64; 3] {
 }
 
 pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    // One per cent is the specification's, section 8; a third of it takes 200,000 particles, and fewer know less.
+    // One per cent is allowed; a third of it takes 200,000 particles, and fewer know less.
     let (particles, tolerance) = if effort == Effort::Quick { (24_000, 0.03) } else { (240_000, 0.01) };
     Ok(vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?].into())
 }

@@ -17,7 +17,7 @@ pub fn mean_of_series(values: &[f64], blocks: usize) -> (f64, f64) {
     mean_and_error(&means)
 }
 
-/// Relative standard error of the pressure of so many independent hits (specification, section 6).
+/// Relative standard error of the pressure of so many independent hits (method.md, "Noise").
 pub fn error_of_hits(hits: f64) -> f64 {
     1.13 / hits.sqrt()
 }

@@ -10,7 +10,7 @@ use crate::study::verify::piston::{GAMMA, Piston, warming};
 use crate::study::verify::statistics::mean_and_error;
 use crate::study::verify::{Effort, Findings, model_from, run};
 
-/// The specification's "23 % wrong in filling and in adiabatic compression", to the per cent.
+/// The prototype's "23 % wrong in filling and in adiabatic compression", to the per cent.
 const KNOWN: f64 = 0.01;
 
 /// Energy at 2:1 over that of an adiabatic compression, gamma 1.4: the piston doubles each speed along its way, energy
@@ -34,7 +34,7 @@ pub fn wrong(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         found.push(warming(&run(device, &model_from("piston", scene)?, Options::default())?) / 2f64.powf(GAMMA - 1.0));
     }
     let found = mean_and_error(&found);
-    let quantity = "none: T V^(gamma-1) at 2:1, .02 c0 (specification 1.23)".to_owned();
+    let quantity = "none: T V^(gamma-1) at 2:1, .02 c0 (prototype 1.23)".to_owned();
     let mut checks = vec![figure(quantity, compressed(), found, KNOWN)];
 
     let (model, run) = filled(device, Method::None, if effort == Effort::Quick { 6000 } else { 60_000 })?;
@@ -49,9 +49,9 @@ pub fn wrong(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     // Each newborn's translational energy has the variance 5/2 (kT)^2 of a gamma variate, of the mean 5/2 kT.
     let error = expected * (2.5 * audit.particles_injected as f64).sqrt() * 700.0 / (1.5 * at_rest + 2.5 * came_in);
     let found = (translation / (0.6 * audit.energy_end), error);
-    checks.push(figure("none: p in the tank over that of a gas (specification 1.23)".into(), expected, found, KNOWN));
+    checks.push(figure("none: p in the tank over that of a gas (prototype 1.23)".into(), expected, found, KNOWN));
     let note = format!(
-        "The specification has `none` 23 % wrong in filling and in adiabatic compression, not saying how far. In free flight a slow \
+        "The prototype has `none` 23 % wrong in filling and in adiabatic compression, not saying how far. In free flight a slow \
          2:1 compression makes (4 + 1 + 1)/2 + 1 of 5/2 kT, {:.0} % too much, 23 % at 2.05:1; what enters a tank keeps 5/2 kT of its 7/2 kT in \
          translation, where collisions leave 21/10: {:.0} % too much pressure in the tank of this run, {:.0} % in one that was empty. Both \
          were found",

@@ -1,4 +1,4 @@
-//! Events that mutual choice in few rounds loses (specification, section 2).
+//! Events that mutual choice in few rounds loses (docs/explanation/method.md, "Collisions").
 
 use super::figure::figure;
 use crate::gpu::Device;
@@ -7,7 +7,7 @@ use crate::study::verify::collisions::collision_rate_held;
 use crate::study::verify::gas_box::EquilibriumBox;
 use crate::study::verify::{Effort, Findings};
 
-/// x, and the rate over theory with one to four rounds, as the specification has it; good to .01.
+/// x, and the rate over theory with one to four rounds, as the prototype has it; good to .01.
 const TABLE: [(f64, [f64; 4]); 5] = [
     (0.2, [0.814, 0.947, 0.982, 0.994]),
     (0.05, [0.945, 0.998, 0.994, 0.999]),
@@ -17,7 +17,7 @@ const TABLE: [(f64, [f64; 4]); 5] = [
 ];
 const KNOWN: f64 = 0.01;
 
-/// Counted in the core of a box of walls, where the specification has no walls. C collisions know a rate to 1/sqrt(C): the
+/// Counted in the core of a box of walls, where the prototype has no walls. C collisions know a rate to 1/sqrt(C): the
 /// core has half of the 8000 particles.
 pub fn collisions(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();

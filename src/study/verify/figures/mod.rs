@@ -1,7 +1,7 @@
-//! Figures that the specification has from a prototype, and that no law gives: found again with this solver, in the cases of
+//! Figures that a prototype on the CPU gave, and that no law gives: found again with this solver, in the cases of
 //! `corpuscle verify --full` and by name.
 //!
-//! A check's reference is the specification's figure, and its tolerance is what that is known to (viscosity 10 %, shock
+//! A check's reference is the prototype's figure, and its tolerance is what that is known to (viscosity 10 %, shock
 //! tubes 5 %, orifices 2 %, rates .01) and three standard errors of the run, as root of the squares. Where theory says
 //! otherwise, the reference is what it says, and the quantity names the figure. Where it says nothing and runs find another, the
 //! figure stays, disputed. A note says why.
@@ -20,22 +20,22 @@ use super::Case;
 pub const FIGURES: &[Case] = &[
     Case {
         name: "lost-collisions",
-        law: "the specification's table of collisions over theory by rounds and step",
+        law: "the prototype's table of collisions over theory by rounds and step",
         run: lost::collisions,
     },
     Case {
         name: "rigid-spheres",
-        law: "the specification's pressures of hard-sphere, and its sound against that of Carnahan and Starling's gas",
+        law: "the prototype's pressures of hard-sphere, and its sound against that of Carnahan and Starling's gas",
         run: rigid::spheres,
     },
     Case {
         name: "viscosity-floor",
-        law: "as viscosity, at the specification's other occupancies and of the method cell",
+        law: "as viscosity, at the prototype's other occupancies and of the method cell",
         run: floors::viscosities,
     },
     Case {
         name: "sod-table",
-        law: "the specification's table of Sod's shock tube by method, particles, occupancy, step and rounds",
+        law: "the prototype's table of Sod's shock tube by method, particles, occupancy, step and rounds",
         run: tubes::table,
     },
     Case {
@@ -50,7 +50,7 @@ pub const FIGURES: &[Case] = &[
     },
     Case {
         name: "small-difference",
-        law: "the specification's discharge of a hole into gas of .8 of the pressure, over the isentropic law",
+        law: "the prototype's discharge of a hole into gas of .8 of the pressure, over the isentropic law",
         run: openings::small_difference,
     },
 ];

@@ -21,7 +21,7 @@ use crate::study::verify::{Effort, Findings, model_from, run};
 const VENT: f64 = 0.02;
 const OCCUPANCY: f64 = 5e-4;
 
-/// The specification has its rates to .01; so few particles as a quick run has know it to three times that.
+/// The prototype has its rates to .01; so few particles as a quick run has know it to three times that.
 const KNOWN: [f64; 2] = [0.03, 0.01];
 
 /// d lnT / d lnN of a cube with a hole of this size in the middle of each face, made of vents that ask for so much that each hit
@@ -69,14 +69,14 @@ pub fn constant_probability(device: &Device, effort: Effort) -> Result<Findings,
         left += before - after;
     }
     let (slope, error) = (slopes / f64::from(seeds), 1.2 * (3.0f64 / 9.0 / left).sqrt());
-    let quantity = "d lnT / d lnN, a constant P (specification .206)".to_owned();
+    let quantity = "d lnT / d lnN, a constant P (prototype .206)".to_owned();
     let known = KNOWN[usize::from(effort == Effort::Full)];
     Ok(vec![figure(quantity, 0.2, (slope, error), known)].into())
 }
 
 /// Pressure behind the hole over that before it.
 const BEHIND: f64 = 0.8;
-/// The specification's discharge coefficients there by Knudsen number, and particles in the chamber and seeds that know them, in a
+/// The prototype's discharge coefficients there by Knudsen number, and particles in the chamber and seeds that know them, in a
 /// full run: the second gas has an occupancy of .09. The second is the one that was settled after its first, of too few particles. They are
 /// those of a difference that dies down in the run, to .9 and more; of steady flow they are in `src/gas/discharge.rs`.
 const SMALL: [(f64, f64, u64, u64); 2] = [(1.0, 0.18, 30_000, 9), (0.1, 0.40, 120_000, 3)];

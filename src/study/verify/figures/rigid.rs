@@ -10,7 +10,7 @@ use crate::study::verify::collisions::rigid_pressure_ratio;
 use crate::study::verify::sound::wave;
 use crate::study::verify::{Check, Effort, Findings};
 
-/// Occupancy, steps, and the pressure over n k T (specification, section 2; x = .1, R = 2, N = 8000).
+/// Occupancy, steps, and the pressure over n k T (docs/explanation/method.md, "Collisions"; x = .1, R = 2, N = 8000).
 const PRESSURES: [(f64, u32, f64); 3] = [(0.03, 960, 1.124), (0.2, 1280, 2.248), (0.3, 1280, 3.458)];
 /// What is taken for the table's own error, as in the case `wall-pressure`.
 const KNOWN: f64 = 0.02;
@@ -47,11 +47,11 @@ pub fn spheres(device: &Device, effort: Effort) -> Result<Findings, StudyError> 
     };
     let expected = faster(OCCUPANCY);
     let (found, error) = wave(device, &setting, expected)?;
-    let quantity = format!("hard-sphere: sound over sqrt(gamma kT/m), f = {OCCUPANCY} (specification 1.15)");
+    let quantity = format!("hard-sphere: sound over sqrt(gamma kT/m), f = {OCCUPANCY} (prototype 1.15)");
     // As the case `sound` at this size: 3 % of the frequency.
     findings.checks.push(Check::of(quantity, expected, (found, error), 0.03 * expected));
     findings.notes.push(format!(
-        "The specification has the sound of `hard-sphere` 15 % too fast at f = .1. Rigid spheres of its own pressures there \
+        "The prototype has the sound of `hard-sphere` 15 % too fast at f = .1. Rigid spheres of its own pressures there \
          (1.486 n k T at .1, 1.124 at .03, 2.248 at .2) have (m/kT) dp/drho = d(f Z)/df + Z^2/(cv/k): sound is {:.0} % faster at \
          f = .1, and 15 % at f = .035. The run agrees",
         100.0 * (expected - 1.0)

@@ -1,4 +1,4 @@
-//! The specification's table of Sod's shock tube, section 2. Its f and x are those of the gas on the left: with those of the mean
+//! The prototype's table of Sod's shock tube. Its f and x are those of the gas on the left: with those of the mean
 //! state rigid spheres on the left would be 1.8 times as dense, and the table's errors of them half as large again.
 
 use super::figure::figure;
@@ -36,7 +36,7 @@ const SCATTERED: u64 = 8;
 /// What the table's figures are known to, besides counting noise.
 const KNOWN: f64 = 0.05;
 
-/// The specification's are single runs, to 5 % and their counting noise. Ours are means of as many seeds as have `together` particles.
+/// The prototype's are single runs, to 5 % and their counting noise. Ours are means of as many seeds as have `together` particles.
 pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (count, together) = if effort == Effort::Quick { (4, 0) } else { (TABLE.len(), 320_000) };
     let mut findings = Findings::default();
@@ -70,7 +70,7 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         }
     }
     findings.notes.push(
-        "The specification's table of Sod's tube is that of f and x of the gas on the left, which it does not say: with those of the mean \
+        "The prototype's table of Sod's tube is that of f and x of the gas on the left, which it does not say: with those of the mean \
          state hard-sphere has .078 in the density, not .053, and the other methods less than the table"
             .into(),
     );
@@ -78,10 +78,10 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         let (reference, error) = between(SERIES.map(|row| (TABLE[row].5[1], velocities[row].1)));
         let (found, ..) = velocities[SERIES[1]];
         let quantity =
-            "closest-approach, N = 40000: mean |u - exact| by the specification's of 10000 and 160000".to_owned();
+            "closest-approach, N = 40000: mean |u - exact| by the prototype's of 10000 and 160000".to_owned();
         findings.checks.push(figure(quantity, reference, found, (KNOWN * reference).hypot(3.0 * error)));
         findings.notes.push(format!(
-            "The velocity's .055 of closest-approach with 40,000 particles is a single run, and out of line with the specification's own rows of \
+            "The velocity's .055 of closest-approach with 40,000 particles is a single run, and out of line with the prototype's own rows of \
              10,000 and 160,000 (.087, .045), which have {reference:.4} +- {error:.4} between them if it falls as a power of the particles: with that \
              figure the {:.4} +- {:.4} that is found agrees, with .055 it does not",
             found.0, found.1

@@ -1,8 +1,11 @@
 //! Law: the documents name only what is there, and name all of it.
 //!
 //! Relative links and their anchors lead somewhere; every path of the repository in a code span or a code
-//! block exists; every whole scene in them can be read; every verb of the README is one of the program; `ARCHITECTURE.md` names every folder of
-//! `src` and every shader; no figure is left open.
+//! block exists; every whole scene in them can be read; every verb of the README is one of the program; `ARCHITECTURE.md`
+//! names every folder of `src`, the page of kernels every shader; the summary of the book lists every page, and the page of
+//! the command line is that of today; no figure is left open. `tests/docs/measures.rs` holds how long they are.
+
+mod measures;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -156,33 +159,63 @@ fn what_is_not_there_is_found() {
     assert_eq!(missing(text, root()), expected);
 }
 
-/// What `ARCHITECTURE.md` must name and does not.
-fn unnamed(architecture: &str) -> Vec<String> {
-    let (_, code) = parts(architecture);
+/// The folders of `src` that a map does not name.
+fn unnamed_folders(map: &str) -> Vec<String> {
+    let (_, code) = parts(map);
     let named = paths(&code);
-    let mut unnamed = Vec::new();
-    for entry in fs::read_dir(root().join("src")).unwrap().flatten().filter(|entry| entry.path().is_dir()) {
-        let folder = format!("src/{}", entry.file_name().to_string_lossy());
-        if !named.contains(&folder.as_str()) {
-            unnamed.push(folder);
-        }
-    }
-    for path in files(&root().join("shaders")) {
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if !named.iter().any(|word| word.rsplit('/').next() == Some(&name)) {
-            unnamed.push(name);
-        }
-    }
+    let entries = fs::read_dir(root().join("src")).unwrap().flatten().filter(|entry| entry.path().is_dir());
+    let folders = entries.map(|entry| format!("src/{}", entry.file_name().to_string_lossy()));
+    let mut unnamed: Vec<String> = folders.filter(|folder| !named.contains(&folder.as_str())).collect();
     unnamed.sort();
     unnamed
 }
 
+/// The shaders that a page does not name.
+fn unnamed_shaders(page: &str) -> Vec<String> {
+    let (_, code) = parts(page);
+    let named = paths(&code);
+    let shaders = files(&root().join("shaders")).into_iter();
+    let names = shaders.map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
+    names.filter(|name| !named.iter().any(|word| word.rsplit('/').next() == Some(name))).collect()
+}
+
 #[test]
-fn the_architecture_names_every_folder_and_every_shader() {
-    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
-    assert_eq!(unnamed(&text), Vec::<String>::new());
-    let without = text.replace("settle.wgsl", "settle").replace("src/gas/", "gas");
-    assert_eq!(unnamed(&without), ["settle.wgsl", "src/gas"]);
+fn the_architecture_names_every_folder_and_the_page_of_kernels_every_shader() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    assert_eq!(unnamed_folders(&map), Vec::<String>::new());
+    assert_eq!(unnamed_folders(&map.replace("src/gas/", "gas")), ["src/gas"]);
+    let page = fs::read_to_string(root().join("docs/dev/kernels.md")).unwrap();
+    assert_eq!(unnamed_shaders(&page), Vec::<String>::new());
+    assert_eq!(unnamed_shaders(&page.replace("settle.wgsl", "settle")), ["settle.wgsl"]);
+}
+
+/// The pages of the book that its summary does not list, once each.
+fn unlisted(summary: &str) -> Vec<String> {
+    let book = root().join("docs");
+    let pages = files(&book).into_iter().filter(|path| path.extension().is_some_and(|end| end == "md"));
+    let names = pages.map(|path| path.strip_prefix(&book).unwrap().display().to_string());
+    let names = names.filter(|name| name != "SUMMARY.md");
+    names.filter(|name| summary.matches(&format!("]({name})")).count() != 1).collect()
+}
+
+/// Stands for `mdbook build`, which wants just this beside links that lead somewhere.
+#[test]
+fn the_summary_lists_every_page() {
+    let summary = fs::read_to_string(root().join("docs/SUMMARY.md")).unwrap();
+    assert_eq!(unlisted(&summary), Vec::<String>::new());
+    assert_eq!(unlisted(&summary.replace("(reference/scenes.md)", "()")), ["reference/scenes.md"]);
+    let settings: toml::Table = fs::read_to_string(root().join("book.toml")).unwrap().parse().unwrap();
+    assert_eq!(settings["book"]["src"].as_str(), Some("docs"));
+}
+
+/// The page is what `corpuscle man --markdown` prints: that command writes it anew.
+#[test]
+fn the_page_of_the_command_line_is_that_of_today() {
+    let output = Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(["man", "--markdown"]).output().unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.contains("## run") && printed.contains("`--particles <N>`"), "{printed}");
+    let page = fs::read_to_string(root().join("docs/reference/command-line.md")).unwrap();
+    assert!(page == printed, "docs/reference/command-line.md is not what `corpuscle man --markdown` prints");
 }
 
 /// The words that follow the program's name in code.
