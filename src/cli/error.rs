@@ -107,7 +107,7 @@ pub enum CliError {
     #[diagnostic(help("start it without the launcher; only `run` and `resume` share their work among ranks"))]
     OneProcess { verb: &'static str, variable: &'static str, value: String },
     #[error(transparent)]
-    #[diagnostic(help("docs/how-to/clusters.md says how ranks are started"))]
+    #[diagnostic(help("docs/how-to/restart-and-clusters.md says how ranks are started"))]
     Rank(#[from] RankError),
     #[error("there is no case `{asked}`; there are: {}", known.join(", "))]
     UnknownCase { asked: String, known: Vec<String> },
