@@ -141,7 +141,7 @@ pub const LIMITS: &[Limit] = &[
         Quantity::LostCollisions,
         None,
         AtMost(0.03),
-        "the gas is too viscous, and spin and translation part (docs/explanation/method.md, Collisions)",
+        "the gas is too viscous, and spin falls behind translation",
     ),
     limit_of(Quantity::Occupancy, None, AtMost(0.3), "it costs search time and buys no resolution"),
     // Carnahan and Starling: 1 % at f = .0025.

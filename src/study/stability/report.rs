@@ -144,19 +144,31 @@ fn verdict(axis: &Axis, points: &[Point], method: Method) -> Option<String> {
     Some(sentence + &guard)
 }
 
-/// A page with all maps, what broke first, and the table of limits. `made_by`: the command; `device`: what it ran on.
+/// How the tables of the page are read.
+const READING: &str = "\
+Each table goes from safe to risky along an axis. A quantity is *broken* where it is off by more than its allowance and two
+standard errors. It is *unclear* where the run does not know it to half of the allowance. A cell names the quantity that is
+farthest off, and how many times its allowance; `stability.csv` has all quantities with their errors.
+
+| quantity | allowance, fixed beforehand |
+|---|---|
+| energy | 1e-5 of all; with inflow 1e-4 of U0 and the enthalpy that came in |
+| pressure | 1 % of n k T |
+| equipartition | 2 % |
+| collision rate | 3 % of n pi sigma^2 gbar |
+| lost collisions | 3 % |
+| wall tightness | no particle outside, none farther behind a wall than the audit allows, no flight cut short |
+| flow | 7 % of a continuum's |
+| pressure on a piston | 5 %, and a fifth of its rise |
+| density profile of a shock tube | the .024 of 160,000 particles, as N^-.26 |
+| push: momentum that the gas on the right of a tube got from that on the left, over the exact one | that of a piston's pressure |";
+
+/// A page with all maps and the table of limits. `made_by`: the command; `device`: what it ran on.
 pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
     let mut page = format!(
-        "# Limits\n\nWhere the methods fail, as found by\n\n```sh\n{made_by}\n```\n\non {device}. Along each axis, from safe \
-         to risky, a run for each method; a quantity is *broken* where it is off by more than its allowance and two standard \
-         errors, *unclear* where the run does not know it to half of the allowance. A cell names the quantity that is \
-         farthest off, and how many times its allowance. Allowances, fixed beforehand: energy 1e-5 of all (with inflow 1e-4 \
-         of U0 and the enthalpy that came in); pressure 1 % of n k T; equipartition 2 %; collision rate 3 % of n pi sigma^2 \
-         gbar; lost collisions 3 %; wall tightness: no particle outside, none beyond a wall by more than the audit lets \
-         pass, no flight cut short; flow 7 % of a continuum's; pressure on a piston 5 %, and a fifth of its rise; density \
-         profile of a shock tube the .024 of 160,000 particles as N^-.26; push (what momentum the gas of the right of a tube \
-         has got from that of the left, over that of the exact solution) what a piston's pressure is allowed.\n\n`corpuscle plan` and `corpuscle run` warn beyond the guards below, and refuse with `--strict` \
-         ([errors](errors.md#warnings)).\n\n## Guards\n\n| quantity | method | limit | beyond it |\n|---|---|---|---|\n"
+        "# Limits\n\nWhere the methods fail, as found on {device} by\n\n```sh\n{made_by}\n```\n\n{READING}\n\n## Guards\n\n\
+         `corpuscle plan` and `corpuscle run` warn beyond these limits, and refuse with `--strict` \
+         ([errors](errors.md#warnings)).\n\n| quantity | method | limit | beyond it |\n|---|---|---|---|\n"
     );
     for limit in LIMITS {
         let _ = writeln!(page, "{}", guard(limit));
@@ -166,16 +178,11 @@ pub fn page(maps: &[Map<'_>], made_by: &str, device: &str) -> String {
         let (values, rows) = rows(axis, points);
         let _ = writeln!(page, "\n## {}\n\n{}; {}.\n", axis.name, capital(axis.what), axis.runs);
         let head: Vec<String> = values.iter().map(f64::to_string).collect();
-        let _ = writeln!(page, "| method | {} |", head.join(" | "));
-        let _ = writeln!(page, "|---|{}", "---|".repeat(values.len()));
+        let _ = writeln!(page, "| method | {} | guard |", head.join(" | "));
+        let _ = writeln!(page, "|---|{}---|", "---|".repeat(values.len()));
         for (method, cells) in rows {
-            let _ = writeln!(page, "| {} | {} |", method.name(), cells.join(" | "));
-        }
-        page.push('\n');
-        for &method in axis.methods {
-            if let Some(sentence) = verdict(axis, points, method) {
-                let _ = writeln!(page, "- `{}`: {sentence}.", method.name());
-            }
+            let guard = axis.limit(method).map_or_else(String::new, |bound| bound.words());
+            let _ = writeln!(page, "| {} | {} | {guard} |", method.name(), cells.join(" | "));
         }
     }
     page
@@ -283,8 +290,8 @@ mod tests {
         assert!(kept[5].checks[1].measured.is_nan() && kept[5].checks[1].quantity == check(0.0).quantity);
         let page = page(&maps, "corpuscle stability time-step", "a device");
         for part in [
-            "| method | 0.5 | 2 |",
-            "| cell | holds | pressure x3.2 |",
+            "| method | 0.5 | 2 | guard |",
+            "| cell | holds | pressure x3.2 | at most 2 |",
             "corpuscle stability time-step",
             "| share of collisions lost | all others | at most 0.03 |",
         ] {
