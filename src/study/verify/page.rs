@@ -14,7 +14,6 @@ const TITLE: &str = "# Accuracy";
 const ALIGNMENT: &str = "|---|---|--:|--:|--:|--:|---|";
 const FAILED: &str = "## What failed";
 const NOTES: &str = "## Where the prototype's figures are others";
-const LAWS: &str = "## The laws";
 
 /// A page by its parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +29,6 @@ struct Part {
     rows: Vec<String>,
     failure: Option<String>,
     notes: Vec<String>,
-    law: String,
     charts: Vec<String>,
 }
 
@@ -61,7 +59,6 @@ impl Page {
                 rows: found.checks.iter().map(row).collect(),
                 failure: None,
                 notes: found.notes.iter().map(|note| format!("- `{}`: {}.", case.name, one_line(note))).collect(),
-                law: format!("- `{}`: {}.", case.name, case.law),
                 charts: found
                     .charts
                     .iter()
@@ -104,7 +101,7 @@ impl Page {
             if found.is_empty() {
                 continue;
             }
-            if let Some(next) = [FAILED, NOTES, LAWS].into_iter().find(|title| *title == found) {
+            if let Some(next) = [FAILED, NOTES].into_iter().find(|title| *title == found) {
                 section = next;
                 continue;
             }
@@ -122,11 +119,7 @@ impl Page {
                 let name = found.strip_prefix("- `").and_then(|rest| rest.split_once('`'));
                 let (name, _) = name.ok_or_else(|| wrong("a line of a case"))?;
                 let part = cases.entry(name.to_owned()).or_default();
-                match section {
-                    FAILED => part.failure = Some(owned()),
-                    NOTES => part.notes.push(owned()),
-                    _ => part.law = owned(),
-                }
+                if section == FAILED { part.failure = Some(owned()) } else { part.notes.push(owned()) }
             }
         }
         Ok(Page { command, device, cases })
@@ -161,9 +154,10 @@ impl Page {
         let mut text = format!(
             "{TITLE}\n\n\
              Reference cases and what a run gave for them, as printed by\n\n```sh\n{}\n```\n\n\
-             on {}. Another adapter draws another sample, as good. The tolerance is that of the law, fixed beforehand; \
-             a check passes if the measured figure is within it, and if its standard error is at most a third of it. One that \
-             differs is of a figure that the prototype has and runs do not find.\n\n",
+             on {}. Another adapter draws another sample, as good.\n\n\
+             The tolerance is that of the law, fixed beforehand. A check passes if the measured figure is within it, and its\n\
+             standard error at most a third of it. One that differs is of a disputed figure of the prototype. The law of each\n\
+             case stands in `corpuscle verify --list`.\n\n",
             self.command, self.device
         );
         let _ = writeln!(text, "{}.\n\n| {} |", tally.in_words(failures.len()), TITLES.join(" | "));
@@ -177,7 +171,6 @@ impl Page {
         section("", rows);
         section(&format!("\n{FAILED}\n\n"), failures);
         section(&format!("\n{NOTES}\n\n"), parts.iter().flat_map(|part| &part.notes).collect());
-        section(&format!("\n{LAWS}\n\n"), parts.iter().map(|part| &part.law).filter(|law| !law.is_empty()).collect());
         for chart in parts.iter().flat_map(|part| &part.charts) {
             let _ = writeln!(text, "\n{chart}");
         }
