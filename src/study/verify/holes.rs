@@ -356,9 +356,9 @@ pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, St
         };
         let table = KNUDSEN.iter().map(|&knudsen| [knudsen.log10(), figure(knudsen)]);
         findings.notes.push(format!(
-            "Kn 1 and 3 are held against published simulations of a thin orifice (Sharipov 2004), which are of a monatomic gas: its rise from \
-             free flight to the continuum, between the limits of gamma 1.4. {particles} particles cannot be a gas of Kn = {DENSE}, whatever their \
-             diameter; its row is of a quarter of a chamber with as many as are that viscous, before sound comes back from the walls"
+            "Kn 1 and 3 are held against published simulations of a thin orifice and a monatomic gas (Sharipov 2004), between \
+             the limits of gamma 1.4. {particles} particles cannot be a gas of Kn = {DENSE}: its row is of a quarter of a chamber, \
+             before sound comes back from the walls"
         ));
         findings.charts.push(
             Curves::new("orifice", "Discharge of a hole into near-vacuum".into(), "log10 Kn of the radius", "Cd")

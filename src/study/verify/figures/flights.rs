@@ -51,10 +51,9 @@ pub fn wrong(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let found = (translation / (0.6 * audit.energy_end), error);
     checks.push(figure("none: p in the tank over that of a gas (prototype 1.23)".into(), expected, found, KNOWN));
     let note = format!(
-        "The prototype has `none` 23 % wrong in filling and in adiabatic compression, not saying how far. In free flight a slow \
-         2:1 compression makes (4 + 1 + 1)/2 + 1 of 5/2 kT, {:.0} % too much, 23 % at 2.05:1; what enters a tank keeps 5/2 kT of its 7/2 kT in \
-         translation, where collisions leave 21/10: {:.0} % too much pressure in the tank of this run, {:.0} % in one that was empty. Both \
-         were found",
+        "The prototype has `none` 23 % wrong in filling and in adiabatic compression. In free flight a slow 2:1 compression makes \
+         {:.0} % too much, 23 % at 2.05:1. What enters keeps 5/2 kT of its 7/2 kT in translation, not 21/10: {:.0} % too much \
+         pressure in this tank, {:.0} % in an empty one",
         100.0 * (compressed() - 1.0),
         100.0 * (expected - 1.0),
         100.0 * (in_tank(0.0, 1.0) - 1.0)

@@ -41,13 +41,13 @@ pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, S
     let quantity = format!("cell: nu / (d c0), f = {occupancy}, N = {particles} (prototype .7 to .8)");
     findings.checks.push(figure(quantity, of_cells(occupancy), found, 0.1 * of_cells(occupancy)));
     findings.notes.push(
-        "The prototype has .54 for closest approach at f = .2, known to 10 %, and does not say with what rounds and steps. With \
-         three rounds and x = .2, which lose 2 % of the collisions, it is found to be about .48"
+        "The prototype has .54 for closest approach at f = .2, known to 10 %. With three rounds and x = .2, which lose 2 % of \
+         the collisions, it is about .48"
             .into(),
     );
     findings.notes.push(format!(
-        "The prototype has .7 to .8 for cells of four to eight particles. Theory has {:.2} for the six of a plan at f = .1 \
-         (Alexander, Garcia and Alder, 1998), at least {:.2} at any occupancy, and the run agrees with it",
+        "The prototype has .7 to .8 for cells of four to eight particles. Theory has {:.2} for six at f = .1 (Alexander, Garcia \
+         and Alder, 1998), at least {:.2} at any occupancy, and the run agrees with it",
         of_cells(occupancy),
         2.0 * 0.783 * kinetics::ACROSS_CELLS.sqrt() * PER_CELL.cbrt()
     ));

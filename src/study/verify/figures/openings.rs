@@ -111,10 +111,9 @@ pub fn small_difference(device: &Device, effort: Effort) -> Result<Findings, Stu
         findings.checks.push(figure(format!("{quantity}, by that of cell"), reference, both, known));
         let (few, of_few) = net_discharge(device, Method::ClosestApproach, dense, FEW.0, FEW.1)?;
         findings.notes.push(format!(
-            "At Kn = {dense} two methods that share neither a collision rule nor a viscosity agree: closest approach with {many} particles in \
-             the chamber has {found:.3} +- {error:.3}, and collisions in cells of about a mean free path \
-             with {} {reference:.3} +- {of_reference:.3}. With {} spheres closest approach has {few:.3} +- {of_few:.3}: they fill a third of the \
-             space, and are more viscous than their Knudsen number says. The difference dies down in the run, so these are of smaller ones, too",
+            "At Kn = {dense} two methods agree: closest approach with {many} particles has {found:.3} +- {error:.3}, collisions in \
+             cells with {} {reference:.3} +- {of_reference:.3}. With {} spheres closest approach has {few:.3} +- {of_few:.3}: they \
+             fill a third of the space, and are more viscous than their Knudsen number says",
             CELLS.0, FEW.0
         ));
     }

@@ -51,9 +51,8 @@ pub fn spheres(device: &Device, effort: Effort) -> Result<Findings, StudyError> 
     // As the case `sound` at this size: 3 % of the frequency.
     findings.checks.push(Check::of(quantity, expected, (found, error), 0.03 * expected));
     findings.notes.push(format!(
-        "The prototype has the sound of `hard-sphere` 15 % too fast at f = .1. Rigid spheres of its own pressures there \
-         (1.486 n k T at .1, 1.124 at .03, 2.248 at .2) have (m/kT) dp/drho = d(f Z)/df + Z^2/(cv/k): sound is {:.0} % faster at \
-         f = .1, and 15 % at f = .035. The run agrees",
+        "The prototype has the sound of `hard-sphere` 15 % too fast at f = .1. By its own pressures there rigid spheres have \
+         (m/kT) dp/drho = d(f Z)/df + Z^2/(cv/k): sound is {:.0} % faster, and the run agrees",
         100.0 * (expected - 1.0)
     ));
     Ok(findings)

@@ -70,8 +70,8 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         }
     }
     findings.notes.push(
-        "The prototype's table of Sod's tube is that of f and x of the gas on the left, which it does not say: with those of the mean \
-         state hard-sphere has .078 in the density, not .053, and the other methods less than the table"
+        "In the prototype's table of Sod's tube f and x are those of the gas on the left. With those of the mean state \
+         hard-sphere has .078 in the density, not .053, and the other methods less than the table"
             .into(),
     );
     if effort == Effort::Full {
@@ -81,9 +81,9 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
             "closest-approach, N = 40000: mean |u - exact| by the prototype's of 10000 and 160000".to_owned();
         findings.checks.push(figure(quantity, reference, found, (KNOWN * reference).hypot(3.0 * error)));
         findings.notes.push(format!(
-            "The velocity's .055 of closest-approach with 40,000 particles is a single run, and out of line with the prototype's own rows of \
-             10,000 and 160,000 (.087, .045), which have {reference:.4} +- {error:.4} between them if it falls as a power of the particles: with that \
-             figure the {:.4} +- {:.4} that is found agrees, with .055 it does not",
+            "The velocity's .055 of closest-approach with 40,000 particles is a single run, and out of line with the rows of \
+             10,000 and 160,000, which have {reference:.4} +- {error:.4} between them. With that the {:.4} +- {:.4} that is found \
+             agrees",
             found.0, found.1
         ));
     }
