@@ -5,8 +5,6 @@ use std::fmt::Write;
 
 use clap::{Arg, Command};
 
-use super::arguments::EXIT_CODES;
-
 /// The page. `command` is built, so that its verbs have their full names.
 pub fn page(command: &Command) -> String {
     let mut page =
@@ -16,7 +14,7 @@ pub fn page(command: &Command) -> String {
     for verb in verbs(command) {
         let _ = writeln!(page, "| [`{0}`](#{0}) | {1} |", verb.get_name(), about(verb));
     }
-    let _ = write!(page, "\n{EXIT_CODES} [What to do](errors.md).\n\n## Options of every verb\n\n");
+    page += "\n## Options of every verb\n\n";
     let shared = command.get_arguments().filter(|argument| argument.is_global_set());
     table(&mut page, shared);
     let mut told = BTreeMap::new();
@@ -38,7 +36,7 @@ fn about(command: &Command) -> String {
 fn section<'a>(page: &mut String, verb: &'a Command, told: &mut BTreeMap<(String, String), &'a str>) {
     let usage = verb.clone().render_usage().to_string();
     let usage = usage.trim_start_matches("Usage: ");
-    let _ = write!(page, "\n## {}\n\n{}: `{usage}`\n", verb.get_name(), about(verb));
+    let _ = write!(page, "\n## {}\n\n`{usage}`\n", verb.get_name());
     let (mut own, mut before) = (Vec::new(), BTreeMap::<&str, Vec<String>>::new());
     for argument in verb.get_arguments().filter(|argument| is_own(argument)) {
         match told.get(&key(argument)) {

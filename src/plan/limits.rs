@@ -137,12 +137,7 @@ pub const FAST_TAIL: f64 = 1e-3;
 
 /// All limits. That of the step depends on the rounds: [`step_limit`].
 pub const LIMITS: &[Limit] = &[
-    limit_of(
-        Quantity::LostCollisions,
-        None,
-        AtMost(0.03),
-        "the gas is too viscous, and spin falls behind translation",
-    ),
+    limit_of(Quantity::LostCollisions, None, AtMost(0.03), "the gas is too viscous, and spin falls behind translation"),
     limit_of(Quantity::Occupancy, None, AtMost(0.3), "it costs search time and buys no resolution"),
     // Carnahan and Starling: 1 % at f = .0025.
     limit_of(

@@ -8,7 +8,7 @@ use super::counts::count;
 use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY};
 use crate::simulation::{CheckpointEvery, WallTime};
 
-pub const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked by an option, 2 bad input, 3 device trouble, \
+pub(super) const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked by an option, 2 bad input, 3 device trouble, \
     4 the audit failed, 128 + N stopped by signal N, with a checkpoint.";
 
 /// A scene, and what is to be different in it.
