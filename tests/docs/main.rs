@@ -3,7 +3,7 @@
 //! Relative links and their anchors lead somewhere; every path of the repository in a code span or a code
 //! block exists; every whole scene in them can be read; every verb of the README is one of the program; `ARCHITECTURE.md`
 //! names every folder of `src`, the page of kernels every shader; the summary of the book lists every page, and the page of
-//! the command line is that of today; no figure is left open. `tests/docs/measures.rs` holds how long they are.
+//! the command line is that of today; no figure is left open or not shown. `tests/docs/measures.rs` holds how long they are.
 
 mod measures;
 
@@ -196,6 +196,24 @@ fn unlisted(summary: &str) -> Vec<String> {
     let names = pages.map(|path| path.strip_prefix(&book).unwrap().display().to_string());
     let names = names.filter(|name| name != "SUMMARY.md");
     names.filter(|name| summary.matches(&format!("]({name})")).count() != 1).collect()
+}
+
+/// The figures of the book that no document shows.
+fn unshown(documents: &[String]) -> Vec<String> {
+    let figures =
+        files(&root().join("docs")).into_iter().filter(|path| path.extension().is_some_and(|end| end == "svg"));
+    let names = figures.map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
+    names.filter(|name| !documents.iter().any(|text| text.contains(&format!("/{name})")))).collect()
+}
+
+#[test]
+fn every_figure_is_shown() {
+    let mut texts: Vec<String> = documents().iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    assert_eq!(unshown(&texts), Vec::<String>::new());
+    for text in &mut texts {
+        *text = text.replace("step.svg", "");
+    }
+    assert_eq!(unshown(&texts), ["step.svg"]);
 }
 
 /// Stands for `mdbook build`, which wants just this beside links that lead somewhere.
