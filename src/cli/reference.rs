@@ -74,7 +74,9 @@ fn table<'a>(page: &mut String, arguments: impl Iterator<Item = &'a Arg>) {
     page.push_str("| argument | meaning |\n|---|---|\n");
     for argument in arguments {
         let short = argument.get_short().map(|short| format!("`-{short}`, ")).unwrap_or_default();
-        let typed = argument.to_string().trim_end_matches("...").replace('|', "\\|");
+        let typed = argument.to_string().replace('|', "\\|");
+        // A flag that counts is shown as if it took values.
+        let typed = if argument.get_action().takes_values() { &typed } else { typed.trim_end_matches("...") };
         let meaning = meaning(argument).replace('|', "\\|").replace('<', "\\<");
         let _ = writeln!(page, "| {short}`{typed}` | {meaning} |");
     }

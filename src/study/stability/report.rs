@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn the_guards_of_the_page_are_those_of_the_table() {
         let page = include_str!("../../../docs/reference/limits.md");
-        let table = page.split("\n\n").find(|part| part.starts_with("| quantity")).unwrap();
+        let table = page.split("\n\n").find(|part| part.starts_with("| quantity | method")).unwrap();
         let expected: Vec<String> = LIMITS.iter().map(guard).collect();
         assert_eq!(table.lines().skip(2).collect::<Vec<_>>(), expected);
     }
