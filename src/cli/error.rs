@@ -7,7 +7,7 @@ use miette::Diagnostic;
 use crate::gpu::GpuError;
 use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
-use crate::scene::SceneError;
+use crate::scene::{Lines, SceneError};
 use crate::simulation::{ModelError, RefineError, SimulationError};
 use crate::study::StudyError;
 use crate::study::verify::page::PageError;
@@ -22,9 +22,10 @@ pub enum CliError {
     #[diagnostic(transparent)]
     Scene(#[from] SceneError),
     /// Built by [`CliError::model`].
-    #[error("{}: {error}", path.display())]
+    #[error("{}{}: {error}", path.display(), line.map_or(String::new(), |line| format!(", line {line}")))]
     Model {
         path: PathBuf,
+        line: Option<usize>,
         error: ModelError,
         #[help]
         help: Option<String>,
@@ -145,9 +146,10 @@ fn list(failures: &[String]) -> String {
 }
 
 impl CliError {
-    pub fn model(path: &Path, error: ModelError) -> CliError {
+    /// With the line of the entry that the error is about.
+    pub fn model(path: &Path, lines: &Lines, error: ModelError) -> CliError {
         let help = error.help().map(|help| help.to_string());
-        CliError::Model { path: path.to_path_buf(), error, help }
+        CliError::Model { path: path.to_path_buf(), line: lines.of_error(&error.to_string()), error, help }
     }
 
     pub fn set_up(path: &Path, error: SimulationError) -> CliError {
@@ -158,10 +160,10 @@ impl CliError {
     /// The same with what no vessel has before the help: what else would help follows from it.
     pub fn doubting(self, doubts: &[String]) -> CliError {
         match self {
-            CliError::Model { path, error, help } if !doubts.is_empty() => {
+            CliError::Model { path, line, error, help } if !doubts.is_empty() => {
                 let told = format!("the cause may be a value that no vessel has:{}", list(doubts));
                 let help = Some(help.map_or(told.clone(), |help| format!("{told}\nif it is meant: {help}")));
-                CliError::Model { path, error, help }
+                CliError::Model { path, line, error, help }
             }
             other => other,
         }

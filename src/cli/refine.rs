@@ -26,7 +26,7 @@ pub fn refine(raw: RefineArguments) -> Result<(), CliError> {
     let checkpoint = Checkpoint::open(&path)?;
     let (parent, state, particles) = read(&checkpoint)?;
     let mut refined = split(&parent, &state, &particles, raw.times)?;
-    checkpoint.name_meshes(&mut refined.model.scene);
+    checkpoint.restore_names(&mut refined.model.scene);
     for warning in &refined.model.plan.warnings {
         tracing::warn!("{warning}");
     }
@@ -86,7 +86,8 @@ fn write(refined: &Refined, parent: &Checkpoint, folder: &OutputFolder) -> Resul
         record.keep(&source, folder.path())?;
     }
     let scene = to_toml(&model.scene);
-    let origin = Origin { scene, plan: plan.clone(), meshes: mesh.clone(), adapter: adapter.clone() };
+    let units = parent.units();
+    let origin = Origin { scene, plan: plan.clone(), meshes: mesh.clone(), adapter: adapter.clone(), units };
     folder.write_text(SCENE_FILE, &origin.scene)?;
     folder.write_text(PLAN_FILE, &plan)?;
     let history = HistoryWriter::create(folder.path(), &columns(&model.scene))?.state()?;

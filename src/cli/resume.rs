@@ -39,7 +39,7 @@ fn settings_of(from: &Path, checkpoint: &Checkpoint, execution: Execution) -> Re
     let scene = checkpoint.path().join("scene.toml");
     let model = parse(&checkpoint.scene_here()?, &scene.display().to_string(), Path::new(""))?;
     let mut model = model_of(&scene, model)?;
-    checkpoint.name_meshes(&mut model.scene);
+    checkpoint.restore_names(&mut model.scene);
     checkpoint.check_plan(&model.plan.to_toml()?)?;
     let done = checkpoint.manifest().step;
     if let Some(asked) = execution.stop_after_steps.filter(|asked| *asked <= done) {

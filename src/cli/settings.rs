@@ -31,7 +31,7 @@ pub fn model_of(path: &Path, scene: Scene) -> Result<Model, CliError> {
     let asked = scene.clone();
     Model::new(scene).map_err(|error| {
         let doubts = [doubts_of(&asked), mesh_doubts(&asked)].concat();
-        CliError::model(path, error).doubting(&doubts)
+        CliError::model(path, &asked.lines, error).doubting(&doubts)
     })
 }
 

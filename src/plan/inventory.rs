@@ -6,13 +6,17 @@
 
 use super::amounts::{Amounts, Contents};
 use super::measured::IN_HOLES;
+use super::notes::Shut;
 use super::text::{significant, table};
-use super::{Measured, MeasuredVent, MeasuredWall, notes, plausible};
+use super::{Measured, MeasuredVent, MeasuredWall, notes, plausible, vent_notes};
 use crate::gas::moles_at;
 use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
 
 /// Of a solid's volume, from which on it is told how much lies outside of the vessel.
 const SHOWN: f64 = 0.01;
+
+/// Steps of a slow compression.
+const PARTS: u32 = 100;
 
 /// SI, but for what is shown.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,6 +34,9 @@ pub struct Inventory {
     inflow: bool,
     /// Whether a wall moves.
     pub moves: bool,
+    /// Pressure and temperature of all gas at the end with the work of walls that move slowly; none beside an inflow, on whose course it
+    /// depends.
+    squeezed: Option<[f64; 2]>,
     /// m3 of gas space in no chamber; 0 where it is no more than holes have.
     empty: f64,
 }
@@ -70,17 +77,26 @@ impl Inventory {
         let shut = vents.iter().filter(|(_, opens)| !opens.reached);
         let shut: Vec<(&str, f64)> = shut.map(|(name, opens)| (name.as_str(), opens.absolute)).collect();
         let doubts = plausible::doubts(scene, measured, &end);
+        let inflow = amounts.injected.iter().any(|&moles| moles > 0.0);
+        let mut notes = notes::of_scene(scene, measured, &Shut { vents: &shut, end: end.pressure });
+        let gases = plausible::notes_of_gases(scene).into_iter().chain(plausible::notes_of_flows(scene, amounts));
+        let more = gases.chain(vent_notes::of_vents(scene, measured, &end));
+        notes.extend(more.map(|note| scene.lines.told(note)));
         Inventory {
             units: scene.units,
             walls: scene.walls.iter().map(|wall| wall.name.clone()).zip(measured.walls.iter().copied()).collect(),
             chambers,
             end,
-            notes: notes::of_scene(scene, measured, &shut),
+            notes,
             vents,
             doubts: doubts.into_iter().map(|doubt| scene.lines.told(doubt)).collect(),
             empty: Some(measured.empty_space()).filter(|empty| *empty > IN_HOLES * measured.gas_volume).unwrap_or(0.0),
             moves: measured.motion.is_some(),
-            inflow: amounts.injected.iter().any(|&moles| moles > 0.0),
+            squeezed: measured
+                .motion
+                .filter(|_| !inflow)
+                .map(|_| squeezed(scene, amounts, [measured.gas_volume, volume])),
+            inflow,
         }
     }
 
@@ -106,7 +122,7 @@ impl Inventory {
             let volume = if wall.cavity { volume } else { format!("{volume}, solid{outside}") };
             vec![name.clone(), place, self.shown(wall.area, Dimension::Area), volume]
         }));
-        let mut chambers = vec![heads(["chamber", "volume", "mass", "pressure, temperature"])];
+        let mut chambers = vec![heads(["chamber", "volume", "mass", "absolute pressure, temperature"])];
         chambers.extend(self.chambers.iter().map(|(name, gas)| self.contents(name.clone(), gas)));
         if self.empty > 0.0 {
             let [volume, litres] = [self.shown(self.empty, Dimension::Volume), significant(1e3 * self.empty)];
@@ -118,7 +134,7 @@ impl Inventory {
             let inflow = if self.inflow { " with all inflow" } else { "" };
             chambers.push(self.contents(format!("all gas{inflow}"), &self.end));
         }
-        let mut vents = vec![heads(["vent", "opens at", "above the outside", ""])];
+        let mut vents = vec![heads(["vent", "opens at", "above the outside (gauge)", ""])];
         vents.extend(self.vents.iter().map(|(name, opens)| {
             let note = if opens.reached { "" } else { "not reached at the start, nor by all gas together" };
             let [absolute, above] =
@@ -133,12 +149,36 @@ impl Inventory {
 
     fn contents(&self, name: String, gas: &Contents) -> Vec<String> {
         let state = format!("{}, {} K", self.shown(gas.pressure, Dimension::Pressure), significant(gas.temperature));
-        let without = if self.moves { ", without the work of moving walls" } else { "" };
+        let with = self.squeezed.map(|[pressure, temperature]| {
+            format!(
+                "; {}, {} K with it, if they are slow",
+                self.shown(pressure, Dimension::Pressure),
+                significant(temperature)
+            )
+        });
+        let without = match with {
+            _ if !self.moves => String::new(),
+            Some(with) => format!(", without the work of moving walls{with}"),
+            None => ", without the work of moving walls, which depends on when gas comes in".to_string(),
+        };
         let state =
             if std::ptr::eq(gas, &self.end) { format!("{state} if closed, no heat lost{without}") } else { state };
         let volume = format!("{} ({} L)", self.shown(gas.volume, Dimension::Volume), significant(1e3 * gas.volume));
         vec![name, volume, self.shown(gas.mass, Dimension::Mass), state]
     }
+}
+
+/// Pressure and temperature of all initial gas, slowly brought from one volume to another, m3: cv dT/T = -R dV/V.
+fn squeezed(scene: &Scene, amounts: &Amounts, [from, to]: [f64; 2]) -> [f64; 2] {
+    let moles: Vec<f64> = (0..scene.gases.len()).map(|gas| amounts.initial.iter().map(|own| own[gas]).sum()).collect();
+    let total: f64 = moles.iter().sum();
+    let part = libm::log(from / to) / f64::from(PARTS);
+    let warmer = |temperature: f64, _| {
+        let heat: f64 = scene.gases.iter().zip(&moles).map(|(gas, n)| n * gas.heat.molar_cv(temperature)).sum();
+        temperature * libm::exp(part * GAS_CONSTANT * total / heat)
+    };
+    let temperature = (0..PARTS).fold(amounts.initial_temperature, warmer);
+    [total * GAS_CONSTANT * temperature / to, temperature]
 }
 
 fn heads(names: [&str; 4]) -> Vec<String> {

@@ -46,6 +46,10 @@ pub struct Measured {
     pub dry_motions: Vec<usize>,
     /// Surfaces of the scene that have none.
     pub dry_surfaces: Vec<usize>,
+    /// Vents with gas of the scene behind them, and its chamber.
+    pub backed_vents: Vec<[usize; 2]>,
+    /// Orifices with a wall right before them.
+    pub facing_orifices: Vec<FacingOrifice>,
 }
 
 impl Measured {
@@ -134,6 +138,16 @@ pub struct Stroke {
     /// The chamber that is shortest along the motion, of those that the wall borders on, and its length, m.
     pub chamber: usize,
     pub length: f64,
+}
+
+/// An orifice whose jet meets a wall at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FacingOrifice {
+    pub orifice: usize,
+    pub wall: usize,
+    /// m, to the wall, and of its disc.
+    pub distance: f64,
+    pub radius: f64,
 }
 
 /// Where a vent is.

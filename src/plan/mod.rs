@@ -31,10 +31,12 @@ mod notes;
 mod planned;
 mod plausible;
 mod population;
+mod reach;
 mod reason;
 mod render;
 mod resolution;
 mod text;
+mod vent_notes;
 mod vents;
 mod warnings;
 
@@ -47,9 +49,12 @@ pub use forecast::{
 };
 pub use inventory::Inventory;
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
-pub use measured::{GapBeside, Hindered, Hindrance, Measured, MeasuredMotion, MeasuredVent, MeasuredWall, Stroke};
+pub use measured::{
+    FacingOrifice, GapBeside, Hindered, Hindrance, Measured, MeasuredMotion, MeasuredVent, MeasuredWall, Stroke,
+};
 pub use planned::{ChamberPlan, GasPlan, OpeningPlan, Plan, VentPlan};
 pub use plausible::{by_meshes as doubts_of_meshes, by_scene as doubts_of};
+pub use reach::notes as notes_of_reach;
 pub use reason::Reason;
 pub use resolution::{COLLISION_CELL, FASTEST_PAIR, LADDER_TAIL, PER_CELL};
 pub use text::significant;

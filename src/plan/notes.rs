@@ -1,6 +1,7 @@
 //! What a scene does that it may well mean, and its author may not know: told as notes, which are no warnings.
 
 use super::text::{as_written, significant};
+use super::vent_notes::absolute_question;
 use super::{GapBeside, Hindered, Hindrance, Measured, MeasuredVent};
 use crate::gas::vent::opens;
 use crate::geometry::Passage;
@@ -13,20 +14,31 @@ const GAUGE: f64 = 0.3;
 /// Share by which two pressures differ that were meant to be the same.
 const SAME: f64 = 1e-3;
 
-/// Of the holes and the vents, with the line of each in the file. `shut`: vents that no gas opens, with the absolute pressure at which
-/// each would, Pa.
-pub fn of_scene(scene: &Scene, measured: &Measured, shut: &[(&str, f64)]) -> Vec<String> {
+/// Vents that no gas opens.
+pub struct Shut<'a> {
+    /// With the absolute pressure at which each would open, Pa.
+    pub vents: &'a [(&'a str, f64)],
+    /// Of all gas together at the end, Pa.
+    pub end: f64,
+}
+
+/// Of the holes and the vents, with the line of each in the file.
+pub fn of_scene(scene: &Scene, measured: &Measured, shut: &Shut<'_>) -> Vec<String> {
     let holes = measured.hindered.iter().map(|hole| hindered(scene, hole));
     let open = scene.vents.iter().zip(&measured.vents).filter_map(|vent| open_at_start(scene, vent));
-    let shut = shut.iter().map(|&(name, absolute)| {
+    let question = |name: &str| {
+        scene.vents.iter().find(|vent| vent.name == name).map_or("", |vent| absolute_question(scene, vent, shut.end))
+    };
+    let shut = shut.vents.iter().map(|&(name, absolute)| {
         format!(
             "vent `{name}`: it opens at {} absolute, which neither its chamber has at the start nor all gas together at the end: it \
-             probably stays shut",
-            pressure(scene, absolute)
+             probably stays shut{}",
+            pressure(scene, absolute),
+            question(name)
         )
     });
     let vents = open.chain(unlike_outsides(scene, measured)).chain(shut);
-    holes.chain(vents).map(|note| scene.lines.told(note)).collect()
+    holes.chain(vents).chain(facing(scene, measured)).map(|note| scene.lines.told(note)).collect()
 }
 
 /// Of chambers of unlike gas that touch, in a run of particles.
@@ -37,6 +49,22 @@ pub fn touching(scene: &Scene, measured: &Measured) -> Vec<String> {
 fn pressure(scene: &Scene, si: f64) -> String {
     let unit = scene.units.symbol(Dimension::Pressure);
     format!("{} {unit}", as_written(si / scene.units.factor(Dimension::Pressure)))
+}
+
+/// Orifices that blow at a wall right before them.
+fn facing(scene: &Scene, measured: &Measured) -> Vec<String> {
+    let told = measured.facing_orifices.iter().map(|facing| {
+        let [distance, radius] =
+            [facing.distance, facing.radius].map(|m| significant(m / scene.units.factor(Dimension::Length)));
+        format!(
+            "orifice `{}`: its jet meets wall `{}` after {distance} {}, and its disc has a radius of {radius}: does `direction` point into \
+             the wall?",
+            scene.orifices[facing.orifice].name,
+            scene.walls[facing.wall].name,
+            scene.units.symbol(Dimension::Length)
+        )
+    });
+    told.collect()
 }
 
 /// Two chambers of unlike gas without a wall between them.

@@ -39,6 +39,12 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
                 .map(|at| (format!("wall `{}/{}`", wall.value.name.value, at.value.face.value), part(at))),
         );
     }
+    // Behind the entries of the vents: sentences about one begin as theirs do.
+    let absolute = raw.vent.iter().filter_map(|vent| Some((vent, vent.value.opening_pressure_absolute.as_ref()?)));
+    entries
+        .extend(absolute.map(|(vent, at)| {
+            (format!("vent `{}`: opening_pressure_absolute", vent.value.name.value), line(&at.span))
+        }));
     entries.push(("the run".into(), line(&raw.end_time.span)));
     let keys = [("diameter", &raw.model.diameter), ("time_step", &raw.model.time_step)];
     let given = keys.iter().filter_map(|(key, at)| Some((format!("the model: {key}"), line(&at.as_ref()?.span))));

@@ -19,4 +19,15 @@ impl Lines {
             None => sentence,
         }
     }
+
+    /// The line of the entry that an error begins with.
+    pub fn of_error(&self, error: &str) -> Option<usize> {
+        let plain = error.replace('"', "`");
+        self.0.iter().find(|(start, _)| plain.starts_with(start.as_str())).map(|(_, line)| *line)
+    }
+
+    /// Whether the file has an entry of which sentences begin so.
+    pub fn holds(&self, start: &str) -> bool {
+        self.0.iter().any(|(own, _)| own == start)
+    }
 }

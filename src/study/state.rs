@@ -34,7 +34,7 @@ impl Moment {
         let scene = parse(&checkpoint.scene_here()?, &name, Path::new(""))?;
         let unsound = |error: ModelError| StudyError::Model { from: from.to_path_buf(), error: Box::new(error) };
         let mut model = Model::new(scene).map_err(unsound)?;
-        checkpoint.name_meshes(&mut model.scene);
+        checkpoint.restore_names(&mut model.scene);
         checkpoint.check_plan(&model.plan.to_toml().map_err(StudyError::PlanToml)?)?;
         let (_, run) = checkpoint.state()?;
         let particles = particles_of(&checkpoint)?;

@@ -101,7 +101,8 @@ impl Job<'_> {
         Ok(match &self.from {
             None => Origin::new(&model.scene, plan, adapter)?,
             Some(Beginning { checkpoint, .. }) => {
-                Origin { scene: checkpoint.scene()?, plan, meshes: checkpoint.manifest().mesh.clone(), adapter }
+                let (scene, meshes) = (checkpoint.scene()?, checkpoint.manifest().mesh.clone());
+                Origin { scene, plan, meshes, adapter, units: checkpoint.units() }
             }
         })
     }

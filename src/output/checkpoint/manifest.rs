@@ -28,6 +28,9 @@ pub struct Manifest {
     pub particles: u64,
     /// Particles that had entered till then: ids are below.
     pub ids: u64,
+    /// The unit system in which the run tells what it tells; its scene is in SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<String>,
     pub adapter: Adapter,
     /// All files but the manifest.
     pub file: Vec<FileRecord>,

@@ -3,7 +3,7 @@
 use super::error::CheckpointError;
 use super::manifest::Adapter;
 use crate::output::meshes::{MeshRecord, meshes_of};
-use crate::scene::{Scene, to_toml};
+use crate::scene::{Scene, UnitSystem, to_toml};
 
 /// Made once, at the start of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Origin {
     pub plan: String,
     pub meshes: Vec<MeshRecord>,
     pub adapter: Adapter,
+    /// In which the run tells what it tells.
+    pub units: UnitSystem,
 }
 
 impl Origin {
@@ -22,6 +24,6 @@ impl Origin {
     /// # Errors
     /// If a mesh cannot be read.
     pub fn new(scene: &Scene, plan: String, adapter: Adapter) -> Result<Origin, CheckpointError> {
-        Ok(Origin { scene: to_toml(scene), plan, meshes: meshes_of(scene)?, adapter })
+        Ok(Origin { scene: to_toml(scene), plan, meshes: meshes_of(scene)?, adapter, units: scene.units })
     }
 }

@@ -12,7 +12,7 @@ use super::error::CheckpointError;
 use super::layout::{ID_MASK, ID_OFFSET, MANIFEST, PLAN, RECORD_BYTES, SCENE, STATE, complete, particle_file};
 use super::manifest::{self, Adapter, FileRecord, Manifest};
 use crate::output::checksum::length_and_crc;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Scene, Shape, UnitSystem};
 
 /// The state is far smaller: it does not grow with the particles.
 const MOST_STATE_BYTES: u64 = 1 << 30;
@@ -97,8 +97,15 @@ impl Checkpoint {
         toml::to_string(&scene).map_err(|error| content(error.to_string()))
     }
 
-    /// Gives the meshes of `scene`, read from [`Checkpoint::scene_here`], the paths that the run knows them by.
-    pub fn name_meshes(&self, scene: &mut Scene) {
+    /// The unit system in which the run tells what it tells.
+    pub fn units(&self) -> UnitSystem {
+        let named = |system: &UnitSystem| self.manifest.units.as_deref() == Some(system.name());
+        UnitSystem::ALL.into_iter().find(named).unwrap_or_default()
+    }
+
+    /// Gives the meshes of `scene`, read from [`Checkpoint::scene_here`], the paths that the run knows them by, and the scene its units.
+    pub fn restore_names(&self, scene: &mut Scene) {
+        scene.units = self.units();
         let paths = scene.walls.iter_mut().filter_map(|wall| match &mut wall.shape {
             Shape::Mesh { path, .. } => Some(path),
             _ => None,

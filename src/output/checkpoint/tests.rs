@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::layout::{ID_OFFSET, MANIFEST, PLAN, SCENE, STATE, folder_name};
 use super::*;
 use crate::output::AppendedState;
+use crate::scene::UnitSystem;
 
 /// Particles `ids`, each a record with its id where the device has it and a gas above it.
 fn records(ids: impl Iterator<Item = u32>) -> Vec<u8> {
@@ -25,7 +26,13 @@ fn output() -> OutputState {
 
 fn origin() -> Origin {
     let adapter = Adapter { name: "a \"quoted\" adapter".into(), driver: "driver 1".into() };
-    Origin { scene: "title = \"a\"\n".into(), plan: "a = 1\nb = 2\n".into(), meshes: Vec::new(), adapter }
+    Origin {
+        scene: "title = \"a\"\n".into(),
+        plan: "a = 1\nb = 2\n".into(),
+        meshes: Vec::new(),
+        adapter,
+        units: UnitSystem::TMmS,
+    }
 }
 
 /// Infinities, and integers beyond 64 bits.
@@ -383,7 +390,7 @@ fn a_changed_mesh_is_refused() {
     let text = checkpoint.scene_here().unwrap();
     assert!(text.contains(copy.to_str().unwrap()) && !text.contains(mesh.to_str().unwrap()), "{text}");
     let mut here = crate::scene::parse(&text, "scene.toml", Path::new("")).unwrap();
-    checkpoint.name_meshes(&mut here);
+    checkpoint.restore_names(&mut here);
     assert_eq!(crate::scene::to_toml(&here), checkpoint.scene().unwrap());
     fs::write(&copy, "solid c").unwrap();
     assert!(refusal(&path).contains("a.stl cannot be read"));

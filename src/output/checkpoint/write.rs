@@ -98,6 +98,7 @@ impl CheckpointWriter {
             time: moment.time,
             particles: moment.particles,
             ids: moment.ids,
+            units: Some(origin.units.name().to_owned()),
             adapter: origin.adapter.clone(),
             file: files,
             mesh: origin.meshes.clone(),

@@ -4,7 +4,9 @@
 //! A scene may mean it, so these are warnings. What is meant now and then is let pass: a chamber of near vacuum beside gas of
 //! ordinary pressure or before an inflow, free flight at any pressure, a vent into vacuum.
 
+mod flows;
 mod heat;
+mod known;
 mod named;
 mod places;
 mod range;
@@ -25,7 +27,10 @@ use named::Named;
 use range::{Kind, Range, largest, most, range_of};
 use shapes::longest;
 
+pub use flows::notes as notes_of_flows;
+pub use known::notes as notes_of_gases;
 pub use times::{long_run, many_steps, short_step};
+pub use units::pressure_unit;
 use units::{likely, question};
 
 /// All that is beyond its range by the scene alone, in its order, with its line: known also where no plan can be made of it, often for
@@ -228,7 +233,14 @@ fn of_vent(scene: &Scene, vent: &Vent) -> Vec<Option<String>> {
             let range = range_of(Kind::Discharge);
             (!range.holds(most(curve))).then(|| named("discharge").beyond(range, most(curve), question))
         }
-        VentFlow::DischargeByPressure(curve) => named("discharge_by_pressure").check(Kind::Discharge, most(curve)),
+        VentFlow::DischargeByPressure(curve) => {
+            let own = scene.units.factor(Dimension::Pressure);
+            let are_coefficients = curve.points.iter().all(|point| point[0] / own <= 1.0) && curve.points.len() > 1;
+            let question = ": a point is [pressure above the outside, coefficient], are its columns swapped?";
+            let question = if are_coefficients { question } else { "" };
+            let range = range_of(Kind::Discharge);
+            (!range.holds(most(curve))).then(|| named("discharge_by_pressure").beyond(range, most(curve), question))
+        }
         VentFlow::LeakVelocity(curve) if has_swapped_columns(curve) => {
             let question = ": a point is [pressure above the outside, velocity], are its columns swapped?";
             Some(named("leak_velocity").beyond(range_of(Kind::Speed), most(curve), question))

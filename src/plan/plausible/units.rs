@@ -44,6 +44,15 @@ pub fn units_of(dimension: Dimension) -> impl Iterator<Item = &'static str> {
     UNITS.iter().filter(move |known| known.0 == dimension).map(|known| known.1)
 }
 
+/// The unit of pressure, not the scene's own, that is nearest to so many Pa, if one is within a power of ten.
+pub fn pressure_unit(wanted: f64, units: UnitSystem) -> Option<&'static str> {
+    let own = units.factor(Dimension::Pressure);
+    let distance = |factor: f64| libm::fabs(libm::log10(factor / wanted));
+    let pressures = UNITS.iter().filter(|(dimension, ..)| *dimension == Dimension::Pressure);
+    let others = pressures.filter(|(_, _, factor)| libm::fabs(factor / own - 1.0) > 1e-9 && distance(*factor) <= 1.0);
+    others.min_by(|a, b| distance(a.2).total_cmp(&distance(b.2))).map(|known| known.1)
+}
+
 /// How much farther from what is usual than the nearest another unit may lie to be named beside it, in powers of ten: pressures in
 /// hPa and kPa are both common.
 const AS_LIKELY: f64 = 0.4;

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plan::significant;
-use crate::scene::{Scene, Vent};
+use crate::scene::{Dimension, Scene, Vent};
 
 /// What was seen of a vent so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -40,8 +40,9 @@ impl VentWatch {
     /// What became of the vent, by its index; nothing of one that was open from the start, or has no pressure to open at and did.
     pub fn told(&self, scene: &Scene, index: usize) -> Option<String> {
         let vent = &scene.vents[index];
-        // In SI whatever the scene is in: a run that goes on from a checkpoint has its scene in SI, and leaves the same audit.
-        let absolute = |pa: f64| format!("{} Pa ({} bar) absolute", significant(pa), significant(1e-5 * pa));
+        let (unit, symbol) = (scene.units.factor(Dimension::Pressure), scene.units.symbol(Dimension::Pressure));
+        let absolute =
+            |pa: f64| format!("{} {symbol} ({} bar) absolute", significant(pa / unit), significant(1e-5 * pa));
         let opens_at = absolute(vent.external_pressure + vent.opening_pressure);
         match self.opened {
             Some([time, _]) if time <= 0.0 || vent.opening_pressure <= 0.0 => None,

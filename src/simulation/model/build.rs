@@ -12,8 +12,8 @@ use super::surface_models::SurfaceModels;
 use crate::gas::{Inflow, InflowParticles};
 use crate::geometry::Vessel;
 use crate::plan::{
-    Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors, plan,
-    significant,
+    Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
+    notes_of_reach, plan, significant,
 };
 use crate::scene::{Method, Scene};
 use crate::subdomain::Memory;
@@ -47,7 +47,8 @@ impl Model {
             scene.model = chosen.request.clone();
             choice = Some(chosen);
         }
-        let plan = plan(&scene, &seen.measured)?;
+        let mut plan = plan(&scene, &seen.measured)?;
+        plan.inventory.notes.extend(notes_of_reach(&scene, &seen.measured, || seen.outlook(&scene)));
         if plan.method == Method::ControlVolume || scene.model.switch.is_some() {
             Known::of(&scene, &seen.vessel)?;
         }

@@ -26,6 +26,9 @@ pub enum ModelError {
          unit of the scene, length times length); the side of a round wall is of facets, and a flat disc has its middle further in"
     ))]
     OrificeInWall { orifice: String, found: String },
+    #[error("orifice \"{orifice}\": `direction` points into the wall: the gas lies behind its disc")]
+    #[diagnostic(help("turn `direction` round: it is that of the flow, into the gas"))]
+    OrificeIntoWall { orifice: String },
     #[error(
         "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
     )]

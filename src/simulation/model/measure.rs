@@ -1,5 +1,6 @@
 //! What the plan needs to know of the walls.
 
+use super::behind::{backed_vents, facing_orifices};
 use super::clearances::gaps_beside;
 use super::contact::{dry_motions, dry_surfaces};
 use super::holes::{Sides, hindered};
@@ -37,6 +38,8 @@ pub fn measured(
         strokes: strokes(scene, vessel),
         dry_motions: dry_motions(scene, vessel, moving),
         dry_surfaces: dry_surfaces(scene, vessel, moving),
+        backed_vents: backed_vents(scene, vessel, &surface_models.vents),
+        facing_orifices: facing_orifices(scene, vessel),
         openings,
         smallest_gap: gap,
         thinnest_body: body,

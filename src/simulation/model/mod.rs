@@ -1,6 +1,7 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, the walls that move, surface models and the plan. Opens
 //! no device.
 
+mod behind;
 pub(super) mod build;
 mod clearances;
 mod contact;

@@ -22,17 +22,34 @@ pub fn disc_of(orifice: &Orifice) -> (DVec3, DVec3, f64) {
     (DVec3::from(orifice.position) + normal * (1e-4 * radius), normal, 0.999 * radius)
 }
 
+/// The middle of the disc and a ring of points just inside it.
+fn disc_points(orifice: &Orifice) -> impl Iterator<Item = DVec3> {
+    let (center, normal, radius) = disc_of(orifice);
+    let (u, v) = normal.any_orthonormal_pair();
+    (0..=8).map(move |k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / 8.0;
+        let arm = if k == 8 { 0.0 } else { radius };
+        center + arm * (libm::cos(angle) * u + libm::sin(angle) * v)
+    })
+}
+
+/// Whether the disc would lie in the gas if it looked the other way.
+fn points_into_wall(orifice: &Orifice, vessel: &Vessel) -> bool {
+    let turned = Orifice { direction: orifice.direction.map(|x| -x), ..orifice.clone() };
+    disc_points(orifice).all(|point| !vessel.is_gas(point.into()))
+        && disc_points(&turned).all(|point| vessel.is_gas(point.into()))
+}
+
 /// A ring of points just inside each orifice's disc must lie in the gas.
 pub fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
     for orifice in &scene.orifices {
-        let (center, normal, radius) = disc_of(orifice);
-        let (u, v) = normal.any_orthonormal_pair();
-        for k in 0..=8 {
-            let angle = std::f64::consts::TAU * f64::from(k) / 8.0;
-            let arm = if k == 8 { 0.0 } else { radius };
-            let point = center + arm * (libm::cos(angle) * u + libm::sin(angle) * v);
+        for point in disc_points(orifice) {
             if !vessel.is_gas(point.into()) {
-                return Err(orifice_in_wall(scene, orifice, point));
+                return Err(if points_into_wall(orifice, vessel) {
+                    ModelError::OrificeIntoWall { orifice: orifice.name.clone() }
+                } else {
+                    orifice_in_wall(scene, orifice, point)
+                });
             }
         }
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::facing::facing;
 use super::places::chamber_of;
 use super::surface_models::SurfaceModels;
-use crate::geometry::{Vessel, region_bounds, region_volume};
+use crate::geometry::{FoundHole, Vessel, region_bounds, region_volume};
 use crate::plan::{Measured, Outlook, SeenHeat, SeenProbe, SeenSurface};
 use crate::scene::{Opening, Orifice, Region, Scene};
 
@@ -50,7 +50,8 @@ pub fn source(scene: &Scene, vessel: &Vessel, orifice: &Orifice) -> Option<usize
     chamber_of(scene, vessel, point)
 }
 
-/// Pairs of chambers that are open to each other over more than the holes of walls between them.
+/// Pairs of chambers that are open to each other over more than the holes of walls between them. What lies in a hole is none of it, also
+/// where the hole is covered and joins nothing.
 pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize; 2]> {
     let mut open: Vec<([usize; 2], f64)> = Vec::new();
     for (index, chamber) in scene.chambers.iter().enumerate() {
@@ -59,7 +60,7 @@ pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize;
         for (point, outward, area) in surface_of(region) {
             let at = |distance: f64| chamber_of(scene, vessel, (point + distance * outward).to_array());
             let (Some(inside), Some(outside)) = (at(-lift), at(lift)) else { continue };
-            if inside != index || outside == index {
+            if inside != index || outside == index || vessel.holes.iter().any(|hole| is_in_hole(hole, point)) {
                 continue;
             }
             let pair = [index.min(outside), index.max(outside)];
@@ -74,7 +75,25 @@ pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize;
         let joins = |opening: &&Opening| opening.between == pair || opening.between == [pair[1], pair[0]];
         found.iter().chain(declared).filter(joins).map(|opening| opening.area).sum()
     };
-    open.into_iter().filter(|&(pair, area)| area > OPEN * holes(pair)).map(|(pair, _)| pair).collect()
+    open.into_iter().filter(|&(pair, area)| area > (OPEN - 1.0) * holes(pair)).map(|(pair, _)| pair).collect()
+}
+
+/// Whether a place lies in a hole, its ends included.
+fn is_in_hole(hole: &FoundHole, place: DVec3) -> bool {
+    let (middle, normal) = (DVec3::from(hole.center), DVec3::from(hole.normal));
+    let rounding = 1e-6 * hole.perimeter;
+    if (place - middle).dot(normal).abs() > 0.5 * hole.thickness + rounding {
+        return false;
+    }
+    let corners: Vec<DVec3> = hole.outline.iter().map(|&corner| DVec3::from(corner)).collect();
+    let beside = |k: usize| {
+        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+        (to - from).cross(place - from).dot(normal)
+    };
+    // The outline may run either way round.
+    let (least, most) = (0..corners.len()).map(beside).fold((0.0, 0.0), |(a, b), x| (f64::min(a, x), f64::max(b, x)));
+    let rounding = rounding * hole.perimeter;
+    least >= -rounding || most <= rounding
 }
 
 /// Whether chambers border, over more than the holes of walls, on gas space that is in no chamber.

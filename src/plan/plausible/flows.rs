@@ -1,0 +1,60 @@
+//! Mass flows that are masses, and inflows that are nothing beside the gas that is there.
+
+use super::range::most;
+use crate::gas::FlowIntegral;
+use crate::plan::amounts::Amounts;
+use crate::plan::text::significant;
+use crate::scene::{Dimension, Orifice, Scene};
+
+/// Rising values from which on a curve that levels off is one of a mass: who lets a flow rise and stay gives fewer.
+const RISING: usize = 4;
+/// Of the steepest rise, what is level.
+const LEVEL: f64 = 0.3;
+/// Of the gas at the start: no inflator gives so little, and a thousand times as much is one in another unit.
+const LITTLE: f64 = 1e-3;
+
+pub fn notes(scene: &Scene, amounts: &Amounts) -> Vec<String> {
+    let masses = scene.orifices.iter().filter_map(|orifice| cumulative(scene, orifice));
+    masses.chain(little(scene, amounts)).collect()
+}
+
+/// A flow that starts from nothing, only rises, and levels off: that is how the mass that has come in grows.
+fn cumulative(scene: &Scene, orifice: &Orifice) -> Option<String> {
+    let points = &orifice.mass_flow.points;
+    let slopes: Vec<f64> =
+        points.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).collect();
+    let steepest = slopes.iter().copied().fold(0.0, f64::max);
+    let rising = slopes.iter().filter(|slope| **slope > 0.0).count();
+    let falls = slopes.iter().any(|slope| *slope < 0.0);
+    let level = slopes.last().is_some_and(|last| *last <= LEVEL * steepest);
+    (points.first().is_some_and(|first| first[1] == 0.0) && rising >= RISING && !falls && level).then(|| {
+        format!(
+            "orifice `{}`: its mass_flow never falls, and levels off at {} {}: is it the mass that has come in so far? A mass flow is \
+             its rate",
+            orifice.name,
+            significant(most(&orifice.mass_flow) / scene.units.factor(Dimension::MassFlow)),
+            scene.units.symbol(Dimension::MassFlow)
+        )
+    })
+}
+
+/// All of the inflow, also what comes after the end.
+fn little(scene: &Scene, amounts: &Amounts) -> Option<String> {
+    let until = |orifice: &Orifice| orifice.mass_flow.points.last().map_or(0.0, |last| last[0]).max(scene.end_time);
+    let injected: f64 = scene
+        .orifices
+        .iter()
+        .map(|own| FlowIntegral::new(&own.mass_flow, until(own)).total() / own.mixture.molar_mass(&scene.gases))
+        .sum();
+    let there = amounts.initial_total();
+    (injected > 0.0 && injected < LITTLE * there).then(|| {
+        let subject = match &scene.orifices[..] {
+            [one] => format!("orifice `{}`", one.name),
+            _ => "the orifices".to_string(),
+        };
+        format!(
+            "{subject}: all that comes in is {} % of the gas that is there: are `mass_flow` and its times in the units of the scene?",
+            significant(100.0 * injected / there)
+        )
+    })
+}
