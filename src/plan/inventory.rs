@@ -9,12 +9,14 @@ use super::measured::IN_HOLES;
 use super::notes::Shut;
 use super::text::{significant, table};
 use super::{Measured, MeasuredVent, MeasuredWall, notes, plausible, vent_notes};
-use crate::gas::moles_at;
-use crate::scene::{Chamber, Dimension, GAS_CONSTANT, Scene, UnitSystem, Vent};
+use crate::gas::{FlowIntegral, moles_at};
+use crate::scene::{Chamber, Curve, Dimension, GAS_CONSTANT, Orifice, Scene, UnitSystem, Vent};
 
 /// Of a solid's volume, from which on it is told how much lies outside of the vessel.
 const SHOWN: f64 = 0.01;
 
+/// Of all that an orifice brings, below which its flow goes on after the end.
+const CUT: f64 = 0.999;
 /// Steps of a slow compression.
 const PARTS: u32 = 100;
 
@@ -26,6 +28,7 @@ pub struct Inventory {
     pub chambers: Vec<(String, Contents)>,
     /// All gas at the end of the run.
     pub end: Contents,
+    pub orifices: Vec<(String, Blows)>,
     pub vents: Vec<(String, Opens)>,
     /// Values that no vessel has, each with its range and the unit that is likely meant.
     pub doubts: Vec<String>,
@@ -39,6 +42,35 @@ pub struct Inventory {
     squeezed: Option<[f64; 2]>,
     /// m3 of gas space in no chamber; 0 where it is no more than holes have.
     empty: f64,
+}
+
+/// What an orifice brings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blows {
+    /// The chamber.
+    pub into: String,
+    /// kg until the end of the run, and in all.
+    pub mass: [f64; 2],
+    /// kg/s, at most.
+    pub flow: f64,
+    /// K, at least and at most.
+    pub temperature: [f64; 2],
+}
+
+impl Blows {
+    fn of(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Blows {
+        let last = orifice.mass_flow.points.last().map_or(0.0, |last| last[0]).max(scene.end_time);
+        let range = |curve: &Curve| {
+            let values = curve.points.iter().map(|point| point[1]);
+            values.fold([f64::INFINITY, 0.0], |[low, high], value| [low.min(value), high.max(value)])
+        };
+        Blows {
+            into: into.map_or(String::new(), |chamber| scene.chambers[chamber].name.clone()),
+            mass: [scene.end_time, last].map(|until| FlowIntegral::new(&orifice.mass_flow, until).total()),
+            flow: range(&orifice.mass_flow)[1],
+            temperature: range(&orifice.temperature),
+        }
+    }
 }
 
 /// When a vent opens.
@@ -88,6 +120,12 @@ impl Inventory {
             chambers,
             end,
             notes,
+            orifices: scene
+                .orifices
+                .iter()
+                .zip(&measured.sources)
+                .map(|(orifice, &into)| (orifice.name.clone(), Blows::of(scene, orifice, into)))
+                .collect(),
             vents,
             doubts: doubts.into_iter().map(|doubt| scene.lines.told(doubt)).collect(),
             empty: Some(measured.empty_space()).filter(|empty| *empty > IN_HOLES * measured.gas_volume).unwrap_or(0.0),
@@ -104,7 +142,7 @@ impl Inventory {
         format!("{} {}", significant(si / self.units.factor(dimension)), self.units.symbol(dimension))
     }
 
-    /// Tables of walls, chambers and vents.
+    /// Tables of walls, chambers, orifices and vents.
     pub fn render(&self) -> String {
         let mut walls = vec![heads(["wall", "box", "area", "volume"])];
         walls.extend(self.walls.iter().map(|(name, wall)| {
@@ -142,9 +180,24 @@ impl Inventory {
             let bar = significant(1e-5 * opens.absolute);
             vec![name.clone(), format!("{absolute} ({bar} bar) absolute"), above, note.to_string()]
         }));
-        let parts = [walls, chambers, vents];
+        let parts = [walls, chambers, self.of_orifices(), vents];
         let tables: Vec<String> = parts.iter().filter(|part| part.len() > 1).map(|part| table(part)).collect();
         tables.join("\n")
+    }
+
+    fn of_orifices(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![heads(["orifice", "into chamber", "mass until the end, largest flow", "temperature"])];
+        rows.extend(self.orifices.iter().map(|(name, blows)| {
+            let [until, all] = blows.mass;
+            let [low, high] = blows.temperature.map(significant);
+            let cut =
+                if until < CUT * all { format!(" of {}", self.shown(all, Dimension::Mass)) } else { String::new() };
+            let mass =
+                format!("{}{cut}, {}", self.shown(until, Dimension::Mass), self.shown(blows.flow, Dimension::MassFlow));
+            let temperature = if low == high { format!("{low} K") } else { format!("{low} to {high} K") };
+            vec![name.clone(), blows.into.clone(), mass, temperature]
+        }));
+        rows
     }
 
     fn contents(&self, name: String, gas: &Contents) -> Vec<String> {

@@ -48,6 +48,8 @@ pub struct Measured {
     pub dry_surfaces: Vec<usize>,
     /// Vents with gas of the scene behind them, and its chamber.
     pub backed_vents: Vec<[usize; 2]>,
+    /// The chamber that each orifice of the scene blows into, where there is one.
+    pub sources: Vec<Option<usize>>,
     /// Orifices with a wall right before them.
     pub facing_orifices: Vec<FacingOrifice>,
 }

@@ -73,6 +73,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         strokes: vec![],
         dry_motions: vec![],
         dry_surfaces: vec![],
+        sources: vec![],
         backed_vents: vec![],
         facing_orifices: vec![],
     };

@@ -85,3 +85,101 @@ fn a_chamber_is_counted_about_the_middle_of_its_window() {
     assert!(left > 500.0 && (share - 0.5).abs() < 4.0 * 0.3 / left.sqrt(), "{share} of {left}");
     assert!(0.125 > 4.0 * 0.3 / left.sqrt(), "the check can fail");
 }
+
+const TANK: &str = include_str!("inputs/plausible/tank.toml");
+
+fn notes_of(lines: &[[&str; 2]]) -> Vec<String> {
+    let text = lines.iter().fold(TANK.to_string(), |text, [found, wanted]| {
+        assert!(text.contains(found), "{found}");
+        text.replacen(found, wanted, 1)
+    });
+    // Gases of many internal degrees of freedom ask for it.
+    let text = text.replace("particles = 2000", "particles = 2000\ncollision_number = 20");
+    let mut notes = super::mistakes::model(&text).notes();
+    notes.retain(|note| note.starts_with("gas ") || note.starts_with("orifice "));
+    notes
+}
+
+const AIR: &str = "name = \"air\"\nmolar_mass = 0.02897\ngamma = 1.4";
+const HELIUM: &str = "molar_mass = 0.0040026\ngamma = 1.6667";
+const FLOW: &str = "[[0.0, 0.0], [0.002, 1.0], [0.004, 0.5]]";
+
+/// By its name, or by its molar mass where the name says nothing.
+#[test]
+fn a_gas_that_is_not_what_it_is_called_is_told() {
+    for (line, words) in [
+        (
+            [HELIUM, "molar_mass = 0.0040026\ngamma = 1.4"],
+            &["gas `helium`: cp 29.1", "gamma 1.40, where helium has cp 20.79, gamma 1.67", "(line 7)"][..],
+        ),
+        ([HELIUM, "molar_mass = 0.002\ngamma = 1.6667"], &["molar_mass 0.002 kg/mol, where helium has 0.004003"]),
+        ([AIR, "name = \"air\"\nmolar_mass = 0.02897\ncp = 20.8"], &["where air has cp 29.1", "is cv given for cp"]),
+        ([AIR, "name = \"air\"\nmolar_mass = 0.02897\ncv = 29.1"], &["cp 37.41", "is cp given for cv"]),
+        ([AIR, "name = \"air\"\nmolar_mass = 0.02897\ngamma = 1.667"], &["where air has", "the gamma of another gas?"]),
+        (
+            [AIR, "name = \"g\"\nmolar_mass = 0.04401\ngamma = 1.4"],
+            &["where carbon dioxide, of that molar mass, has cp 37.2, gamma 1.29"],
+        ),
+        (
+            [AIR, "name = \"SF6\"\nmolar_mass = 0.14606\ngamma = 1.4"],
+            &["where sulphur hexafluoride has cp 97, gamma 1.09"],
+        ),
+    ] {
+        // The name stands in mixtures, too.
+        let name = line[1].split('"').nth(1).unwrap_or("air");
+        let [chamber, mixture] = [format!("gas = \"{name}\""), format!("{{ {name} = 0.6")];
+        let told = notes_of(&[line, ["gas = \"air\"", &chamber], ["{ air = 0.6", &mixture]]);
+        assert!(told.iter().any(|note| words.iter().all(|word| note.contains(word))), "{words:?} in {told:?}");
+    }
+    for own in [
+        "name = \"air\"\nmolar_mass = 0.029\ngamma = 1.38",
+        "name = \"N2\"\nmolar_mass = 0.028\ncp = [26.92, 5.91e-3, -3.38e-7]",
+        "name = \"O2\"\nmolar_mass = 0.032\ngamma = 1.395",
+        "name = \"H2\"\nmolar_mass = 0.002\ngamma = 1.41",
+        "name = \"CO\"\nmolar_mass = 0.028\ngamma = 1.4",
+        "name = \"CO2\"\nmolar_mass = 0.044\ngamma = 1.29",
+        "name = \"steam\"\nmolar_mass = 0.018\ngamma = 1.33",
+        "name = \"NH3\"\nmolar_mass = 0.017\ngamma = 1.31",
+        "name = \"CH4\"\nmolar_mass = 0.016\ngamma = 1.31",
+        "name = \"SF6\"\nmolar_mass = 0.146\ngamma = 1.09",
+        "name = \"Ar\"\nmolar_mass = 0.04\ngamma = 1.67",
+        // Of its mass, but a gas of a model; and the gas of a generator.
+        "name = \"spheres\"\nmolar_mass = 0.028\ngamma = 1.6666667",
+        "name = \"generator\"\nmolar_mass = 0.0265\ngamma = 1.27",
+    ] {
+        let name = own.split('"').nth(1).unwrap_or("air");
+        let [chamber, mixture] = [format!("gas = \"{name}\""), format!("{{ {name} = 0.6")];
+        let told = notes_of(&[[AIR, own], ["gas = \"air\"", &chamber], ["{ air = 0.6", &mixture]]);
+        assert_eq!(told, [""; 0], "{own}");
+    }
+}
+
+/// The mass that has come in so far, and one in another unit; a flow that rises and stays is none.
+#[test]
+fn a_mass_that_is_given_for_its_flow_is_told() {
+    let so_far = "[[0, 0], [0.001, 0.2], [0.002, 0.8], [0.003, 1.0], [0.0035, 1.05], [0.004, 1.05]]";
+    let [note] = &notes_of(&[[FLOW, so_far]])[..] else { panic!() };
+    assert!(
+        note.contains("never falls, and levels off at 1.05 kg/s: is it the mass that has come in so far?"),
+        "{note}"
+    );
+    let [note] = &notes_of(&[[FLOW, "[[0.0, 0.0], [0.002, 1e-3], [0.004, 5e-4]]"]])[..] else { panic!() };
+    assert!(note.contains("% of the gas that is there: are `mass_flow` and its times in the units"), "{note}");
+    for flow in [FLOW, "[[0, 0], [0.001, 0.5], [0.002, 1.0], [0.004, 1.0]]", "[[0, 1.0], [0.004, 1.0]]"] {
+        assert_eq!(notes_of(&[[FLOW, flow]]), [""; 0], "{flow}");
+    }
+}
+
+/// `check` says which chamber an orifice blows into, and how much.
+#[test]
+fn what_orifices_bring_is_said() {
+    let (code, out, err) = outcome(&["check", input("plausible/can.toml").to_str().unwrap()]);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.contains("inflator  can           0.06375 kg, 0.003 kg/ms           300 to 700 K"), "{out}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("short.toml");
+    let short = fs::read_to_string(input("plausible/can.toml")).unwrap().replace("end_time = 60.0", "end_time = 5.0");
+    fs::write(&path, short).unwrap();
+    let (_, out, _) = outcome(&["check", path.to_str().unwrap()]);
+    assert!(out.contains("inflator  can           0.0075 kg of 0.06375 kg, 0.003 kg/ms"), "{out}");
+}

@@ -164,3 +164,75 @@ fn the_work_of_moving_walls_is_said_to_be_left_out() {
     let still = model(super::plausible::TANK).explained().render();
     assert!(still.contains("no heat lost") && !still.contains("moving walls"));
 }
+
+/// A hole that is covered has its own note, and none that its chambers touch without a wall; without the wall they do.
+#[test]
+fn a_covered_hole_has_one_note() {
+    let shell = "[[wall]]\nname = \"shell\"\nshape = \"box\"\nmin = [0.2, 0.2, 0.2]\nmax = [0.4, 0.4, 0.4]\nthickness = 0.01\n\
+        hole = [{ name = \"slit\", face = \"+x\", center = [0.3, 0.3], size = [0.1, 0.1] }]\n";
+    let lid = "[[wall]]\nname = \"lid\"\nshape = \"box\"\nmin = [0.405, 0.2, 0.2]\nmax = [0.43, 0.4, 0.4]\ngas = \"outside\"\n";
+    let high = "pressure = 3e5\ntemperature = 300\ngas = \"n2\"";
+    let chambers =
+        chamber("inner", "box = { min = [0.2, 0.2, 0.2], max = [0.4, 0.4, 0.4] }", high) + &chamber("rest", "", AIR);
+    let notes = |walls: &str| {
+        let mut notes = model(&metre(walls, &chambers, "")).notes();
+        notes.retain(|note| note.starts_with("hole ") || note.starts_with("chambers "));
+        notes
+    };
+    let covered = notes(&format!("{shell}{lid}"));
+    assert!(covered.len() == 1 && covered[0].starts_with("hole `slit` of wall `shell`: no gas lies"), "{covered:?}");
+    assert_eq!(notes(shell), [""; 0]);
+    assert!(notes("").iter().any(|note| note.contains("no wall lies between them")));
+}
+
+/// An orifice on a wall that points into it is refused with its line; one just off a wall that blows at it has a note, one that blows
+/// away from it has none. Errors of chambers have their lines, too.
+#[test]
+fn an_orifice_that_points_into_a_wall_is_told() {
+    let tank = super::plausible::TANK;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tank.toml");
+    let refused = |lines: &[[&str; 2]]| {
+        std::fs::write(&path, lines.iter().fold(tank.to_string(), |text, [a, b]| text.replacen(a, b, 1))).unwrap();
+        let (code, _, err) = super::outcome(&["check", path.to_str().unwrap()]);
+        assert_eq!(code, 2, "{err}");
+        err
+    };
+    let into = ["direction = [0.0, 0.0, 1.0]", "direction = [0.0, 0.0, -1.0]"];
+    let err = refused(&[into]);
+    assert!(err.contains("tank.toml, line 23: orifice \"inflator\": `direction` points into the wall"), "{err}");
+    let err = refused(&[["position = [0.2, 0.15, 0.0]", "position = [0.2, 0.15, -0.1]"]]);
+    assert!(err.contains("tank.toml, line 23: orifice \"inflator\": its disc"), "{err}");
+    let away = "[[chamber]]\nregion = { box = { min = [1, 1, 1], max = [2, 2, 2] } }";
+    let err = refused(&[["[[chamber]]", away]]);
+    assert!(err.contains("tank.toml, line 18: chamber `tank` has a volume of 0"), "{err}");
+    let off = ["position = [0.2, 0.15, 0.0]", "position = [0.2, 0.15, 0.002]"];
+    let notes = |lines: &[[&str; 2]]| {
+        let text = lines.iter().fold(tank.to_string(), |text, [a, b]| text.replacen(a, b, 1));
+        let mut notes = model(&text).notes();
+        notes.retain(|note| note.starts_with("orifice "));
+        notes
+    };
+    let told = notes(&[off, into]);
+    assert!(told[0].contains("its jet meets wall `tank` after 0.00") && told[0].ends_with("(line 23)"), "{told:?}");
+    assert_eq!(notes(&[off]), [""; 0]);
+}
+
+/// A duct of half its length has the work of a slow piston: p V^1.4 and T V^.4 stay. Beside an inflow it is not known.
+#[test]
+fn the_work_of_slow_walls_is_told() {
+    let told = |more: &[[&str; 2]]| {
+        let text = model(&changed(more)).explained().render();
+        text.lines().find(|line| line.starts_with("all gas")).unwrap().to_string()
+    };
+    // The piston comes in by 48 of 200 mm; the plate of 4 mm has a hole of 314 mm2.
+    let ratio: f64 = (500_000.0 - 4.0 * (2500.0 - 314.16)) / (380_000.0 - 4.0 * (2500.0 - 314.16));
+    let row = told(&[]);
+    let (pressure, temperature) = (0.101325 * ratio.powf(1.4), 293.0 * ratio.powf(0.4));
+    let words =
+        format!("without the work of moving walls; {pressure:.2} MPa, {temperature:.1} K with it, if they are slow");
+    assert!(row.ends_with(&words), "{words}: {row}");
+    let orifice = "[[orifice]]\nname = \"o\"\nposition = [200, 0, 0]\ndirection = [-1, 0, 0]\narea = 50\ngas = \"air\"\ntemperature = 400\n\
+        mass_flow = [[0, 1e-5], [0.008, 1e-5]]\n[[motion]]";
+    assert!(told(&[["[[motion]]", orifice]]).ends_with("which depends on when gas comes in"));
+}

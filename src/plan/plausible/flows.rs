@@ -1,6 +1,6 @@
 //! Mass flows that are masses, and inflows that are nothing beside the gas that is there.
 
-use super::range::most;
+use super::range::{Kind, most, range_of};
 use crate::gas::FlowIntegral;
 use crate::plan::amounts::Amounts;
 use crate::plan::text::significant;
@@ -47,7 +47,9 @@ fn little(scene: &Scene, amounts: &Amounts) -> Option<String> {
         .map(|own| FlowIntegral::new(&own.mass_flow, until(own)).total() / own.mixture.molar_mass(&scene.gases))
         .sum();
     let there = amounts.initial_total();
-    (injected > 0.0 && injected < LITTLE * there).then(|| {
+    // What no vessel has is doubted otherwise.
+    let is_gas = scene.chambers.iter().all(|chamber| range_of(Kind::Pressure).holds(chamber.pressure));
+    (injected > 0.0 && injected < LITTLE * there && is_gas).then(|| {
         let subject = match &scene.orifices[..] {
             [one] => format!("orifice `{}`", one.name),
             _ => "the orifices".to_string(),

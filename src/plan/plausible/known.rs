@@ -3,6 +3,7 @@
 //! A constant heat capacity may be that of any temperature of the scene; of a monatomic gas whose name says nothing it is one of a
 //! model, whatever its mass.
 
+use super::range::{Kind, range_of};
 use crate::plan::text::significant;
 use crate::scene::{Dimension, GAS_CONSTANT, Gas, HeatCapacity, Scene};
 
@@ -91,6 +92,12 @@ pub fn notes(scene: &Scene) -> Vec<String> {
 }
 
 fn of_gas(scene: &Scene, gas: &Gas, range: [f64; 2]) -> Vec<String> {
+    let cp = gas.heat.molar_cv(range[0]) + GAS_CONSTANT;
+    // What no gas has is doubted otherwise.
+    let is_gas = range_of(Kind::MolarMass).holds(gas.molar_mass) && range_of(Kind::MolarHeat).holds(cp);
+    if !is_gas || cp < 2.4 * GAS_CONSTANT {
+        return Vec::new();
+    }
     if let Some(named) = KNOWN.iter().find(|known| known.is_called(&gas.name)) {
         let mass = (!named.weighs(gas.molar_mass, MASS_BY_NAME)).then(|| unlike_mass(scene, gas, named));
         let heat = (!fits(gas, named, range)).then(|| unlike_heat(scene, gas, named, range));

@@ -5,7 +5,7 @@ use super::clearances::gaps_beside;
 use super::contact::{dry_motions, dry_surfaces};
 use super::holes::{Sides, hindered};
 use super::moving::{Moving, extent};
-use super::outlook::{borders, is_open_to_empty};
+use super::outlook::{borders, is_open_to_empty, source};
 use super::strokes::strokes;
 use super::surface_models::SurfaceModels;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
@@ -39,6 +39,7 @@ pub fn measured(
         dry_motions: dry_motions(scene, vessel, moving),
         dry_surfaces: dry_surfaces(scene, vessel, moving),
         backed_vents: backed_vents(scene, vessel, &surface_models.vents),
+        sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         facing_orifices: facing_orifices(scene, vessel),
         openings,
         smallest_gap: gap,
