@@ -26,7 +26,7 @@ pub enum CliError {
     Model {
         path: PathBuf,
         line: Option<usize>,
-        error: ModelError,
+        error: Box<ModelError>,
         #[help]
         help: Option<String>,
     },
@@ -149,7 +149,12 @@ impl CliError {
     /// With the line of the entry that the error is about.
     pub fn model(path: &Path, lines: &Lines, error: ModelError) -> CliError {
         let help = error.help().map(|help| help.to_string());
-        CliError::Model { path: path.to_path_buf(), line: lines.of_error(&error.to_string()), error, help }
+        CliError::Model {
+            path: path.to_path_buf(),
+            line: lines.of_error(&error.to_string()),
+            error: Box::new(error),
+            help,
+        }
     }
 
     pub fn set_up(path: &Path, error: SimulationError) -> CliError {

@@ -83,7 +83,10 @@ const LATE: &str = "opening_pressure = 20000.0";
 const DISCHARGE: &str = "discharge = 0.7";
 const LEAK: &str = "[[0.0, 0.0], [100000.0, 0.8]]";
 
-fn notes_of(text: &str, lines: &[[&str; 2]]) -> Vec<String> {
+/// What stands in a scene, and what is written instead.
+type Lines<'a> = &'a [[&'a str; 2]];
+
+fn notes_of(text: &str, lines: Lines<'_>) -> Vec<String> {
     let changed = lines.iter().fold(text.to_string(), |text, [found, wanted]| {
         assert!(text.contains(found), "{found}");
         text.replacen(found, wanted, 1)
@@ -93,7 +96,7 @@ fn notes_of(text: &str, lines: &[[&str; 2]]) -> Vec<String> {
 
 #[test]
 fn a_pressure_of_opening_that_looks_absolute_is_told() {
-    let slips: &[(&str, &[[&str; 2]], &[&str])] = &[
+    let slips: &[(&str, Lines<'_>, &[&str])] = &[
         // An atmosphere and a round number.
         (
             BAG,
@@ -124,7 +127,7 @@ fn a_pressure_of_opening_that_looks_absolute_is_told() {
         let told = notes_of(text, lines);
         assert!(told.iter().any(|note| words.iter().all(|word| note.contains(word))), "{words:?} in {told:#?}");
     }
-    let meant: &[&[[&str; 2]]] = &[
+    let meant: &[Lines<'_>] = &[
         &[],
         &[[LATE, "opening_pressure = 150000.0"]],
         &[[LATE, "opening_pressure_absolute = 121325.0"]],
