@@ -18,6 +18,7 @@ use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointError, CheckpointWriter, HistoryState, Moment, Origin, OutputState,
     RunContext, latest,
 };
+use corpuscle::scene::UnitSystem;
 use corpuscle::subdomain::GpuParticle;
 
 const FOLDER: &str = "CORPUSCLE_TEST_CHECKPOINTS";
@@ -46,6 +47,7 @@ fn write(parent: &Path, step: u64) {
         plan: "particles = 3\n".into(),
         meshes: Vec::new(),
         adapter: Adapter::default(),
+        units: UnitSystem::Si,
     };
     let file = AppendedState { bytes: step, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: step, file }, snapshots: None };
@@ -151,7 +153,13 @@ fn ids_are_where_the_device_has_them() {
     ];
     let files = vec![writer.particles(0, bytemuck::cast_slice(&twice)).unwrap()];
     let moment = Moment { step: 1, time: 0.0, particles: 2, ids: 6 };
-    let origin = Origin { scene: String::new(), plan: String::new(), meshes: Vec::new(), adapter: Adapter::default() };
+    let origin = Origin {
+        scene: String::new(),
+        plan: String::new(),
+        meshes: Vec::new(),
+        adapter: Adapter::default(),
+        units: UnitSystem::Si,
+    };
     let file = AppendedState { bytes: 0, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
     let path = writer.commit(files, &moment, RunContext { origin: &origin, state: &(), output: &output }).unwrap();

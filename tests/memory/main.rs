@@ -17,6 +17,7 @@ use corpuscle::output::{
     Adapter, AppendedState, Checkpoint, CheckpointWriter, HistoryState, Moment, Origin, OutputState, RunContext,
 };
 use corpuscle::ranks::{Communicator, Pace, in_process};
+use corpuscle::scene::UnitSystem;
 use corpuscle::simulation::{Initial, InitialParticles, Model};
 use corpuscle::subdomain::GpuParticle;
 
@@ -97,7 +98,13 @@ fn saved(parent: &Path, number: u32) -> Checkpoint {
     let writer = CheckpointWriter::new(parent, 1);
     let files = vec![writer.particles(0, bytemuck::cast_slice(&particles)).unwrap()];
     let moment = Moment { step: 1, time: 1.0, particles: number.into(), ids: number.into() };
-    let origin = Origin { scene: String::new(), plan: String::new(), meshes: Vec::new(), adapter: Adapter::default() };
+    let origin = Origin {
+        scene: String::new(),
+        plan: String::new(),
+        meshes: Vec::new(),
+        adapter: Adapter::default(),
+        units: UnitSystem::Si,
+    };
     let file = AppendedState { bytes: 0, crc32: 0 };
     let output = OutputState { history: HistoryState { rows: 0, file }, snapshots: None };
     let path = writer.commit(files, &moment, RunContext { origin: &origin, state: &1_u64, output: &output }).unwrap();
