@@ -26,10 +26,7 @@ fn divided_or_moved(cell: vec3<u32>) -> bool {
 fn arrange(thread: Thread) {
     let i = linear(thread);
     if (step.peers > 0u) {
-        // Places behind the last particle: particles have been dropped that are nowhere near this device.
-        if (i >= cell_start[step.bins] && i < step.total) {
-            marks[i] = LAYER;
-        }
+        lay_nobody(i, cell_start[step.bins]);
     }
     if (i >= step.count + step.newborns + step.arrivals) {
         return;

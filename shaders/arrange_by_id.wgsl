@@ -10,10 +10,7 @@ var<storage, read> bins: array<vec2<u32>>;
 fn arrange_by_id(thread: Thread) {
     let i = linear(thread);
     if (step.peers > 0u) {
-        // Places behind the last particle: particles have been dropped that are nowhere near this device.
-        if (i >= cell_start[step.bins] && i < step.total) {
-            marks[i] = LAYER;
-        }
+        lay_nobody(i, cell_start[step.bins]);
     }
     if (i >= step.count + step.newborns + step.arrivals) {
         return;

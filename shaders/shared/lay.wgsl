@@ -1,4 +1,5 @@
-// What the sort of the method `cell` leaves of a particle: its state, and among other devices its cell and its marks.
+// What the sort of the methods `cell` and `half-turn` leaves of a particle: its state, and among other devices its cell and its marks; and what it
+// leaves behind the last one.
 
 var<uniform> step: Step;
 var<storage, read> particles: array<Packed>;
@@ -12,5 +13,13 @@ fn lay(i: u32, place: u32, cell: u32) {
         cells[place] = cell;
         // Collisions within cells want no ghosts.
         marks[place] = 0u;
+    }
+}
+
+// Among other devices, of a place that may be behind the last particle: some have been dropped that are nowhere near this device. `end`: where the
+// bins end.
+fn lay_nobody(i: u32, end: u32) {
+    if (i >= end && i < step.total) {
+        marks[i] = LAYER;
     }
 }

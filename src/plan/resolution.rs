@@ -29,6 +29,8 @@ pub const FASTEST_PAIR: f64 = 6.0;
 const FAST_PARTICLE: f64 = 4.04;
 /// Edge of a collision cell of the method `half-turn` in mean spacings of its gas: 14 particles.
 pub const COLLISION_CELL: f64 = 2.41;
+/// Cells of the grid along an edge of its largest one, a tile.
+pub const TILE_EDGE: f64 = 4.0;
 /// Mean spacings that gas of thermal speed flies in a step of the method `half-turn`: by the plan, and at most before a run halves the step. At 1 its
 /// viscosity is half as much again.
 const SPACINGS_FLOWN: f64 = 0.6;
@@ -79,6 +81,8 @@ pub struct ExpectedGas {
 }
 
 pub struct Resolution {
+    pub method: Method,
+    /// m; 0 where particles have none.
     pub diameter: f64,
     pub rounds: u32,
     pub collision_limit: f64,
@@ -102,20 +106,20 @@ impl Resolution {
     ) -> Result<Self, PlanError> {
         match method {
             // Control volumes have no particles, and need no resolution.
-            Method::None | Method::ControlVolume => Ok(Self::free_flight(request, gas, end_time, reasons)),
+            Method::None | Method::ControlVolume => Ok(Self::free_flight(method, request, gas, end_time, reasons)),
             Method::Cell => Ok(Self::within_cells(request, gas, end_time, reasons)),
             Method::HalfTurn => Ok(Self::half_turn(request, gas, end_time, reasons)),
             Method::ClosestApproach | Method::HardSphere => Self::in_rounds(method, request, gas, end_time, reasons),
         }
     }
 
-    /// x = dt/tau of gas in such a state whose particles have such a diameter, m; where they have none, the mean spacings that a particle of
-    /// thermal speed flies.
+    /// x = dt/tau of gas in such a state whose particles have such a diameter, m; of `half-turn`, which has none, the mean spacings that a
+    /// particle of thermal speed flies.
     pub fn collisions_in_step(&self, state: MeanState, diameter: f64) -> f64 {
-        if diameter == 0.0 {
-            return spacings_flown(self.time_step, state);
+        match self.method {
+            Method::HalfTurn => spacings_flown(self.time_step, state),
+            _ => self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square),
         }
-        self.time_step / kinetics::collision_time(state.number_density, diameter, state.thermal_square)
     }
 
     /// Whether blocks of uniform gas of this density (at the end, 1/m3) that are denser by chance do not halve the step.
@@ -197,6 +201,7 @@ impl Resolution {
             "no pair that meets within the step lies further apart than neighbouring cells".into(),
         );
         Ok(Self {
+            method,
             diameter,
             rounds,
             collision_limit: limit,
@@ -253,6 +258,7 @@ impl Resolution {
         let why = format!("expected in a step; {} per particle, {limit} at most", significant(collisions_per_step));
         because("collisions per cell", significant(in_cell), why);
         Self {
+            method: Method::Cell,
             diameter,
             rounds: 0,
             collision_limit: limit,
@@ -293,6 +299,7 @@ impl Resolution {
         because("time step", format!("{} us", significant(1e6 * time_step)), why);
         let flown = states.map(|state| spacings_flown(time_step, state)).into_iter().fold(0.0, f64::max);
         Self {
+            method: Method::HalfTurn,
             diameter: 0.0,
             rounds: 0,
             collision_limit: MOST_SPACINGS_FLOWN,
@@ -300,11 +307,17 @@ impl Resolution {
             steps,
             cell,
             collisions_per_step: flown,
-            flight_over_cell: FAST_PARTICLE * extreme.0.sqrt() * time_step / (2.0 * COLLISION_CELL * spacing),
+            flight_over_cell: FAST_PARTICLE * extreme.0.sqrt() * time_step / (TILE_EDGE * cell),
         }
     }
 
-    fn free_flight(request: &ModelRequest, gas: ExpectedGas, end_time: f64, reasons: &mut Vec<Reason>) -> Self {
+    fn free_flight(
+        method: Method,
+        request: &ModelRequest,
+        gas: ExpectedGas,
+        end_time: f64,
+        reasons: &mut Vec<Reason>,
+    ) -> Self {
         let cell = kinetics::mean_spacing(gas.states[1].number_density);
         let speed = FAST_PARTICLE * gas.extreme.0.sqrt();
         let (wanted, why) = match request.time_step {
@@ -318,6 +331,7 @@ impl Resolution {
         let value = format!("{} mm", significant(1e3 * cell));
         reasons.push(because("cell", value, "the mean spacing at the end; nothing is searched for in it"));
         Self {
+            method,
             diameter: 0.0,
             rounds: 0,
             collision_limit: 0.0,

@@ -3,7 +3,7 @@
 use super::limits::{Bound, Judged, Limit, Quantity, Warning, limit, step_limit};
 use super::notes::between;
 use super::population::more_particles;
-use super::resolution::{Resolution, mean_free_path};
+use super::resolution::{Resolution, TILE_EDGE, mean_free_path};
 use super::text::significant;
 use super::{ChamberPlan, Measured, OpeningPlan};
 use crate::gas::kinetics;
@@ -150,12 +150,13 @@ fn starved(decided: &Decided<'_>) -> Vec<Option<Warning>> {
         let density = chamber.particles.iter().sum::<u64>() as f64 / chamber.volume;
         if method == Method::HalfTurn && density > 0.0 {
             let subject = format!("chamber `{}` at the start", chamber.name);
-            let remedy = "more `particles`, or another `method`";
+            // Tiles follow the mean density of the end, so more particles have as few there.
+            let remedy = "another `method` where viscosity counts there";
             return Warning::by_table(
                 Quantity::CellParticles,
                 method,
                 &subject,
-                64.0 * density * resolution.cell.powi(3),
+                density * (TILE_EDGE * resolution.cell).powi(3),
                 remedy,
             );
         }
@@ -257,13 +258,13 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
     Warning::beyond(Quantity::Step, bound, &effect, Judged { subject: "the time step", value: x, remedy })
 }
 
-/// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path.
+/// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path. (Only methods with collisions have a limit of it.)
 pub fn wall_hits(measured: &Measured, number_density: f64, resolution: &Resolution) -> f64 {
-    let flown = if resolution.diameter == 0.0 {
-        // Of thermal speed; cbar is sqrt(8/pi) times as much.
-        1.596 * resolution.collisions_per_step * kinetics::mean_spacing(number_density)
-    } else {
-        resolution.collisions_per_step * kinetics::mean_free_path(number_density, resolution.diameter)
+    let x = resolution.collisions_per_step;
+    let flown = match resolution.method {
+        // Of thermal speed.
+        Method::HalfTurn => kinetics::mean_speed(1.0) * x * kinetics::mean_spacing(number_density),
+        _ => x * kinetics::mean_free_path(number_density, resolution.diameter),
     };
     flown * measured.wall_area / (4.0 * measured.gas_volume)
 }

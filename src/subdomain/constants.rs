@@ -3,7 +3,7 @@
 
 use crate::geometry::{CELL_GENERATOR, CELL_POINTS, CLEARANCE_UNIT};
 use crate::gpu::Device;
-use crate::plan::Plan;
+use crate::plan::{Plan, TILE_EDGE};
 use crate::scene::{GAS_CONSTANT, Method};
 
 use super::nearness;
@@ -258,6 +258,9 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("BLOCK_ENERGY_SCALE", scales.block_energy),
     ]
 }
+
+/// Plans count the largest collision cell as the kernels make it.
+const _: () = assert!(TILE_EDGE == (1u32 << TILE_BITS) as f64);
 
 /// Cells per edge, log2, of what the boxes of subdomains are made of: with the method `half-turn` tiles, whose collision cells have one owner.
 pub fn box_bits(method: Method) -> u32 {
