@@ -205,12 +205,12 @@ pub const LIMITS: &[Limit] = &[
         AtLeast(2.0),
         "pairs collide again and again, and the gas is too viscous",
     ),
-    // Of fewer than six no velocity gradient is known. A program of its own found nu .45 d c0 at 7 and .58 at 4.
+    // Map `members`: nu .21 d c0 down to 14 in a tile, .35 at 10, .46 at 8, .52 at 6, where no gradient is known, .69 at 2 (`closest-approach` has .65).
     limit_of(
         Quantity::CellParticles,
         Some(Method::HalfTurn),
-        AtLeast(6.0),
-        "collision cells are too thin for a velocity gradient, and the gas is too viscous",
+        AtLeast(12.0),
+        "the gas becomes as viscous as that of other methods (docs/reference/limits.md, members)",
     ),
     limit_of(
         Quantity::Halvings,

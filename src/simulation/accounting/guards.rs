@@ -231,7 +231,7 @@ impl<'a> Guards<'a> {
         let share = 100.0 * within as f64 / total as f64;
         let subject = format!("where {share:.0} % of the gas is");
         let remedy = match self.plan.method {
-            Method::HalfTurn => "more `particles`, or another `method`",
+            Method::HalfTurn => "another `method` where viscosity counts there",
             _ => "a smaller `diameter` or `occupancy`, or another `method`",
         };
         self.table(Quantity::CellParticles, &subject, sum / within as f64, remedy)

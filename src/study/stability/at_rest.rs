@@ -55,7 +55,7 @@ fn base(method: Method, effort: Effort) -> EquilibriumBox<'static> {
 }
 
 /// As many steps as give each particle so many collisions.
-fn lasting(gas: EquilibriumBox<'_>, collisions: f64) -> EquilibriumBox<'_> {
+pub(super) fn lasting(gas: EquilibriumBox<'_>, collisions: f64) -> EquilibriumBox<'_> {
     EquilibriumBox { steps: (collisions / gas.step_over_tau).ceil().max(60.0) as u32, ..gas }
 }
 
@@ -145,7 +145,7 @@ fn findings(device: &Device, mut model: Model, rest: &RestingBox<'_>) -> Result<
 }
 
 /// One gas in its box, the step held.
-fn at_rest(device: &Device, gas: &EquilibriumBox<'_>, rigid: f64) -> Result<Vec<Check>, StudyError> {
+pub(super) fn at_rest(device: &Device, gas: &EquilibriumBox<'_>, rigid: f64) -> Result<Vec<Check>, StudyError> {
     findings(device, gas.model()?, &RestingBox { gas, masses: &[1.0], rigid, hold_step: true })
 }
 

@@ -19,7 +19,7 @@ use super::Effort;
 use super::at_rest::{BLOCKS, PRESSURE, TEMPERATURES, of_any};
 
 /// What guards allow a resolved hole (docs/explanation/method.md, "What the plan decides, and why").
-const FLOW: f64 = 0.07;
+pub(super) const FLOW: f64 = 0.07;
 /// At 160,000 particles, and how it falls with their number (docs/reference/accuracy.md: .024, as N^-.26).
 const PROFILE: f64 = 0.024;
 /// Of the pressure behind a shock that is a few mean free paths wide, and of its excess.
@@ -74,7 +74,7 @@ fn through_hole(device: &Device, model: &Model, what: &str, expected: f64) -> Re
 }
 
 /// Gas with this mean free path at the start, and a hole.
-fn hole(method: Method, particles: u64, path: Option<f64>) -> Result<Model, StudyError> {
+pub(super) fn hole(method: Method, particles: u64, path: Option<f64>) -> Result<Model, StudyError> {
     let mut scene = emptying_scene()?;
     scene.model.method = Some(method);
     scene.model.particles = Some(particles);

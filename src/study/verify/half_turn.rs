@@ -12,6 +12,8 @@ use super::shear::{HALF_TURN_FLOOR, viscosity_in};
 use super::witness::model_from;
 use super::{Check, Effort, Findings, run};
 
+/// Spacings that thermal speed flies in a step, by plans.
+pub const FLOWN: f64 = 0.6;
 /// To which the viscosity is known.
 const KNOWN_TO: f64 = 0.03;
 /// Cd into vacuum against the diameter of a hole over the spacing of the particles before it: .843 - .374 d/D.
@@ -39,7 +41,7 @@ pub fn viscosity(
 pub(super) fn viscosities(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, seeds) = if effort == Effort::Quick { (16_000, 3) } else { (64_000, 8) };
     let check = |denser: f64| {
-        let found = viscosity(device, particles, 0.6, denser, seeds)?;
+        let found = viscosity(device, particles, FLOWN, denser, seeds)?;
         let what = format!("nu / (d c0), N = {particles}, gas {} times as dense as planned", 1.0 / denser);
         Ok(Check::of(what, HALF_TURN_FLOOR, found, KNOWN_TO))
     };

@@ -64,7 +64,6 @@ pub fn viscosity_in(
         let mut scene = scene_of("shear", &gas_box.toml())?;
         scene.seed = seed;
         let mut model = model_from("shear", scene)?;
-        model.plan.collision_limit = 1.0;
         if let Some(edge) = cell {
             let wrong = |error: GridError| unsound("shear", PlanError::from(error).into());
             model.plan.grid = Grid::around([0.0; 3], [EDGE; 3], edge).map_err(wrong)?;
@@ -77,7 +76,7 @@ pub fn viscosity_in(
                 particle.velocity[1] += y;
             }
         };
-        let run = run(device, &model, Options { shuffle: Some(&stirred), ..Options::default() })?;
+        let run = run(device, &model, Options { shuffle: Some(&stirred), hold_step: true, ..Options::default() })?;
         let amplitudes: Vec<(f64, f64)> = run.snapshots.iter().map(|(time, p)| (*time, amplitude(&model, p))).collect();
         found.push(decay(&amplitudes) / (2.0 * (PI / EDGE).powi(2)) / (distance * speed));
     }

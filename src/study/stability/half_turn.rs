@@ -1,0 +1,75 @@
+//! The method `half-turn`: where its viscosity, of which all else follows, is no longer what plans take it for, and a hole what they say.
+
+use crate::gas::CONTINUUM_COEFFICIENT;
+use crate::gpu::Device;
+use crate::plan::{COLLISION_CELL, TILE_EDGE};
+use crate::scene::Method;
+use crate::simulation::Options;
+use crate::study::StudyError;
+use crate::study::verify::gas_box::EquilibriumBox;
+use crate::study::verify::half_turn::{FLOWN, viscosity};
+use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of};
+use crate::study::verify::shear::HALF_TURN_FLOOR;
+use crate::study::verify::{Check, run};
+
+use super::Effort;
+use super::at_rest::{at_rest, lasting, of_any};
+use super::flows::{FLOW, hole};
+
+/// Of its viscosity: half as much again. (Gas of `closest-approach` is three times as viscous.)
+const VISCOSITY: f64 = 0.5 * HALF_TURN_FLOOR;
+
+/// Particles and seeds of a viscosity.
+fn size(effort: Effort) -> (u64, u64) {
+    match effort {
+        Effort::Quick => (4000, 3),
+        Effort::Usual => (16_000, 4),
+        Effort::Full => (64_000, 6),
+    }
+}
+
+fn of_viscosity(found: (f64, f64)) -> Check {
+    Check::of("viscosity, nu/(d c0)", HALF_TURN_FLOOR, found, VISCOSITY)
+}
+
+/// Steps in which thermal speed flies so many mean spacings: what gas at rest keeps, and its viscosity.
+pub(super) fn spacings_flown(
+    device: &Device,
+    method: Method,
+    flown: f64,
+    effort: Effort,
+) -> Result<Vec<Check>, StudyError> {
+    let gas =
+        EquilibriumBox { method: method.name(), particles: 2000, step_over_tau: flown, ..EquilibriumBox::default() };
+    let mut checks = at_rest(device, &lasting(gas, 120.0), 1.0)?;
+    let (particles, seeds) = size(effort);
+    checks.push(of_viscosity(viscosity(device, particles, flown, 1.0, seeds)?));
+    Ok(checks)
+}
+
+/// Gas so thin beside what the grid is made for that a tile, the largest collision cell, holds so many particles.
+pub(super) fn members(device: &Device, _: Method, members: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
+    let (particles, seeds) = size(effort);
+    let planned = (TILE_EDGE * 0.5 * COLLISION_CELL).powi(3);
+    Ok(vec![of_viscosity(viscosity(device, particles, FLOWN, planned / members, seeds)?)])
+}
+
+/// A hole that is so many mean spacings wide before its chamber empties.
+pub(super) fn across(device: &Device, method: Method, spacings: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
+    let resolving = VOLUME * (spacings / (2.0 * RADIUS)).powi(3);
+    // As many runs as make the error of their mean a third of what is allowed.
+    let seeds = if effort == Effort::Quick { 1 } else { (32_000.0 / resolving).ceil().clamp(1.0, 8.0) as u64 };
+    let mut model = hole(method, resolving as u64, None)?;
+    let (mut sum, mut square, mut checks) = (0.0, 0.0, Vec::new());
+    for seed in 1..=seeds {
+        model.plan.seed = seed;
+        let run = run(device, &model, Options::default())?;
+        let (found, error) = discharge_of(&run.rows);
+        sum += found / seeds as f64;
+        square += (error / seeds as f64).powi(2);
+        checks = of_any(&model, &run);
+    }
+    let found = (sum / CONTINUUM_COEFFICIENT, square.sqrt() / CONTINUUM_COEFFICIENT);
+    checks.push(Check::of("flow, Cd over that of a continuum", 1.0, found, FLOW));
+    Ok(checks)
+}
