@@ -107,6 +107,30 @@ fn an_emulated_weak_sweep_holds_the_particles_of_a_device() {
     assert!((table.value(2, "owned_speed_up") - expected).abs() < 1e-9 * expected && expected > 1.5, "{expected}");
 }
 
+/// With the method `half-turn`, whose boxes are of whole tiles and have no ghosts: real runs and emulated ones.
+#[test]
+fn half_turn_can_be_swept_and_emulated() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("corner.toml");
+    let text = fs::read_to_string("scenes/corner.toml").unwrap().replace("[model]", "[model]\nmethod = \"half-turn\"");
+    fs::write(&scene, text).unwrap();
+    let out = folder.path().join("out");
+    let basic = ["sweep", scene.to_str().unwrap(), "--particles", "8000", "--out", out.to_str().unwrap()];
+    let options = ["--devices", "2", "--balance", "dynamic", "--balance-by", "particles"];
+    let all = |more: &[&'static str]| {
+        let (code, _, err) = outcome(&[&basic[..], &options, more].concat());
+        assert_eq!(code, 0, "{err}");
+        Table::of(&out)
+    };
+    let table = all(&["--steps", "64", "--repeat", "1"]);
+    assert_eq!(table.cases().last(), Some(&("measured", "2", "dynamic")));
+    let table = all(&["--emulate", "--intervals", "1"]);
+    assert_eq!(table.cases().last(), Some(&("modelled", "2", "dynamic")));
+    let row = table.0.len() - 1;
+    // All gas is in a corner of few tiles: the fuller half is the nearest plane of tiles.
+    assert!(table.value(row, "owned_max") < 8000.0 && table.value(row, "ghosts_per_owned") == 0.0, "{:?}", table.0);
+}
+
 #[test]
 fn an_emulation_says_what_is_measured_and_what_is_modelled() {
     let folder = tempfile::tempdir().unwrap();

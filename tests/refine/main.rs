@@ -8,7 +8,7 @@ use corpuscle::scene::GAS_CONSTANT;
 use corpuscle::simulation::{Model, RefineError, Refined, audit_limits, chamber_of, refine};
 use corpuscle::subdomain::GpuParticle;
 
-use scenes::{Cut, across, mixing, tank, thin_wall};
+use scenes::{Cut, across, half_turn_tank, mixing, tank, thin_wall};
 
 /// Of all particles of some kind, SI.
 #[derive(Debug, Clone, Copy, Default)]
@@ -273,7 +273,20 @@ fn what_cannot_be_refined_is_refused_with_the_reason() {
 /// The run goes on: its account closes, and its rows are the parent's within the noise.
 #[test]
 fn a_run_goes_on_from_a_refined_state() {
-    let cut = tank();
+    goes_on(tank());
+}
+
+/// Its collision cells are those of the new density.
+#[test]
+fn a_run_of_half_turn_goes_on_from_a_refined_state() {
+    let cut = half_turn_tank();
+    goes_on(cut);
+    let cell = |cut: &Model| cut.plan.grid.cell;
+    let finer = cell(&cut.model) / cell(&refined(cut, 4).model);
+    assert!((finer / 4f64.cbrt() - 1.0).abs() < 0.01, "{finer}");
+}
+
+fn goes_on(cut: &Cut) {
     let refined = refined(cut, 4);
     let steps = 192;
     let parent = scenes::go_on(&cut.model, &cut.particles, &cut.state, cut.step + steps);

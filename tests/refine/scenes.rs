@@ -78,6 +78,12 @@ pub fn tank() -> &'static Cut {
     CUT.get_or_init(|| cut(&tank_text(4000), 512))
 }
 
+/// The same by the method `half-turn`, whose steps are longer.
+pub fn half_turn_tank() -> &'static Cut {
+    static CUT: OnceLock<Cut> = OnceLock::new();
+    CUT.get_or_init(|| cut(&tank_text(4000).replace("[model]", "[model]\nmethod = \"half-turn\""), 128))
+}
+
 /// Before the first particle has entered.
 pub fn early() -> Cut {
     cut(&tank_text(500), 0)

@@ -86,6 +86,26 @@ fn at_a_time_the_control_volume_takes_over_what_is_there() {
     assert!(late.iter().all(|row| row.probes[0] == row.chambers[0]));
 }
 
+/// So do the particles of the method `half-turn`, whose rows are of longer steps.
+#[test]
+fn half_turn_hands_over_what_is_there() {
+    let found = run(&model(&blow_down("method = \"half-turn\"\nswitch = 1e-3")), Options::default());
+    let continued = kept(&found);
+    assert!((1e-3..1.3e-3).contains(&found.outcome.time), "{}", found.outcome.time);
+    assert!(continued.until == 4e-3 && continued.why == "asked for");
+    follow_each_other(&found.rows, 4e-3, None);
+    // Nothing jumps: the rows on either side of it are of one course, within its change from row to row and the noise of 8000 particles.
+    let at = found.rows.iter().position(|row| row.particles == 0).expect("rows of the control volume");
+    for chamber in 0..2 {
+        let pressure = |row: usize| found.rows[row].chambers[chamber].pressure;
+        let change = (pressure(at + 1) - pressure(at)).abs();
+        let length = |row: usize| found.rows[row].window[1] - found.rows[row].window[0];
+        let longer = 0.5 * (length(at - 1) + length(at)) / length(at + 1);
+        let jump = (pressure(at) - pressure(at - 1)).abs();
+        assert!(jump < 2.0 * longer * change + 0.03 * pressure(at), "chamber {chamber}: {jump} {change}");
+    }
+}
+
 /// A fast jet flows in for 2 ms; there must be a millisecond of uniform pressure after it, and not much more.
 #[test]
 fn it_switches_once_pressures_are_uniform() {
