@@ -47,7 +47,11 @@ pub fn wanted(scene: &Scene, measured: &Measured, amounts: &Amounts, method: Met
     let noise = format!("{:.0} % noise of the pressure on {} cm2 in 1 ms", 100.0 * NOISE, significant(1e4 * area));
     let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
     let wanted = wanted_knudsen(method, occupancy);
-    let spacing = wanted * smallest / kinetics::effective_mean_free_path_over_spacing(occupancy);
+    let path = match method {
+        Method::HalfTurn => kinetics::HALF_TURN_PATHS[0],
+        _ => kinetics::effective_mean_free_path_over_spacing(occupancy),
+    };
+    let spacing = wanted * smallest / path;
     let resolution = volume / (spacing * spacing * spacing);
     if method == Method::None || resolution <= statistics {
         return give(statistics.min(MOST_UNASKED).ceil() as u64, noise);

@@ -16,7 +16,7 @@ use crate::plan::forecast::{Candidate, Cause, ColumnForecast, Forecaster, worst}
 use crate::plan::limits::{Quantity, limit};
 use crate::plan::longest::{Basis, possible_step};
 use crate::plan::measured::Measured;
-use crate::plan::resolution::{ExpectedGas, Extreme, MeanState, Resolution};
+use crate::plan::resolution::{ExpectedGas, Extreme, MeanState, Resolution, STEPS_PER_INTERVAL};
 use crate::plan::warnings::wall_hits;
 use crate::scene::{Method, ModelRequest, Scene, Wish};
 
@@ -97,7 +97,7 @@ impl Chooser<'_> {
         if let Some(plan) = kept.filter(as_good).or_else(|| broken.clone()) {
             return Ok(plan);
         }
-        let least = self.families.iter().filter_map(|family| self.possible(family, self.range[0]));
+        let least = self.families.iter().filter_map(|family| self.possible(family, self.range_of(family)?[0]));
         let least = least.min_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds)).ok_or_else(|| self.nothing())?;
         Err(PlanError::TimeBudget { budget, least: least.cost.seconds, plan: words(&least) })
     }
@@ -130,22 +130,69 @@ impl Chooser<'_> {
 
     /// The cheapest plan with at most this error.
     pub(super) fn cheapest(&self, error: f64, limits: Limits) -> Option<Possible> {
+        self.cheapest_of(&self.families, error, limits)
+    }
+
+    fn cheapest_of<'f>(
+        &self,
+        families: impl IntoIterator<Item = &'f Family>,
+        error: f64,
+        limits: Limits,
+    ) -> Option<Possible> {
         let enough = |plan: &Possible| plan.error <= error && limits.allow(plan);
-        let least = self.families.iter().filter_map(|family| self.least(family, enough));
+        let least = families.into_iter().filter_map(|family| self.least(family, enough));
         least.min_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds))
     }
 
     /// The plan with the least error of those allowed, which are those with few particles.
     /// (More particles are never beyond a limit that fewer keep.)
     fn best(&self, allowed: impl Fn(&Possible) -> bool, limits: Limits) -> Option<Possible> {
-        let most = self.families.iter().filter_map(|family| self.most(family, &allowed));
+        self.best_of(&self.families, allowed, limits)
+    }
+
+    fn best_of<'f>(
+        &self,
+        families: impl IntoIterator<Item = &'f Family>,
+        allowed: impl Fn(&Possible) -> bool,
+        limits: Limits,
+    ) -> Option<Possible> {
+        let most = families.into_iter().filter_map(|family| self.most(family, &allowed));
         let most = most.filter(|plan| limits.allow(plan));
         most.min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
+    /// What the other methods of particles would have been in place of a plan: as accurate, or within the budget. `None` where there are none; an
+    /// inner `None` where they cannot.
+    pub(super) fn by_others(&self, chosen: &Possible) -> Option<Option<Possible>> {
+        let others: Vec<&Family> = self
+            .families
+            .iter()
+            .filter(|family| ![chosen.family.method, Method::ControlVolume].contains(&family.method))
+            .collect();
+        if others.is_empty() {
+            return None;
+        }
+        let limits = if chosen.beyond.is_empty() { Limits::Kept } else { Limits::Broken };
+        let wish = &self.scene.model.wish;
+        Some(match wish.accuracy {
+            Some(accuracy) => self.cheapest_of(others, chosen.error.max(AIM * accuracy), limits),
+            None => {
+                let budget = wish.time_budget.unwrap_or(f64::INFINITY);
+                self.best_of(others, |plan| plan.cost.seconds <= budget, limits)
+            }
+        })
+    }
+
+    /// Fewest and most particles of a family, if there is any number.
+    fn range_of(&self, family: &Family) -> Option<[f64; 2]> {
+        let [fewest, most] = self.range;
+        let fewest = fewest.max(family.fewest.ceil());
+        (fewest <= most).then_some([fewest, most])
+    }
+
     /// A family with the fewest particles that are enough.
     fn least(&self, family: &Family, enough: impl Fn(&Possible) -> bool) -> Option<Possible> {
-        let [fewest, _] = self.range;
+        let [fewest, _] = self.range_of(family)?;
         if let Some(plan) = self.possible(family, fewest).filter(|plan| enough(plan)) {
             return Some(plan);
         }
@@ -168,7 +215,7 @@ impl Chooser<'_> {
 
     /// A family with the most particles that are possible and allowed.
     fn most(&self, family: &Family, allowed: impl Fn(&Possible) -> bool) -> Option<Possible> {
-        let [fewest, most] = self.range;
+        let [fewest, most] = self.range_of(family)?;
         if let Some(plan) = self.possible(family, most).filter(|plan| allowed(plan)) {
             return Some(plan);
         }
@@ -189,8 +236,9 @@ impl Chooser<'_> {
         let particles = particles.round();
         let density = particles / self.measured.gas_volume;
         if family.method == Method::ControlVolume {
+            let method = family.method;
             let candidate =
-                Candidate { method: family.method, particles, occupancy: 0.0, rounds: 0, collisions_per_step: 0.0 };
+                Candidate { method, particles, occupancy: 0.0, rounds: 0, collisions_per_step: 0.0, interval: 0.0 };
             let cost = Cost { particle_steps: 0.0, seconds: UNIFORM_SECONDS };
             return Some(self.forecast(family, candidate, cost));
         }
@@ -207,6 +255,7 @@ impl Chooser<'_> {
             occupancy: kinetics::occupancy(density, resolution.diameter),
             rounds: resolution.rounds,
             collisions_per_step: resolution.collisions_per_step,
+            interval: f64::from(STEPS_PER_INTERVAL) * resolution.time_step,
         };
         let Chooser { scene, measured, amounts, .. } = *self;
         let cap = diameter_cap(scene, family.method, resolution.diameter, density, &mut Vec::new()).ok().flatten();

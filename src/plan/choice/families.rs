@@ -1,6 +1,7 @@
 //! The ways to run a scene that the plan chooses from: methods, occupancies, rounds (method.md, "What the plan decides, and why"),
 //! lengths of the step.
 
+use super::continuum;
 use crate::gas::kinetics;
 use crate::plan::amounts::Amounts;
 use crate::plan::resolution::default_occupancy;
@@ -16,6 +17,8 @@ pub struct Family {
     pub rounds: Option<u32>,
     /// Its step over that of a scene which asks for none, where so long a one is possible.
     pub stretch: f64,
+    /// Particles from which on it is compared: with fewer its error is not known.
+    pub fewest: f64,
 }
 
 /// Mean free path of the molecules over the size of the vessel from which on they do not meet (method.md, "Collisions").
@@ -60,9 +63,12 @@ pub fn families(
         // The steps of `cell` and `none` are as long as cells or collisions allow, and rigid spheres are there for comparison.
         let longer = method == Method::ClosestApproach && scene.model.time_step.is_none();
         let stretches = if longer { &STRETCHES[..] } else { &STRETCHES[..1] };
+        // Who names a method has it with any number.
+        let unasked = scene.model.method.is_none();
+        let fewest = if unasked && method == Method::HalfTurn { continuum::fewest(scene, measured) } else { 0.0 };
         for &occupancy in &of_method {
             for &stretch in stretches {
-                families.extend(of_rounds.iter().map(|&rounds| Family { method, occupancy, rounds, stretch }));
+                families.extend(of_rounds.iter().map(|&rounds| Family { method, occupancy, rounds, stretch, fewest }));
             }
         }
     }
@@ -151,6 +157,10 @@ fn methods(
     } else {
         methods.push(Method::Cell);
         why.push("cell in open volumes".into());
+    }
+    match continuum::unfit(scene, measured, amounts) {
+        Some(unfit) => why.push(format!("not half-turn: {unfit}")),
+        None => methods.push(Method::HalfTurn),
     }
     methods.push(Method::ClosestApproach);
     Ok((methods, why.join("; ")))

@@ -6,6 +6,7 @@
 //! request, made as any other's, is the plan of the run.
 
 mod chooser;
+mod continuum;
 mod cost;
 mod families;
 mod halvings;
@@ -18,7 +19,8 @@ mod words;
 use super::amounts::{Amounts, highest_temperature};
 use super::forecast::{Forecaster, Outlook};
 use super::heat::species;
-use super::resolution::{Extreme, Resolution};
+use super::population::openings;
+use super::resolution::{COLLISION_CELL, Extreme, Resolution};
 use super::{Measured, PlanError, Quantity};
 use crate::gas::kinetics;
 use crate::scene::{Method, Scene};

@@ -282,19 +282,40 @@ fn method_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
         (Some(uniform), true) if uniform.cost.seconds < chosen.cost.seconds => {
             format!("a control volume does not suffice: {}", off(&uniform))
         }
-        (_, true) => "the cheapest of those compared".into(),
+        (_, true) => "the cheapest of those compared".to_string(),
         (Some(uniform), false) if method != Method::ControlVolume => {
             format!("the least error within the budget; a control volume is {}", off(&uniform))
         }
         (_, false) => "the least error within the budget".into(),
     };
-    reason("method", name, why)
+    reason("method", name, why + &beside_others(chooser, chosen))
+}
+
+/// What the best of the other methods of particles would be.
+fn beside_others(chooser: &Chooser<'_>, chosen: &Possible) -> String {
+    if chosen.candidate.method == Method::ControlVolume {
+        return String::new();
+    }
+    let wished = chooser.scene.model.wish.accuracy.is_some();
+    match chooser.by_others(chosen) {
+        None => String::new(),
+        Some(None) => "; no other method of particles can".into(),
+        Some(Some(other)) if wished => format!("; {} would cost {}", words(&other), duration(other.cost.seconds)),
+        Some(Some(other)) => format!("; {} would be {} off", words(&other), percent(other.error)),
+    }
 }
 
 fn particles_reason(chooser: &Chooser<'_>, chosen: &Possible) -> Reason {
     let value = grouped(chosen.candidate.particles as u64);
     if chooser.scene.model.particles.is_some() {
         return reason("particles", value, "asked for; initial and injected gas together at the end".into());
+    }
+    if chosen.family.fewest >= chooser.range[0] && chosen.candidate.particles <= 1.05 * chosen.family.fewest {
+        return reason(
+            "particles",
+            value,
+            "the fewest whose collision cells are no longer than the radius of the smallest hole".into(),
+        );
     }
     let fewest = chosen.candidate.particles <= chooser.range[0];
     let column = worst(&chosen.columns);

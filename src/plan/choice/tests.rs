@@ -37,7 +37,7 @@ fn wished(accuracy: f64) -> Choice {
 fn smaller_errors_cost_more() {
     let (coarse, fine) = (wished(0.1), wished(0.04));
     assert!(coarse.forecast.error <= 0.1 && fine.forecast.error <= 0.04);
-    assert_eq!(fine.request.method, Some(Method::ClosestApproach));
+    assert_eq!(fine.request.method, Some(Method::HalfTurn));
     assert!(fine.request.particles > coarse.request.particles);
     assert!(fine.forecast.seconds > 2.0 * coarse.forecast.seconds);
     // Neither is finer than it must be: a tenth less particles would miss what was aimed at.
@@ -92,6 +92,54 @@ fn the_reason_for_the_method_is_the_one_that_counted() {
     let accurate = why(wished(0.06));
     assert!(accurate.starts_with("a control volume does not suffice: "), "{accurate}");
     assert!(!accurate.contains("()"), "{accurate}");
+}
+
+/// Half-turn is taken where it is cheaper, and the plan says than what; not where the gas itself is rarefied, where a key of another method
+/// is given, or with so few particles that a hole is less than five spacings wide.
+#[test]
+fn half_turn_is_chosen_where_it_is_cheaper() {
+    let planned = |change: &dyn Fn(&mut Scene)| {
+        let (mut scene, measured, outlook) = seen();
+        scene.model.wish.accuracy = Some(0.02);
+        change(&mut scene);
+        let choice = choose(&scene, &measured, &outlook).unwrap();
+        scene.model = choice.request.clone();
+        let mut planned = plan(&scene, &measured).unwrap();
+        choice.explain(&mut planned);
+        let why =
+            |of: &str| planned.reasons.iter().find(|reason| reason.quantity == of).map(|reason| reason.why.clone());
+        (choice.request.method, choice.forecast.seconds, why("method").unwrap(), why("methods compared").unwrap())
+    };
+    let (method, seconds, why, _) = planned(&|_| ());
+    assert_eq!(method, Some(Method::HalfTurn));
+    let (_, others, ..) = planned(&|scene| scene.model.method = Some(Method::ClosestApproach));
+    assert!(others > 5.0 * seconds, "{seconds} s of {others} s");
+    assert!(why.contains("; closest-approach with ") && why.contains(" would cost "), "{why}");
+    let (method, _, _, compared) = planned(&|scene| scene.model.collision_number = Some(5.0));
+    assert_eq!(method, Some(Method::ClosestApproach));
+    assert!(compared.contains("not half-turn: it has no `collision_number`"), "{compared}");
+    let thinner = |times: f64| {
+        planned(&|scene: &mut Scene| {
+            scene.chambers.iter_mut().for_each(|chamber| chamber.pressure *= times);
+            scene.orifices[0].mass_flow.points.iter_mut().for_each(|point| point[1] *= times);
+        })
+    };
+    // At 1 atm molecules fly 65 nm, and the hole is 4 cm.
+    assert_eq!(thinner(1e-3).0, Some(Method::HalfTurn));
+    let (method, _, _, compared) = thinner(1e-4);
+    assert_eq!(method, Some(Method::ClosestApproach));
+    assert!(compared.contains("not half-turn: the gas itself is rarefied: Kn 0.016"), "{compared}");
+    let with = |particles: u64, named: bool| {
+        planned(&|scene| {
+            scene.model.particles = Some(particles);
+            scene.model.wish.accuracy = Some(0.8);
+            scene.model.method = named.then_some(Method::HalfTurn);
+        })
+        .0
+    };
+    // V (2.41/l)^3 is 13,100.
+    assert_eq!([12_500, 13_500].map(|n| with(n, false)), [Method::ClosestApproach, Method::HalfTurn].map(Some));
+    assert_eq!(with(12_500, true), Some(Method::HalfTurn), "who names it has it");
 }
 
 #[test]
@@ -204,7 +252,7 @@ fn what_the_scene_asks_for_is_kept() {
     });
     let request = choice.unwrap().request;
     assert_eq!(request.particles, Some(30_000));
-    assert_eq!(request.method, Some(Method::ClosestApproach), "a control volume has no particles");
+    assert_eq!(request.method, Some(Method::HalfTurn), "a control volume has no particles");
     for rounds in [3, 5] {
         let request = chosen(|model| (model.rounds, model.wish.accuracy) = (Some(rounds), Some(0.3))).unwrap().request;
         assert_eq!((request.rounds, request.method), (Some(rounds), Some(Method::ClosestApproach)));
@@ -271,6 +319,7 @@ fn a_hole_that_is_not_resolved_could_be_modelled() {
 fn steps_are_stretched_where_that_pays() {
     let planned = |change: &dyn Fn(&mut Scene, &mut Measured)| {
         let (mut scene, mut measured, outlook) = seen();
+        scene.model.method = Some(Method::ClosestApproach);
         scene.model.particles = Some(100_000);
         scene.model.wish.accuracy = Some(0.3);
         change(&mut scene, &mut measured);

@@ -16,6 +16,7 @@ mod columns;
 mod course;
 pub(super) mod noise;
 mod outlook;
+mod rows;
 
 pub use bias::DISCHARGE_UNKNOWN;
 pub use columns::{Alternative, Cause, ColumnForecast, Forecast, Part, worst};
@@ -28,6 +29,7 @@ use super::warnings::lost_events;
 use crate::gas::{Collisions, FlowIntegral, Species, State, kinetics, thermo};
 use crate::scene::{Method, Scene};
 use course::{Course, Moment};
+use rows::{Row, windows};
 
 /// Gas on two sides of an open border is released if it differs by more than this.
 const RELEASED: f64 = 1e-3;
@@ -43,6 +45,8 @@ pub struct Candidate {
     pub rounds: u32,
     /// x = dt/tau of its largest step.
     pub collisions_per_step: f64,
+    /// s of an interval of its largest step, the shortest row.
+    pub interval: f64,
 }
 
 /// What a control volume makes of a scene's pressures, in the continuum: by row of the history, of each chamber.
@@ -149,7 +153,9 @@ impl<'a> Forecaster<'a> {
             let spacing = libm::cbrt(self.measured.gas_volume / candidate.particles);
             let longest = (0..3).map(|k| self.measured.bounds_max[k] - self.measured.bounds_min[k]).fold(0.0, f64::max);
             let path = bias::effective_path(candidate.method, candidate.occupancy) * spacing / longest;
-            let parts = vec![(Cause::Fronts, bias::of_fronts(path, step))];
+            // What was measured of the others has their noise in it, which is less than half of it.
+            let noise = if candidate.method == Method::HalfTurn { noise::of_profile(candidate.particles) } else { 0.0 };
+            let parts = vec![(Cause::Noise, noise), (Cause::Fronts, bias::of_fronts(path, step))];
             columns.push(ColumnForecast::new("profile".into(), true, parts));
         }
         columns
@@ -235,12 +241,16 @@ struct Run<'a> {
     /// Share of collisions.
     lost: f64,
     collision_number: f64,
+    /// s in which energy between translation and spin is forgotten, where that follows from no collision time.
+    spin_memory: Option<f64>,
     moles_per_particle: f64,
+    /// The lengths of its rows, s, and their shares of all rows: they are of whole intervals, the last of what is left.
+    windows: Vec<(f64, f64)>,
 }
 
 impl<'a> Run<'a> {
     fn new(forecaster: &'a Forecaster<'a>, candidate: &Candidate) -> Run<'a> {
-        let Candidate { method, particles, occupancy, rounds, collisions_per_step } = *candidate;
+        let Candidate { method, particles, occupancy, rounds, collisions_per_step, interval } = *candidate;
         let course = &forecaster.course;
         let density = particles / forecaster.measured.gas_volume;
         let moles_per_particle = forecaster.total / particles;
@@ -276,20 +286,25 @@ impl<'a> Run<'a> {
             occupancy,
             lost: if method.has_rounds() { lost_events(collisions_per_step, rounds) } else { 0.0 },
             collision_number: forecaster.scene.model.collision_number.unwrap_or(5.0),
+            spin_memory: (method == Method::HalfTurn).then_some(noise::HALF_TURN_MEMORY * interval),
             moles_per_particle,
+            windows: windows(forecaster.scene.end_time, course.window, interval),
         }
     }
 
     /// Root of the mean over the rows of a variance.
-    fn rms(&self, variance: impl Fn(usize) -> f64) -> f64 {
+    fn rms(&self, variance: impl Fn(Row) -> f64) -> f64 {
         let rows = self.moments.len();
-        ((0..rows).map(variance).sum::<f64>() / rows as f64).sqrt()
+        let of = |&(window, share): &(f64, f64)| {
+            share * (0..rows).map(|index| variance(Row { index, window })).sum::<f64>() / rows as f64
+        };
+        self.windows.iter().filter(|(_, share)| *share > 0.0).map(of).sum::<f64>().sqrt()
     }
 
     /// From a variance over the square of a row's pressure to one over that of the mean pressure.
-    fn weight(&self, row: usize, group: usize) -> f64 {
+    fn weight(&self, row: Row, group: usize) -> f64 {
         let mean = self.moments.iter().map(|groups| groups[group].pressure).sum::<f64>() / self.moments.len() as f64;
-        (self.moments[row][group].pressure / mean).powi(2)
+        (self.moments[row.index][group].pressure / mean).powi(2)
     }
 
     /// The parts of a column that sees groups in these shares.
@@ -308,20 +323,20 @@ impl<'a> Run<'a> {
         ]
     }
 
-    fn particles(&self, row: usize, group: usize) -> f64 {
-        self.moments[row][group].moles / self.moles_per_particle
+    fn particles(&self, row: Row, group: usize) -> f64 {
+        self.moments[row.index][group].moles / self.moles_per_particle
     }
 
-    fn collision_time(&self, row: usize, group: usize) -> f64 {
+    fn collision_time(&self, row: Row, group: usize) -> f64 {
         let density = self.particles(row, group) / self.forecaster.course.volumes[group];
-        kinetics::collision_time(density, self.diameter, self.moments[row][group].thermal_square)
+        kinetics::collision_time(density, self.diameter, self.moments[row.index][group].thermal_square)
     }
 
     /// Of all gas of a group.
-    fn common(&self, row: usize, group: usize) -> f64 {
+    fn common(&self, row: Row, group: usize) -> f64 {
         let Forecaster { course, left, .. } = self.forecaster;
-        let (here, particles) = (&self.moments[row][group], self.particles(row, group));
-        let (time, window, volume) = (course.times[row], course.window, course.volumes[group]);
+        let (here, particles) = (&self.moments[row.index][group], self.particles(row, group));
+        let (time, window, volume) = (course.times[row.index], row.window, course.volumes[group]);
         let all: f64 = (0..course.volumes.len()).map(|other| self.particles(row, other)).sum();
         let mean_speed = kinetics::mean_speed(here.thermal_square);
         let touching = course.control.openings.iter().filter(|opening| opening.between.contains(&group));
@@ -330,7 +345,8 @@ impl<'a> Run<'a> {
             0.25 * mean_speed * opening.area * (1.0 / a + 1.0 / b)
         };
         let rate: f64 = touching.map(exchanged).sum();
-        let memory = self.collision_number * self.collision_time(row, group) / (1.0 + here.spin_dof / 3.0);
+        let relaxation = self.collision_number * self.collision_time(row, group) / (1.0 + here.spin_dof / 3.0);
+        let memory = self.spin_memory.unwrap_or(relaxation);
         let at_start = |group: usize| course.initial[group].moles.iter().sum::<f64>() / self.moles_per_particle;
         let numbers = noise::Exchange {
             here: particles,
@@ -348,26 +364,26 @@ impl<'a> Run<'a> {
         let share = vents / course.control.vents.len().max(1) as f64;
         noise::of_spin(particles, here.spin_dof, memory, time, window)
             + noise::of_exchange(&numbers, factor, rate, time, window)
-            + noise::of_vents(share * left[row] / self.moles_per_particle, particles, here.spin_dof)
+            + noise::of_vents(share * left[row.index] / self.moles_per_particle, particles, here.spin_dof)
             + noise::of_heat(particles, here.spin_dof, heat.sum(), time, window)
     }
 
     /// Of a part of a group's space.
-    fn part(&self, row: usize, group: usize, volume: f64) -> f64 {
+    fn part(&self, row: Row, group: usize, volume: f64) -> f64 {
         let course = &self.forecaster.course;
         let share = (volume / course.volumes[group]).min(1.0);
         let all = self.particles(row, group);
-        noise::of_zone(share * all, all, volume, self.moments[row][group].thermal_speed(), course.window)
+        noise::of_zone(share * all, all, volume, self.moments[row.index][group].thermal_speed(), row.window)
     }
 
     /// Of a wall of a group.
-    fn wall(&self, row: usize, group: usize, area: f64, whole: bool) -> f64 {
+    fn wall(&self, row: Row, group: usize, area: f64, whole: bool) -> f64 {
         let course = &self.forecaster.course;
-        let (here, particles) = (&self.moments[row][group], self.particles(row, group));
+        let (here, particles) = (&self.moments[row.index][group], self.particles(row, group));
         let depth = course.volumes[group] / area;
-        let hits = 0.25 * particles / depth * kinetics::mean_speed(here.thermal_square) * course.window;
-        let face = noise::of_face(whole, depth, here.thermal_speed(), course.window, particles);
-        let axis = if whole { 0.0 } else { noise::of_axis(particles, self.collision_time(row, group), course.window) };
+        let hits = 0.25 * particles / depth * kinetics::mean_speed(here.thermal_square) * row.window;
+        let face = noise::of_face(whole, depth, here.thermal_speed(), row.window, particles);
+        let axis = if whole { 0.0 } else { noise::of_axis(particles, self.collision_time(row, group), row.window) };
         noise::of_hits(hits).min(face + axis)
     }
 }

@@ -8,6 +8,11 @@ use std::f64::consts::PI;
 
 use crate::scene::HeatTransfer;
 
+/// Of the method `half-turn`, in intervals of 32 steps: how long energy keeps between translation and spin. It goes to and fro in every step, but rows
+/// look at every eighth. Measured: chamber pressures of 1000 particles of nitrogen scatter by .0105 in rows of one interval (four runs of a closed vessel that is
+/// filled), the moment's by .0163.
+pub const HALF_TURN_MEMORY: f64 = 0.28;
+
 /// What is left of a variance in the mean over a window, if the fluctuation is forgotten as exp(-t / memory):
 /// 2 y (1 - y (1 - exp(-1/y))), y = memory / window.
 pub fn averaged(memory: f64, window: f64) -> f64 {
@@ -84,6 +89,11 @@ pub fn of_exchange(numbers: &Exchange, factor: f64, rate: f64, time: f64, window
 pub fn of_zone(particles: f64, all: f64, volume: f64, thermal_speed: f64, window: f64) -> f64 {
     let memory = libm::cbrt(volume) / (3.0 * (2.0 / PI).sqrt() * thermal_speed);
     5.0 / (3.0 * particles) * (1.0 - particles / all).max(0.0) * averaged(memory, window)
+}
+
+/// Of a profile, not squared: mean |rho - mean| over the mean density, rho of N particles in fiftieths of a tube.
+pub fn of_profile(particles: f64) -> f64 {
+    (2.0 / PI * 50.0 / particles).sqrt()
 }
 
 /// Of what vents have let out: the number is what they should (they pay what they owe), its energy scatters by
