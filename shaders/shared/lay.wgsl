@@ -1,5 +1,5 @@
-// What the sort of the methods `cell` and `half-turn` leaves of a particle: its state, and among other devices its cell and its marks; and what it
-// leaves behind the last one.
+// What the sort of the methods `cell` and `half-turn` leaves of a particle: its state, and among other devices its cell
+// and its marks; and what it leaves behind the last one.
 
 var<uniform> step: Step;
 var<storage, read> particles: array<Packed>;
@@ -16,8 +16,8 @@ fn lay(i: u32, place: u32, cell: u32) {
     }
 }
 
-// Among other devices, of a place that may be behind the last particle: some have been dropped that are nowhere near this device. `end`: where the
-// bins end.
+// Among other devices, of a place that may be behind the last particle: some have been dropped that are nowhere near
+// this device. `end`: where the bins end.
 fn lay_nobody(i: u32, end: u32) {
     if (i >= end && i < step.total) {
         marks[i] = LAYER;

@@ -205,7 +205,8 @@ pub const LIMITS: &[Limit] = &[
         AtLeast(2.0),
         "pairs collide again and again, and the gas is too viscous",
     ),
-    // Map `members`: nu .21 d c0 down to 14 in a tile, .35 at 10, .46 at 8, .52 at 6, where no gradient is known, .69 at 2 (`closest-approach` has .65).
+    // Map `members`: nu .21 d c0 down to 14 in a tile, .35 at 10, .46 at 8, .52 at 6, where no gradient is known, .69
+    // at 2 (`closest-approach` has .65).
     limit_of(
         Quantity::CellParticles,
         Some(Method::HalfTurn),

@@ -113,8 +113,8 @@ impl Resolution {
         }
     }
 
-    /// x = dt/tau of gas in such a state whose particles have such a diameter, m; of `half-turn`, which has none, the mean spacings that a
-    /// particle of thermal speed flies.
+    /// x = dt/tau of gas in such a state whose particles have such a diameter, m; of `half-turn`, which has none, the
+    /// mean spacings that a particle of thermal speed flies.
     pub fn collisions_in_step(&self, state: MeanState, diameter: f64) -> f64 {
         match self.method {
             Method::HalfTurn => spacings_flown(self.time_step, state),

@@ -258,7 +258,8 @@ fn long_steps(decided: &Decided<'_>) -> Option<Warning> {
     Warning::beyond(Quantity::Step, bound, &effect, Judged { subject: "the time step", value: x, remedy })
 }
 
-/// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path. (Only methods with collisions have a limit of it.)
+/// Of a particle in a step: cbar dt S / (4 V), with cbar tau the mean free path. (Only methods with collisions have a
+/// limit of it.)
 pub fn wall_hits(measured: &Measured, number_density: f64, resolution: &Resolution) -> f64 {
     let x = resolution.collisions_per_step;
     let flown = match resolution.method {

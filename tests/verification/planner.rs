@@ -258,8 +258,8 @@ fn check(case: &Case<'_>) -> Model {
 fn gas_at_rest() {
     let planned =
         check(&Case { name: "rest", text: REST, method: "closest-approach", asked: 0.05, rows: 20, seeds: 2 });
-    // The check can fail: a sixteenth of the particles is four times as noisy, and the forecast knows that too. (In the same steps: longer ones would have
-    // longer rows.)
+    // The check can fail: a sixteenth of the particles is four times as noisy, and the forecast knows that too. (In the
+    // same steps: longer ones would have longer rows.)
     let few = format!(
         "method = \"closest-approach\"\nparticles = {}\ntime_step = {:e}\naccuracy = 0.5",
         planned.plan.particles / 16,

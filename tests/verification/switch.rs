@@ -94,7 +94,8 @@ fn half_turn_hands_over_what_is_there() {
     assert!((1e-3..1.3e-3).contains(&found.outcome.time), "{}", found.outcome.time);
     assert!(continued.until == 4e-3 && continued.why == "asked for");
     follow_each_other(&found.rows, 4e-3, None);
-    // Nothing jumps: the rows on either side of it are of one course, within its change from row to row and the noise of 8000 particles.
+    // Nothing jumps: the rows on either side of it are of one course, within its change from row to row and the noise
+    // of 8000 particles.
     let at = found.rows.iter().position(|row| row.particles == 0).expect("rows of the control volume");
     for chamber in 0..2 {
         let pressure = |row: usize| found.rows[row].chambers[chamber].pressure;

@@ -161,8 +161,8 @@ impl Chooser<'_> {
         most.min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
-    /// What the other methods of particles would have been in place of a plan: as accurate, or within the budget. `None` where there are none; an
-    /// inner `None` where they cannot.
+    /// What the other methods of particles would have been in place of a plan: as accurate, or within the budget.
+    /// `None` where there are none; an inner `None` where they cannot.
     pub(super) fn by_others(&self, chosen: &Possible) -> Option<Option<Possible>> {
         let others: Vec<&Family> = self
             .families

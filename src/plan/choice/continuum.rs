@@ -1,5 +1,5 @@
-//! Where the method `half-turn` may be taken that nobody asked for: it has no mean free path, so the gas itself has to be a continuum at the size of
-//! the vessel, and nothing asked for may be what it has not.
+//! Where the method `half-turn` may be taken that nobody asked for: it has no mean free path, so the gas itself has to
+//! be a continuum at the size of the vessel, and nothing asked for may be what it has not.
 
 use super::{Amounts, COLLISION_CELL, Measured, Scene, kinetics, openings};
 use crate::plan::text::significant;
@@ -31,7 +31,8 @@ fn asked_of_others(model: &ModelRequest) -> Option<&'static str> {
     asked.into_iter().find_map(|(name, asked)| asked.then_some(name))
 }
 
-/// The largest of all chambers, by their sizes, and holes, by the denser gas beside them. (Of a chamber without gas that of all gas at the end.)
+/// The largest of all chambers, by their sizes, and holes, by the denser gas beside them. (Of a chamber without gas
+/// that of all gas at the end.)
 pub fn molecular_knudsen(scene: &Scene, measured: &Measured, amounts: &Amounts) -> f64 {
     let at_end = kinetics::molecular_mean_free_path(amounts.total() / measured.gas_volume);
     let path = |chamber: usize| {
@@ -48,8 +49,9 @@ pub fn molecular_knudsen(scene: &Scene, measured: &Measured, amounts: &Amounts) 
     of_chambers.chain(of_holes).fold(at_end / libm::cbrt(measured.gas_volume), f64::max)
 }
 
-/// Particles of which a collision cell is no longer than the radius of the smallest hole, at the mean density of the end: five spacings
-/// across it. That is the guard of the smallest passage, and below it the flow through a hole was not measured.
+/// Particles of which a collision cell is no longer than the radius of the smallest hole, at the mean density of the
+/// end: five spacings across it. That is the guard of the smallest passage, and below it the flow through a hole was
+/// not measured.
 pub fn fewest(scene: &Scene, measured: &Measured) -> f64 {
     let smallest = openings(scene, measured).map(|opening| opening.length).fold(f64::INFINITY, f64::min);
     let across = COLLISION_CELL / smallest;

@@ -58,7 +58,8 @@ pub fn beyond(choices: &Choices<'_>, resolution: &Resolution) -> Vec<Quantity> {
         openings: &[],
     };
     let found = warnings(scene, measured, &decided);
-    // Tiles of `half-turn` hold as many whatever the number of all: how few is the scene's, and no other method is less viscous there.
+    // Tiles of `half-turn` hold as many whatever the number of all: how few is the scene's, and no other method is less
+    // viscous there.
     let own = |kept: &Quantity| method != Method::HalfTurn || *kept != Quantity::CellParticles;
     KEPT.into_iter().filter(own).filter(|kept| found.iter().any(|warning| warning.quantity == *kept)).collect()
 }

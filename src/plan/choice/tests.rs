@@ -94,8 +94,8 @@ fn the_reason_for_the_method_is_the_one_that_counted() {
     assert!(!accurate.contains("()"), "{accurate}");
 }
 
-/// Half-turn is taken where it is cheaper, and the plan says than what; not where the gas itself is rarefied, where a key of another method
-/// is given, or with so few particles that a hole is less than five spacings wide.
+/// Half-turn is taken where it is cheaper, and the plan says than what; not where the gas itself is rarefied, where a
+/// key of another method is given, or with so few particles that a hole is less than five spacings wide.
 #[test]
 fn half_turn_is_chosen_where_it_is_cheaper() {
     let planned = |change: &dyn Fn(&mut Scene)| {

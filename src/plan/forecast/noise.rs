@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 
 use crate::scene::HeatTransfer;
 
-/// Of the method `half-turn`, in intervals of 32 steps: how long energy keeps between translation and spin. It goes to and fro in every step, but rows
-/// look at every eighth. Measured: chamber pressures of 1000 particles of nitrogen scatter by .0105 in rows of one interval (four runs of a closed vessel that is
-/// filled), the moment's by .0163.
+/// Of the method `half-turn`, in intervals of 32 steps: how long energy keeps between translation and spin. It goes to
+/// and fro in every step, but rows look at every eighth. Measured: chamber pressures of 1000 particles of nitrogen
+/// scatter by .0105 in rows of one interval (four runs of a closed vessel that is filled), the moment's by .0163.
 pub const HALF_TURN_MEMORY: f64 = 0.28;
 
 /// What is left of a variance in the mean over a window, if the fluctuation is forgotten as exp(-t / memory):

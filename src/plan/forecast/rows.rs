@@ -1,4 +1,5 @@
-//! The rows of a history: each is of whole intervals of steps, so where steps are long it is longer than was asked for, and the last shorter.
+//! The rows of a history: each is of whole intervals of steps, so where steps are long it is longer than was asked for,
+//! and the last shorter.
 
 /// A row of the history.
 #[derive(Debug, Clone, Copy)]

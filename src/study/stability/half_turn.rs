@@ -1,4 +1,5 @@
-//! The method `half-turn`: where its viscosity, of which all else follows, is no longer what plans take it for, and a hole what they say.
+//! The method `half-turn`: where its viscosity, of which all else follows, is no longer what plans take it for, and a
+//! hole what they say.
 
 use crate::gas::CONTINUUM_COEFFICIENT;
 use crate::gpu::Device;

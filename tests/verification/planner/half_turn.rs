@@ -1,5 +1,6 @@
-//! The same law of plans of the method `half-turn`. None is blind: the forecast of its holes and fronts was made with other runs, but what is
-//! asked of each scene is what was asked of `closest-approach` where that takes as little time.
+//! The same law of plans of the method `half-turn`. None is blind: the forecast of its rows and of the noise of its
+//! spin was mended with them in sight. What is asked of each scene is what is asked of `closest-approach`, but for the
+//! two holes: fewer than five spacings across a hole are no choice of a plan's.
 
 use super::*;
 
