@@ -33,6 +33,8 @@ const TURNED_AT_RANDOM: f32 = 0.2;
 const LEAST_DETERMINANT: f32 = 1e-4;
 // Squares of standard deviations of z from equilibrium beyond which spin is drawn.
 const FAR2: f32 = 16.0;
+// What is turned over the whole kinetic energy, below which it is the rounding of velocities.
+const LEAST_TURNED: f32 = 1e-12;
 const JACOBI_ROTATIONS: u32 = 12;
 const MOST_TRIES: u32 = 64;
 // The third words of the counters of draws: one for decisions, one for turns at random, from GAMMAS on tries of the two gamma variates, and above
@@ -331,7 +333,8 @@ fn relax(begin: u32, count: u32, group: u32) {
     } else {
         atomicAdd(&counters[UNFITTED], number);
     }
-    // Twice the energy of what is turned, its stress and its heat flux.
+    // Twice the energy of all, of what is turned, the stress and the heat flux of that.
+    var whole = 0.0;
     var twice = 0.0;
     var stress = Symmetric(vec3<f32>(0.0), vec3<f32>(0.0));
     var flux = vec3<f32>(0.0);
@@ -347,12 +350,14 @@ fn relax(begin: u32, count: u32, group: u32) {
         let flow = flow_at(fit, place.xyz);
         let c = ((motion.xyz - fit.reference) - fit.mean) - flow;
         let own = m * dot(c, c);
+        whole += m * dot(motion.xyz, motion.xyz);
         twice += own;
         stress = plus_square(stress, m, c);
         flux += (own + 2.0 * motion.w) * c;
     }
-    // All have one velocity: nothing to turn, and no direction for what spin might give.
-    if (!(twice > 0.0)) {
+    // All have one velocity, or differ by rounding: nothing to turn, and no direction for what spin might give. (It would stretch the
+    // difference beyond all bounds.)
+    if (!(twice > LEAST_TURNED * whole)) {
         return;
     }
     let few = number < LEAST_FITTED;

@@ -287,8 +287,11 @@ fn no_state_breaks_it() {
     let gases = [with_spin(1.0), without_spin(1.0 / 70.0)];
     let masses = masses_of(&gases);
     type Change = fn(usize, &mut GpuParticle);
-    let states: [(&str, Change); 7] = [
+    let states: [(&str, Change); 8] = [
         ("one velocity", |_, p| p.velocity = [3000.0, 1.0, -7.0]),
+        ("a cold stream with motes of velocity and some spin", |k, p| {
+            (p.velocity, p.spin) = ([3000.0, 1e-21 * (k % 7) as f32, 1e-21 * (k % 3) as f32], 0.01);
+        }),
         ("one place", |_, p| p.position = [1 << 24; 3]),
         ("a plane", |_, p| p.position[2] = 1 << 24),
         ("velocities in a line", |k, p| p.velocity = [k as f32 - 3.0, 0.0, 0.0]),
