@@ -77,7 +77,71 @@ pub(super) fn one_temperature(device: &Device, effort: Effort) -> Result<Finding
         checks.push(Check::of(format!("{method}: T_int/T_tr"), 1.0, spin, 0.01));
         checks.push(Check::of(format!("{method}: T1/T2, masses 1:7"), 1.0, gases, 0.01));
     }
+    let steps = if effort == Effort::Quick { 3200 } else { 12_800 };
+    checks.extend(three_gases(device, "half-turn", 0.6, steps)?);
     Ok(checks.into())
+}
+
+/// Particles without spin, with two degrees of freedom of it and with five; molar masses 1:7:36.
+const THREE_GASES: &str = "[[gas]]\nname = \"a\"\nmolar_mass = 0.004\ngamma = 1.6666667\n\
+                           [[gas]]\nname = \"b\"\nmolar_mass = 0.028\ngamma = 1.4\n\
+                           [[gas]]\nname = \"c\"\nmolar_mass = 0.146\ngamma = 1.25\n";
+
+/// From a start with the light gas hot, the heavy one cold and no spin: after the first quarter of the run each gas has the temperature of
+/// all, of both kinds, and the second moment of a spin of two degrees of freedom is that of an exponential distribution.
+///
+/// # Errors
+/// If the run fails.
+pub fn three_gases(device: &Device, method: &str, step_over_tau: f64, steps: u32) -> Result<Vec<Check>, StudyError> {
+    let gas = EquilibriumBox {
+        method,
+        particles: 6000,
+        step_over_tau,
+        steps,
+        molar_mass: 0.0593,
+        gases: THREE_GASES,
+        mixture: "{ a = 0.3333, b = 0.3333, c = 0.3334 }",
+        snapshots: steps / 16,
+        ..EquilibriumBox::default()
+    };
+    let mut model = gas.model()?;
+    // The light gas is faster than the mean.
+    model.plan.collision_limit = f64::INFINITY;
+    let unequal = |particles: &mut [GpuParticle]| {
+        for particle in particles {
+            let factor = [1.4, 1.0, 0.6][usize::from(particle.gas())];
+            particle.velocity = particle.velocity.map(|v| factor * v);
+            particle.spin = 0.0;
+        }
+    };
+    let run = run(device, &model, Options { shuffle: Some(&unequal), ..Options::default() })?;
+    let late = &run.snapshots[run.snapshots.len() / 4..];
+    let [light, heavy] = [4.0 / 146.0, 28.0 / 146.0];
+    let series = |of: &dyn Fn([[f64; 2]; 3]) -> f64| {
+        let states = late
+            .iter()
+            .map(|(_, all)| [temperatures(all, 0, light), temperatures(all, 1, heavy), temperatures(all, 2, 1.0)]);
+        mean_of_series(&states.map(of).collect::<Vec<_>>(), 12)
+    };
+    // Of all degrees of freedom.
+    let mean = |[a, b, c]: [[f64; 2]; 3]| (3.0 * (a[0] + b[0] + c[0]) + 2.0 * (b[1] + c[1])) / 16.0;
+    let seconds: Vec<f64> = late.iter().map(|(_, particles)| second_moment(particles, 1)).collect();
+    let check = |what: &str, found| Check::of(format!("{method}: {what}, masses 1:7:36"), 1.0, found, 0.01);
+    Ok(vec![
+        check("T_tr over T, no spin", series(&|state| state[0][0] / mean(state))),
+        check("T_tr over T, zeta = 2", series(&|state| state[1][0] / mean(state))),
+        check("T_tr over T, zeta = 5", series(&|state| state[2][0] / mean(state))),
+        check("T_int over T, zeta = 2", series(&|state| state[1][1] / mean(state))),
+        check("T_int over T, zeta = 5", series(&|state| 0.4 * state[2][1] / mean(state))),
+        check("<e^2>/(2 <e>^2) of spin, zeta = 2", mean_of_series(&seconds, 12)),
+    ])
+}
+
+/// Of the spin of a gas over twice the square of its mean: 1 where it has two degrees of freedom.
+fn second_moment(particles: &[GpuParticle], gas: u8) -> f64 {
+    let spins = || particles.iter().filter(|particle| particle.gas() == gas).map(|particle| f64::from(particle.spin));
+    let count = spins().count() as f64;
+    0.5 * spins().map(|e| e * e).sum::<f64>() * count / spins().sum::<f64>().powi(2)
 }
 
 /// A gas whose translation and spin come to have one temperature.
@@ -228,7 +292,8 @@ pub fn energy_drift(
         method,
         particles,
         steps,
-        step_over_tau: 0.15,
+        // Half-turn has steps of .6 spacings, the others of .15 collision times.
+        step_over_tau: if method == "half-turn" { 0.6 } else { 0.15 },
         gases: resting.gases,
         mixture: resting.mixture,
         molar_mass: resting.molar_mass,

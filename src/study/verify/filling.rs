@@ -55,16 +55,19 @@ pub fn enthalpy(model: &Model) -> f64 {
 }
 
 pub(super) fn balances(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let (model, run) = filled(device, Method::ClosestApproach, if effort == Effort::Quick { 1500 } else { 6000 })?;
-    let orifice = &model.scene.orifices[0];
-    let gas = &model.scene.gases[orifice.mixture.0[0].0];
-    let mass = integral(&orifice.mass_flow.points, DURATION);
-    let particle = gas.molar_mass * model.plan.moles_per_particle;
-    let injected = run.outcome.audit.mass_injected;
-    let error = energy_error(&run, enthalpy(&model) * injected);
-    Ok(vec![
-        Check::of("mass injected, particles off", 0.0, ((injected - mass) / particle, 0.0), 0.5 * (1.0 + 1e-9)),
-        Check::of("energy over U0 + integral h dm, less 1", 0.0, (error, 0.0), 1e-4),
-    ]
-    .into())
+    let particles = if effort == Effort::Quick { 1500 } else { 6000 };
+    let mut checks = Vec::new();
+    for method in [Method::ClosestApproach, Method::HalfTurn] {
+        let (model, run) = filled(device, method, particles)?;
+        let orifice = &model.scene.orifices[0];
+        let gas = &model.scene.gases[orifice.mixture.0[0].0];
+        let mass = integral(&orifice.mass_flow.points, DURATION);
+        let particle = gas.molar_mass * model.plan.moles_per_particle;
+        let injected = run.outcome.audit.mass_injected;
+        let error = energy_error(&run, enthalpy(&model) * injected);
+        let (name, off) = (method.name(), (injected - mass) / particle);
+        checks.push(Check::of(format!("{name}: mass injected, particles off"), 0.0, (off, 0.0), 0.5 * (1.0 + 1e-9)));
+        checks.push(Check::of(format!("{name}: energy over U0 + integral h dm, less 1"), 0.0, (error, 0.0), 1e-4));
+    }
+    Ok(checks.into())
 }

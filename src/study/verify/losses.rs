@@ -3,11 +3,13 @@
 use std::f64::consts::PI;
 
 use crate::gpu::Device;
+use crate::scene::{Method, Scene};
 use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 
 use super::gas_box::GAS_CONSTANT;
-use super::witness::model_of;
+use super::waves::DIFFUSIVITY;
+use super::witness::{model_from, model_of, scene_of};
 use super::{Check, Curves, Effort, Findings, Run, run};
 
 /// m.
@@ -33,20 +35,30 @@ pub fn within_walls(
     run(device, &model_within_walls(particles, end_time, temperature, wall)?, Options::default())
 }
 
+/// The cube's scene, by a method that the plan gives diameter and step, in place of closest approach.
+fn scene_by(method: Method, particles: u64, temperature: f64, wall: &str) -> Result<Scene, StudyError> {
+    let mut scene = scene_of("heat-loss", &text_within_walls(particles, TAU, temperature, wall))?;
+    (scene.model.method, scene.model.occupancy, scene.model.time_step) = (Some(method), None, None);
+    Ok(scene)
+}
+
 /// The model of [`within_walls`].
 ///
 /// # Errors
 /// If no plan can be made for it.
 pub fn model_within_walls(particles: u64, end_time: f64, temperature: f64, wall: &str) -> Result<Model, StudyError> {
-    let text = format!(
+    model_of("heat-loss", &text_within_walls(particles, end_time, temperature, wall))
+}
+
+fn text_within_walls(particles: u64, end_time: f64, temperature: f64, wall: &str) -> String {
+    format!(
         "end_time = {end_time:e}\nseed = 3\n[[gas]]\nname = \"nitrogen\"\nmolar_mass = {MOLAR_MASS}\ngamma = 1.4\n\
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [{EDGE}, {EDGE}, {EDGE}]\n\
          gas = \"inside\"\ntemperature = {COLD}\n{wall}\n\
          [[chamber]]\nname = \"all\"\npressure = 100000.0\ntemperature = {temperature}\ngas = \"nitrogen\"\n\
          [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
          [model]\nparticles = {particles}\noccupancy = 0.1\ntime_step = 3e-6\n[output]\nrows = 60\nsnapshots = 0\n"
-    );
-    model_of("heat-loss", &text)
+    )
 }
 
 /// Temperature of the cube after `time`, K: dT/dt = -(T - T_w)/tau, tau = n cv / (h A).
@@ -68,10 +80,28 @@ fn moles() -> f64 {
 /// # Errors
 /// If the run fails.
 pub fn heat_loss(device: &Device, particles: u64) -> Result<((f64, f64), Run), StudyError> {
+    heat_loss_in(particles, |wall| within_walls(device, particles, TAU, WARM, wall))
+}
+
+/// By half-turn.
+///
+/// # Errors
+/// If the run fails.
+pub fn heat_loss_of_half_turn(device: &Device, particles: u64) -> Result<((f64, f64), Run), StudyError> {
+    heat_loss_in(particles, |wall| {
+        let model = model_from("heat-loss", scene_by(Method::HalfTurn, particles, WARM, wall)?)?;
+        run(device, &model, Options::default())
+    })
+}
+
+fn heat_loss_in(
+    particles: u64,
+    cooled_by: impl Fn(&str) -> Result<Run, StudyError>,
+) -> Result<((f64, f64), Run), StudyError> {
     let heat_capacity = moles() * 2.5 * GAS_CONSTANT;
     let area = 6.0 * EDGE * EDGE;
     let coefficient = heat_capacity / (area * TAU);
-    let run = within_walls(device, particles, TAU, WARM, &format!("heat_transfer = {coefficient:e}"))?;
+    let run = cooled_by(&format!("heat_transfer = {coefficient:e}"))?;
     let heat = run.rows.last().map_or(f64::NAN, |row| row.walls[0].heat);
     let mean = 0.5 * (WARM + COLD);
     let speed = (8.0 * GAS_CONSTANT * mean / (PI * MOLAR_MASS)).sqrt();
@@ -80,6 +110,31 @@ pub fn heat_loss(device: &Device, particles: u64) -> Result<((f64, f64), Run), S
     let exchanged = particles as f64 * share * speed * area / (4.0 * volume) * TAU;
     let error = mean * (exchanged * 6.0).sqrt() / (particles as f64 * 2.5);
     Ok(((WARM - heat / heat_capacity, error), run))
+}
+
+/// What half-turn keeps, of which the gas at the walls is colder, since it conducts less: between the law's and that of a solid of
+/// its conductivity, whose fall is slower by the factor zeta^2/Bi, zeta tan zeta = Bi, the Biot number of half an edge.
+fn by_half_turn(device: &Device, particles: u64) -> Result<Check, StudyError> {
+    let ((end, error), _) = heat_loss_of_half_turn(device, particles)?;
+    let fall = WARM - COLD;
+    let spacing = EDGE / (particles as f64).cbrt();
+    let thermal = (GAS_CONSTANT * 0.5 * (WARM + COLD) / MOLAR_MASS).sqrt();
+    // h (L/2)/lambda with h = n cv L/(6 tau) and lambda = n cp chi, gamma 1.4.
+    let biot = EDGE * EDGE / (12.0 * TAU * 1.4 * DIFFUSIVITY * spacing * thermal);
+    let (law, solid) = ((-1.0f64).exp(), (-slowed(biot)).exp());
+    let (expected, tolerance) = (0.5 * (law + solid), 0.5 * (solid - law) + 3.0 * error / fall);
+    let quantity = format!("half-turn: the same, between the law's and a solid's {solid:.3}");
+    Ok(Check::of(quantity, expected, ((end - COLD) / fall, error / fall), tolerance))
+}
+
+/// zeta^2/Bi.
+fn slowed(biot: f64) -> f64 {
+    let (mut low, mut high) = (0.0f64, 0.5 * PI);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if middle * middle.tan() < biot { low = middle } else { high = middle }
+    }
+    low * low / biot
 }
 
 /// A coefficient a fifth larger would be .067 of the fall.
@@ -91,19 +146,22 @@ pub(super) fn heat(device: &Device, effort: Effort) -> Result<Findings, StudyErr
     let (particles, tolerance) = if effort == Effort::Quick { (8000, 0.05) } else { (40_000, 0.025) };
     let ((end, error), run) = heat_loss(device, particles)?;
     let fall = WARM - COLD;
-    let check = Check::of(
-        "(T - T_w) over that of the start, after n cv / (h A)",
-        (-1.0f64).exp(),
-        ((end - COLD) / fall, error / fall),
-        tolerance,
-    );
+    let checks = vec![
+        Check::of(
+            "(T - T_w) over that of the start, after n cv / (h A)",
+            (-1.0f64).exp(),
+            ((end - COLD) / fall, error / fall),
+            tolerance,
+        ),
+        by_half_turn(device, particles)?,
+    ];
     let found = run.rows.iter().map(|row| [1e3 * row.time, WARM - row.walls[0].heat / (moles() * 2.5 * GAS_CONSTANT)]);
     let exact = run.rows.iter().map(|row| [1e3 * row.time, cooled(row.time)]);
     let title = format!("A cube that its walls cool, {particles} particles");
     let chart = Curves::new("heat-loss", title, "ms", "K")
         .line("by the heat that is gone", found.collect())
         .reference("exponential", exact.collect());
-    Ok(Findings { charts: vec![chart], ..vec![check].into() })
+    Ok(Findings { charts: vec![chart], ..checks.into() })
 }
 
 /// Choked isentropic flow over p sqrt(M / (R T)), gamma 1.4.

@@ -21,14 +21,19 @@ pub mod half_turn;
 pub mod holes;
 pub mod losses;
 pub mod mixing;
+pub mod noh;
 pub mod page;
 pub mod piston;
 pub mod report;
 pub mod shear;
+mod smear;
 pub mod sod;
 pub mod sound;
 pub mod statistics;
+pub mod thin_wall;
 pub mod tube;
+pub mod vessels;
+pub mod waves;
 mod witness;
 
 pub use at_once::run_cases;
@@ -79,7 +84,11 @@ pub const CASES: &[Case] = &[
         law: "mass and energy of a closed tank that is filled: the curve's integral, U0 + integral of h dm",
         run: filling::balances,
     },
-    Case { name: "effusion", law: "free flight through a hole over n cbar A/4 (kinetic theory)", run: holes::effusion },
+    Case {
+        name: "effusion",
+        law: "free flight through a hole over n cbar A/4 (kinetic theory)",
+        run: vessels::effusion,
+    },
     Case {
         name: "rough-tube",
         law: "free flight through a tube of rough walls over n cbar A/4 (Clausing 1932)",
@@ -108,7 +117,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "blow-down",
         law: "one chamber empties into another through a hole: the gas that stays cools between isentropically and by effusion",
-        run: holes::blow_down,
+        run: vessels::blow_down,
     },
     Case { name: "mixing", law: "two gases come to equal shares and one temperature (mixing)", run: mixing::mixing },
     Case {
@@ -122,12 +131,22 @@ pub const CASES: &[Case] = &[
         run: half_turn::viscosities,
     },
     Case {
+        name: "half-turn-heat",
+        law: "half-turn: decay of a wave of temperature at one pressure as exp(-chi k^2 t), with the diffusivity of the method",
+        run: waves::heats,
+    },
+    Case {
         name: "half-turn-orifice",
         law: "half-turn: discharge into near-vacuum, by the spacings of the particles across the hole",
         run: half_turn::discharges,
     },
     Case { name: "sod", law: "Sod's shock tube, gamma 7/5, against the exact Riemann solution", run: sod::sod },
     Case { name: "sod-monatomic", law: "the same with gamma 5/3", run: sod::sod_monatomic },
+    Case {
+        name: "strong-tube",
+        law: "half-turn: a shock tube of a pressure ratio of 100 against the exact Riemann solution",
+        run: sod::strong,
+    },
     Case {
         name: "expansion",
         law: "expansion into a vacuum: exact Riemann solution; at rest again the temperature of the start (Joule)",
@@ -137,6 +156,16 @@ pub const CASES: &[Case] = &[
         name: "sound",
         law: "frequency of a standing wave over that of sound at sqrt(gamma k T/m)",
         run: sound::sound,
+    },
+    Case {
+        name: "noh",
+        law: "half-turn: cold gas streams against a wall, a shock of infinite Mach number (Rankine-Hugoniot); spin comes up from none",
+        run: noh::noh,
+    },
+    Case {
+        name: "thin-wall",
+        law: "hot and cold gas on the two sides of a thin wall that cuts cells: the energy of each stays as it is",
+        run: thin_wall::thin_wall,
     },
     Case {
         name: "piston",

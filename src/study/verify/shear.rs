@@ -95,7 +95,7 @@ fn amplitude(model: &Model, particles: &[GpuParticle]) -> f64 {
 }
 
 /// b of A exp(-b t), 1/s, through logarithms that count as the squares of the values: those err alike.
-fn decay(series: &[(f64, f64)]) -> f64 {
+pub(super) fn decay(series: &[(f64, f64)]) -> f64 {
     let mut sums = [0.0; 5];
     for &(t, a) in series.iter().filter(|(_, a)| *a > 0.0) {
         let (weight, log) = (a * a, a.ln());

@@ -7,9 +7,12 @@ use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::study::pareto::{Setting, model_with};
 
+use super::figures::half_turn;
 use super::shear::FLOOR;
+use super::smear::expected;
 use super::statistics::mean_and_error;
 use super::tube::{LENGTH, SOD, Slice, Tube, counting_noise, mean_differences};
+use super::waves::{DAMPING, DIFFUSIVITY};
 use super::{Check, Curves, Effort, Findings, run};
 
 /// The profile at the end of a run with this setting, and the model. Occupancy and step are of all particles in `volume` (m3),
@@ -38,13 +41,54 @@ const POWER: f64 = -0.26;
 /// A method, and at most what its mean |difference| of the density (docs/reference/accuracy.md) and of the velocity (its table
 /// of section 2 and the 5 % to which that is known) is at 160,000 particles and f = .1.
 type Limits = (Method, Option<f64>, [f64; 2]);
-const LIMITS: [Limits; 3] = [
+const LIMITS: [Limits; 2] = [
     // The defaults of the plan.
     (Method::ClosestApproach, None, [0.024, 1.05 * 0.045]),
     (Method::Cell, Some(0.1), [0.025, 1.05 * 0.046]),
-    // Of single runs .0131 and .0255, of which the noise is more than half (docs/explanation/method.md).
-    (Method::HalfTurn, None, [0.0155, 0.031]),
 ];
+
+/// The checks of half-turn, and the profile. A profile is the exact one, smeared by at most the method's largest diffusivity, that of heat, and
+/// counted: the limits are what that makes of it (`smear.rs`) and three standard deviations of the counting.
+///
+/// # Errors
+/// If the run fails.
+pub fn half_turn_in(device: &Device, tube: &Tube) -> Result<(Vec<Check>, Vec<Slice>), StudyError> {
+    by_method_in(device, tube, Method::HalfTurn)
+}
+
+/// By those limits of another method.
+///
+/// # Errors
+/// If the run fails.
+pub fn by_method_in(device: &Device, tube: &Tube, method: Method) -> Result<(Vec<Check>, Vec<Slice>), StudyError> {
+    let setting = Setting { method: Some(method), ..Setting::default() };
+    let (model, profile) = profile(device, tube, &setting, None)?;
+    let left = &model.plan.chambers[0];
+    let density: u64 = left.particles.iter().sum();
+    let spacing = kinetics::mean_spacing(density as f64 / left.volume) / LENGTH;
+    let exact = tube.exact();
+    let most = exact.map_or([f64::NAN; 2], |exact| expected(&exact, tube.end, DIFFUSIVITY, spacing, &profile));
+    let (found, noise) = (mean_differences(&profile), counting_noise(&profile));
+    let check = |k: usize| {
+        let quantity = format!("{}: mean |{} - exact|, N = {}", method.name(), ["rho", "u"][k], tube.particles);
+        Check::of(quantity, 0.0, (found[k], noise[k].1), most[k] + 3.0 * noise[k].1)
+    };
+    Ok((vec![check(0), check(1)], profile))
+}
+
+/// The checks of half-turn against the table of single runs of a program of its own (docs/method.md), which is the mean of four runs
+/// and more, known to 5 %; three standard deviations of the counting noise of one run are what one may be off.
+fn half_turn_by_table(device: &Device, particles: u64) -> Result<Vec<Check>, StudyError> {
+    let setting = Setting { method: Some(Method::HalfTurn), ..Setting::default() };
+    let (_, profile) = profile(device, &Tube { particles, ..SOD }, &setting, None)?;
+    let (found, noise) = (mean_differences(&profile), counting_noise(&profile));
+    let table = half_turn::single(particles).unwrap_or([f64::NAN; 2]);
+    let check = |k: usize| {
+        let quantity = format!("half-turn: mean |{} - exact|, N = {particles}, by its table", ["rho", "u"][k]);
+        Check::of(quantity, table[k], (found[k], noise[k].1), (0.05 * table[k]).hypot(3.0 * noise[k].1))
+    };
+    Ok(vec![check(0), check(1)])
+}
 
 /// The checks of a method against the limits of the `limits`' one, and the profile.
 ///
@@ -75,7 +119,9 @@ fn sod_at(device: &Device, effort: Effort, gamma: f64, name: &'static str) -> Re
     // One gas is enough for what is beside it.
     if gamma == SOD.gamma {
         checks.extend(against(device, particles, gamma, Method::Cell, 1)?.0);
-        checks.extend(against(device, particles, gamma, Method::HalfTurn, 2)?.0);
+        checks.extend(half_turn_by_table(device, particles)?);
+    } else {
+        checks.extend(half_turn_in(device, &Tube { particles, gamma, ..SOD })?.0);
     }
     let line = |of: fn(&Slice) -> f64| profile.iter().map(|slice| [slice.x, of(slice)]).collect();
     let title = format!("Sod's shock tube, gamma {gamma:.3}, {particles} particles");
@@ -95,6 +141,14 @@ pub(super) fn sod_monatomic(device: &Device, effort: Effort) -> Result<Findings,
     sod_at(device, effort, 5.0 / 3.0, "sod-monatomic")
 }
 
+/// A pressure ratio of 100, a temperature ratio of 12.5: a shock of Mach 3.8 into thin and cold gas.
+pub const STRONG: Tube = Tube { right: [0.01, 0.08], ..SOD };
+
+pub(super) fn strong(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
+    let particles = if effort == Effort::Quick { 40_000 } else { 160_000 };
+    Ok(half_turn_in(device, &Tube { particles, ..STRONG })?.0.into())
+}
+
 /// A tube whose right half is empty. The front of the exact solution is at 5.9 sqrt(p/rho).
 pub const VACUUM: Tube = Tube { right: [0.0, 1.0], end: 0.08, ..SOD };
 
@@ -103,11 +157,13 @@ pub const VACUUM: Tube = Tube { right: [0.0, 1.0], end: 0.08, ..SOD };
 /// The slope of the density falls by 2/((gamma+1) a t) at the head of the wave, which moves at the sound speed a. Sound of
 /// diffusivity D there becomes as wide as s^2 = D t, and the integral of the difference to the kink is the fall of the
 /// slope times s^2/2: D/((gamma+1) a), at all times. D is 4/3 nu, .4 nu of conduction with a Prandtl number of .7 (0.56 nu) and some
-/// .6 nu of the spin's relaxation (Landau and Lifshitz, Fluid Mechanics, section 79): 2.5 nu, nu = .65 d c0.
-fn widened(model: &Model, tube: &Tube) -> f64 {
+/// .6 nu of the spin's relaxation (Landau and Lifshitz, Fluid Mechanics, section 79): 2.5 nu, nu = .65 d c0. That of
+/// half-turn is twice its damping of sound.
+fn widened(model: &Model, tube: &Tube, method: Method) -> f64 {
+    let diffusivity = if method == Method::HalfTurn { 2.0 * DAMPING } else { 2.5 * FLOOR };
     let density = model.plan.chambers[0].particles[0] as f64 / model.plan.chambers[0].volume;
     let sound = tube.gamma.sqrt();
-    2.5 * FLOOR * kinetics::mean_spacing(density) / LENGTH / ((tube.gamma + 1.0) * sound)
+    diffusivity * kinetics::mean_spacing(density) / LENGTH / ((tube.gamma + 1.0) * sound)
 }
 
 /// The profile: what counting noise makes of it, and as much more as viscosity and three standard errors do.
@@ -121,7 +177,7 @@ pub fn expanded(device: &Device, particles: u64, method: Method) -> Result<Check
     let [found, _] = mean_differences(&profile);
     let [(noise, error), _] = counting_noise(&profile);
     let quantity = format!("{}: mean |rho - exact|, N = {particles}", method.name());
-    Ok(Check::of(quantity, noise, (found, error), widened(&model, &tube) + 3.0 * error))
+    Ok(Check::of(quantity, noise, (found, error), widened(&model, &tube, method) + 3.0 * error))
 }
 
 /// Times, of some sound crossings each, over which gas at rest is observed.
@@ -133,6 +189,7 @@ const MOMENTS: u32 = 16;
 pub(super) fn expansion(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (particles, few) = if effort == Effort::Quick { (40_000, 2000) } else { (160_000, 6000) };
     let early = expanded(device, particles, Method::ClosestApproach)?;
+    let of_half_turn = expanded(device, particles, Method::HalfTurn)?;
     let late = Tube { particles: few, end: 30.0, snapshots: 2 * MOMENTS, ..VACUUM };
     let model = late.model()?;
     let moments = run(device, &model, Options::default())?.snapshots;
@@ -143,5 +200,5 @@ pub(super) fn expansion(device: &Device, effort: Effort) -> Result<Findings, Stu
     let at_rest = &moments[moments.len().saturating_sub(MOMENTS as usize)..];
     let found: Vec<f64> = at_rest.iter().map(|(_, particles)| temperature(particles)).collect();
     let quantity = "temperature at rest over that of the start";
-    Ok(vec![early, Check::of(quantity, 1.0, mean_and_error(&found), 0.02)].into())
+    Ok(vec![early, of_half_turn, Check::of(quantity, 1.0, mean_and_error(&found), 0.02)].into())
 }

@@ -9,6 +9,7 @@ use crate::study::pareto::{Setting, model_with};
 use crate::subdomain::GpuParticle;
 
 use super::tube::{LENGTH, SOD, Tube};
+use super::waves::sounds;
 use super::{Check, Effort, Findings, run};
 
 /// The frequency of the first mode over pi c / L, and its standard error, from the mean of cos(pi x / L) over the
@@ -47,7 +48,7 @@ pub fn wave(device: &Device, setting: &Setting, faster: f64) -> Result<(f64, f64
 
 /// Frequency and damping of e^(-b t) (A cos w t + B sin w t) + C nearest to a series, A, B and C being the best for
 /// each: by a search on ever finer grids.
-fn fit(series: &[(f64, f64)], guess: f64) -> [f64; 2] {
+pub(super) fn fit(series: &[(f64, f64)], guess: f64) -> [f64; 2] {
     let misfit = |w: f64, b: f64| {
         let columns = |t: f64| [(-b * t).exp() * (w * t).cos(), (-b * t).exp() * (w * t).sin(), 1.0];
         let mut matrix = [[0.0; 4]; 3];
@@ -101,7 +102,9 @@ fn solved(mut m: [[f64; 4]; 3]) -> [f64; 3] {
 pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     // One per cent is allowed; a third of it takes 200,000 particles, and fewer know less.
     let (particles, tolerance) = if effort == Effort::Quick { (24_000, 0.03) } else { (240_000, 0.01) };
-    Ok(vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?].into())
+    let mut checks = vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?];
+    checks.extend(sounds(device, effort)?);
+    Ok(checks.into())
 }
 
 /// Of a run with this setting.

@@ -9,6 +9,7 @@
 mod figure;
 mod flights;
 mod floors;
+pub mod half_turn;
 mod lost;
 mod openings;
 mod rigid;
@@ -37,6 +38,16 @@ pub const FIGURES: &[Case] = &[
         name: "sod-table",
         law: "the prototype's table of Sod's shock tube by method, particles, occupancy, step and rounds",
         run: tubes::table,
+    },
+    Case {
+        name: "half-turn-flows",
+        law: "half-turn: viscosity by collision cell and step, as a program of its own found it",
+        run: half_turn::flows,
+    },
+    Case {
+        name: "half-turn-tubes",
+        law: "half-turn: Sod's shock tube by particles, single runs and their mean, as a program of its own found it",
+        run: half_turn::tubes,
     },
     Case {
         name: "free-flight",
