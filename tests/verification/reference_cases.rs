@@ -3,7 +3,9 @@
 
 use corpuscle::scene::{GAS_CONSTANT, HeatCapacity, Method, Scene};
 use corpuscle::study::pareto::Setting;
-use corpuscle::study::verify::{CASES, Check, Effort, Verdict, collisions, holes, shear, sod, sound};
+use corpuscle::study::verify::tube::Tube;
+use corpuscle::study::verify::waves::{DIFFUSIVITY, Waves};
+use corpuscle::study::verify::{CASES, Check, Effort, Verdict, collisions, holes, noh, shear, sod, sound, thin_wall};
 
 use crate::equilibrium_box::EquilibriumBox;
 use crate::whole_run::device;
@@ -95,4 +97,40 @@ fn a_chamber_empties_between_isentropically_and_by_effusion() {
 fn a_chamber_of_another_gas_does_not_empty_like_this_one() {
     let monatomic = |scene: &mut Scene| scene.gases[0].heat = HeatCapacity::Constant(1.5 * GAS_CONSTANT);
     fails(&holes::emptied(&device(), 6000, monatomic).expect("a run").checks[0]);
+}
+
+#[test]
+fn a_strong_shock_tube_is_that_of_the_exact_solution() {
+    passes("strong-tube");
+    // Free flight is not, nor is it within the limits of a smeared profile.
+    let tube = Tube { particles: 40_000, ..sod::STRONG };
+    sod::by_method_in(&device(), &tube, Method::None).expect("a run").0.iter().for_each(fails);
+}
+
+#[test]
+fn gas_of_infinite_mach_number_is_stopped_by_a_shock() {
+    passes("noh");
+    // Free flight lets the stream and what comes back pass through each other: twice as dense, no spin.
+    let behind = noh::behind_the_shock(&device(), Method::None, 20_000, 1.4).expect("a run");
+    println!("{behind:?}");
+    assert!((behind.density.0 * noh::compression(1.4) - 2.0).abs() < 0.1, "{behind:?}");
+    assert_eq!(behind.spin.map(|(found, _)| found), Some(0.0));
+}
+
+#[test]
+fn a_thin_wall_keeps_what_is_on_its_sides() {
+    passes("thin-wall");
+    let [cold, hot] = thin_wall::changes(&device(), "half-turn", 4000, 600, false).expect("a run");
+    println!("without it {cold:.3} {hot:.3}");
+    assert!(cold > 0.01 && hot < -0.01, "{cold} {hot}");
+}
+
+#[test]
+fn heat_diffuses_as_the_method_lets_it() {
+    passes("half-turn-heat");
+    // Closest approach has more than twice as much.
+    let others = Waves { method: "closest-approach", particles: 8000, half_waves: 2, seeds: 4 };
+    let (found, error) = others.heat(&device()).expect("runs");
+    println!("closest approach {found:.3} +- {error:.3}");
+    assert!(found - 3.0 * error > 1.5 * DIFFUSIVITY, "{found} +- {error}");
 }

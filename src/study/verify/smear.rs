@@ -73,7 +73,7 @@ mod tests {
         assert!((folded(0.5, 1.0) - 0.895_6).abs() < 1e-3);
     }
 
-    /// A diffusivity of .5 d c0 makes of Sod's tube what a program of its own has as the mean of 16 runs with 40,000 particles,
+    /// A diffusivity of .5 d c0 makes of Sod's tube what the prototype has as the mean of 16 runs with 40,000 particles,
     /// within a fourth: .0125 in the density, of which a part is noise.
     #[test]
     fn sods_tube_is_smeared_as_much_as_it_was_found() {

@@ -76,7 +76,7 @@ pub fn by_method_in(device: &Device, tube: &Tube, method: Method) -> Result<(Vec
     Ok((vec![check(0), check(1)], profile))
 }
 
-/// The checks of half-turn against the table of single runs of a program of its own (docs/method.md), which is the mean of four runs
+/// The checks of half-turn against the prototype's table of single runs, which is the mean of four runs
 /// and more, known to 5 %; three standard deviations of the counting noise of one run are what one may be off.
 fn half_turn_by_table(device: &Device, particles: u64) -> Result<Vec<Check>, StudyError> {
     let setting = Setting { method: Some(Method::HalfTurn), ..Setting::default() };

@@ -24,7 +24,7 @@ const GAMMA: f64 = 1.4;
 /// U over the thermal speed, and e.
 const SOUND: f64 = 0.1;
 const HEAT: f64 = 0.2;
-/// What a program of its own found for the method, over d c0: Gamma .33 to .35, chi .50 (docs/method.md).
+/// What the prototype found for the method, over d c0: Gamma .33 to .35, chi .50.
 pub const DAMPING: f64 = 0.34;
 pub const DIFFUSIVITY: f64 = 0.5;
 

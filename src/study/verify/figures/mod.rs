@@ -41,12 +41,12 @@ pub const FIGURES: &[Case] = &[
     },
     Case {
         name: "half-turn-flows",
-        law: "half-turn: viscosity by collision cell and step, as a program of its own found it",
+        law: "half-turn: viscosity by collision cell and step, as the prototype found it",
         run: half_turn::flows,
     },
     Case {
         name: "half-turn-tubes",
-        law: "half-turn: Sod's shock tube by particles, single runs and their mean, as a program of its own found it",
+        law: "half-turn: Sod's shock tube by particles, single runs and their mean, as the prototype found it",
         run: half_turn::tubes,
     },
     Case {
