@@ -164,7 +164,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "thin-wall",
-        law: "hot and cold gas on the two sides of a thin wall that cuts cells: the energy of each stays as it is",
+        law: "hot and cold gas on the two sides of a thin wall that cuts cells: the temperature of each stays as it is",
         run: thin_wall::thin_wall,
     },
     Case {

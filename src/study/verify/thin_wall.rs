@@ -1,6 +1,6 @@
-//! A thin wall between hot and cold gas, across cells: each side keeps what it has.
+//! A thin wall between hot and cold gas, across cells: each side keeps its temperature.
 //!
-//! Walls are mirrors and the gas has no spin, so the energy of a side is that of its particles, changed by rounding
+//! Walls are mirrors and the gas has no spin, so the temperature of a side is that of its particles, changed by rounding
 //! alone (`energy-drift`). Particles that met through the wall would carry heat within a few steps.
 
 use crate::gpu::Device;
@@ -14,10 +14,10 @@ use super::{Check, Effort, Findings, run};
 /// m: where the wall is, and how thick.
 const PLACE: f64 = 0.0391;
 const THICKNESS: f64 = 1e-4;
-/// What rounding may do to the energy of a side: the tolerance of `energy-drift`.
+/// What rounding may do to the temperature of a side: the tolerance of `energy-drift`.
 const ROUNDING: f64 = 1e-6;
 
-/// Energy of the cold and of the hot side at the end of a run over those of its first snapshot, less 1.
+/// Temperatures of the cold and of the hot side at the end of a run over those of its first snapshot, less 1.
 ///
 /// # Errors
 /// If the run fails.
@@ -41,18 +41,19 @@ pub fn changes(device: &Device, method: &str, particles: u64, steps: u32, wall: 
     );
     let model = model_of("thin-wall", &text)?;
     let snapshots = run(device, &model, Options::default())?.snapshots;
-    let energies = |particles: &[GpuParticle]| {
-        let mut sums = [0.0; 2];
+    let temperatures = |particles: &[GpuParticle]| {
+        let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
         for particle in particles {
             let side = usize::from(model.plan.grid.to_metres(particle.position)[0] > PLACE);
             sums[side] += particle.velocity.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>();
+            counts[side] += 1.0;
         }
-        sums
+        [sums[0] / counts[0], sums[1] / counts[1]]
     };
     let (Some((_, first)), Some((_, last))) = (snapshots.first(), snapshots.last()) else {
         return Ok([f64::NAN; 2]);
     };
-    let (before, after) = (energies(first), energies(last));
+    let (before, after) = (temperatures(first), temperatures(last));
     Ok([0, 1].map(|side| after[side] / before[side] - 1.0))
 }
 
@@ -62,7 +63,7 @@ pub(super) fn thin_wall(device: &Device, effort: Effort) -> Result<Findings, Stu
     for method in ["closest-approach", "cell", "half-turn"] {
         let found = changes(device, method, particles, steps, true)?;
         for (side, change) in ["cold", "hot"].into_iter().zip(found) {
-            let quantity = format!("{method}: energy of the {side} side over that before, less 1");
+            let quantity = format!("{method}: T of the {side} side over that before, less 1");
             checks.push(Check::of(quantity, 0.0, (change, 0.0), ROUNDING));
         }
     }
