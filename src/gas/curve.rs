@@ -76,6 +76,16 @@ pub fn turns(course: &Course) -> Vec<f64> {
     turns
 }
 
+/// How far a wall moves from the start to an end, to and fro, m.
+pub fn way(course: &Course, end: f64) -> f64 {
+    let mut times = turns(course);
+    times.retain(|&time| time > 0.0 && time < end);
+    times.extend([0.0, end]);
+    times.sort_by(f64::total_cmp);
+    let places: Vec<f64> = times.into_iter().map(|time| displacement(course, time)).collect();
+    places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
+}
+
 /// The integral of a non-negative flow curve from time 0 to an end time, and its inverse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlowIntegral {

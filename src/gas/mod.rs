@@ -24,7 +24,7 @@ pub use control_volume::{
 };
 pub use curve::{
     FlowIntegral, bends, displacement, flow_times_of_temperature, flow_times_temperature, integral_held, turns,
-    value_held, value_inside, velocity,
+    value_held, value_inside, velocity, way,
 };
 pub use discharge::{
     BETWEEN, COEFFICIENT_LIMITS, CONTINUUM_COEFFICIENT, Side, coefficient_into_vacuum, continuum_by_excess,

@@ -9,8 +9,8 @@ use super::measured::IN_HOLES;
 use super::notes::Shut;
 use super::text::{significant, table};
 use super::{Measured, MeasuredVent, MeasuredWall, notes, plausible, vent_notes};
-use crate::gas::{FlowIntegral, moles_at};
-use crate::scene::{Chamber, Curve, Dimension, GAS_CONSTANT, Orifice, Scene, UnitSystem, Vent};
+use crate::gas::{FlowIntegral, displacement, moles_at, way};
+use crate::scene::{Chamber, Curve, Dimension, GAS_CONSTANT, Jet, JetSpeed, Motion, Orifice, Scene, UnitSystem, Vent};
 
 /// Of a solid's volume, from which on it is told how much lies outside of the vessel.
 const SHOWN: f64 = 0.01;
@@ -30,6 +30,7 @@ pub struct Inventory {
     pub end: Contents,
     pub orifices: Vec<(String, Blows)>,
     pub vents: Vec<(String, Opens)>,
+    pub motions: Vec<(String, Moves)>,
     /// Values that no vessel has, each with its range and the unit that is likely meant.
     pub doubts: Vec<String>,
     /// What is no warning, and its author may not know.
@@ -55,6 +56,7 @@ pub struct Blows {
     pub flow: f64,
     /// K, at least and at most.
     pub temperature: [f64; 2],
+    pub jet: Option<Jet>,
 }
 
 impl Blows {
@@ -69,7 +71,28 @@ impl Blows {
             mass: [scene.end_time, last].map(|until| FlowIntegral::new(&orifice.mass_flow, until).total()),
             flow: range(&orifice.mass_flow)[1],
             temperature: range(&orifice.temperature),
+            jet: orifice.jet,
         }
+    }
+}
+
+/// How a wall moves until the end of the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moves {
+    /// m along the direction, and to and fro in all.
+    pub by: f64,
+    pub way: f64,
+    pub direction: [f64; 3],
+}
+
+impl Moves {
+    /// Along the direction in which it has moved at the end.
+    fn of(motion: &Motion, end: f64) -> Moves {
+        let by = displacement(&motion.course, end);
+        let sign = if by < 0.0 { -1.0 } else { 1.0 };
+        // Adding 0 leaves no -0.
+        let direction = motion.direction.map(|own| sign * own + 0.0);
+        Moves { by: by.abs(), way: way(&motion.course, end), direction }
     }
 }
 
@@ -112,7 +135,8 @@ impl Inventory {
         let inflow = amounts.injected.iter().any(|&moles| moles > 0.0);
         let mut notes = notes::of_scene(scene, measured, &Shut { vents: &shut, end: end.pressure });
         let gases = plausible::notes_of_gases(scene).into_iter().chain(plausible::notes_of_flows(scene, amounts));
-        let more = gases.chain(vent_notes::of_vents(scene, measured, &end));
+        let inflators = plausible::notes_of_inflators(scene, &measured.sources);
+        let more = gases.chain(inflators).chain(vent_notes::of_vents(scene, measured, &end));
         notes.extend(more.map(|note| scene.lines.told(note)));
         Inventory {
             units: scene.units,
@@ -120,6 +144,11 @@ impl Inventory {
             chambers,
             end,
             notes,
+            motions: scene
+                .motions
+                .iter()
+                .map(|motion| (scene.walls[motion.wall].name.clone(), Moves::of(motion, scene.end_time)))
+                .collect(),
             orifices: scene
                 .orifices
                 .iter()
@@ -142,7 +171,7 @@ impl Inventory {
         format!("{} {}", significant(si / self.units.factor(dimension)), self.units.symbol(dimension))
     }
 
-    /// Tables of walls, chambers, orifices and vents.
+    /// Tables of walls, chambers, orifices, vents and walls that move.
     pub fn render(&self) -> String {
         let mut walls = vec![heads(["wall", "box", "area", "volume"])];
         walls.extend(self.walls.iter().map(|(name, wall)| {
@@ -180,7 +209,7 @@ impl Inventory {
             let bar = significant(1e-5 * opens.absolute);
             vec![name.clone(), format!("{absolute} ({bar} bar) absolute"), above, note.to_string()]
         }));
-        let parts = [walls, chambers, self.of_orifices(), vents];
+        let parts = [walls, chambers, self.of_orifices(), vents, self.of_motions()];
         let tables: Vec<String> = parts.iter().filter(|part| part.len() > 1).map(|part| table(part)).collect();
         tables.join("\n")
     }
@@ -196,6 +225,29 @@ impl Inventory {
                 format!("{}{cut}, {}", self.shown(until, Dimension::Mass), self.shown(blows.flow, Dimension::MassFlow));
             let temperature = if low == high { format!("{low} K") } else { format!("{low} to {high} K") };
             vec![name.clone(), blows.into.clone(), mass, temperature]
+        }));
+        if self.orifices.iter().any(|(_, blows)| blows.jet.is_some()) {
+            let jets = self.orifices.iter().map(|(_, blows)| blows.jet.map_or(String::new(), |jet| self.jet(jet)));
+            rows.iter_mut().zip(std::iter::once("jet".into()).chain(jets)).for_each(|(row, jet)| row.push(jet));
+        }
+        rows
+    }
+
+    fn jet(&self, jet: Jet) -> String {
+        let speed = match jet.speed {
+            JetSpeed::Mach(mach) => format!("Mach {}", significant(mach)),
+            JetSpeed::Velocity(speed) => self.shown(speed, Dimension::Velocity),
+        };
+        format!("{speed}, cone_angle {} degrees", significant(jet.cone_angle.to_degrees()))
+    }
+
+    fn of_motions(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![heads(["moving wall", "moves until the end by", "towards", ""])];
+        rows.extend(self.motions.iter().map(|(name, moves)| {
+            let along = moves.direction.map(significant).join(", ");
+            let all = self.shown(moves.way, Dimension::Length);
+            let all = if moves.way > 1.001 * moves.by { format!("to and fro {all} in all") } else { String::new() };
+            vec![name.clone(), self.shown(moves.by, Dimension::Length), format!("({along})"), all]
         }));
         rows
     }

@@ -36,6 +36,8 @@ pub struct Measured {
     pub open_to_empty: bool,
     /// Pairs of chambers between which a part of the border is neither wall nor a hole of one.
     pub touching: Vec<[usize; 2]>,
+    /// Pairs of chambers that are open to each other beside walls and holes.
+    pub open_sections: Vec<OpenSection>,
     /// Holes that join no two chambers, or only with a part of their areas.
     pub hindered: Vec<Hindered>,
     /// Gaps round walls that part two chambers, or that move.
@@ -100,6 +102,14 @@ pub struct MeasuredWall {
     pub cavity: bool,
     /// Of a solid: the share of its volume that lies outside of what encloses the gas.
     pub outside: f64,
+}
+
+/// Where two chambers meet and no wall lies between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpenSection {
+    pub between: [usize; 2],
+    /// Of the area over which they would meet without the walls that are in the gas.
+    pub share: f64,
 }
 
 /// A hole that is no opening between two chambers, or not with all of its area.

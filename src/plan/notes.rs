@@ -2,7 +2,7 @@
 
 use super::text::{as_written, significant};
 use super::vent_notes::absolute_question;
-use super::{GapBeside, Hindered, Hindrance, Measured, MeasuredVent};
+use super::{GapBeside, Hindered, Hindrance, Measured, MeasuredVent, OpenSection};
 use crate::gas::vent::opens;
 use crate::geometry::Passage;
 use crate::scene::{Chamber, Dimension, GasSide, Scene, Vent};
@@ -11,6 +11,8 @@ use crate::scene::{Chamber, Dimension, GasSide, Scene, Vent};
 const NARROW: f64 = 0.02;
 /// Of the pressure in a chamber: one outside that is lower may be above the atmosphere.
 const GAUGE: f64 = 0.3;
+/// Share of a section from which on all of it is open.
+const WHOLE: f64 = 0.98;
 /// Share by which two pressures differ that were meant to be the same.
 const SAME: f64 = 1e-3;
 
@@ -41,9 +43,22 @@ pub fn of_scene(scene: &Scene, measured: &Measured, shut: &Shut<'_>) -> Vec<Stri
     holes.chain(vents).chain(facing(scene, measured)).map(|note| scene.lines.told(note)).collect()
 }
 
-/// Of chambers of unlike gas that touch, in a run of particles.
+/// Of chambers that touch, in a run of particles: those of unlike gas, and all that no wall parts though none of its gaps is told.
 pub fn touching(scene: &Scene, measured: &Measured) -> Vec<String> {
-    measured.touching.iter().filter_map(|&pair| mixing(scene, pair)).map(|note| scene.lines.told(note)).collect()
+    let sections = &measured.open_sections;
+    let open = |pair: [usize; 2]| sections.iter().find(|section| section.between == pair).copied();
+    let is_told = |pair: [usize; 2]| {
+        let gaps = measured.gaps_beside.iter().filter_map(|beside| beside.chambers);
+        gaps.into_iter().any(|own| own == pair || own == [pair[1], pair[0]])
+    };
+    let unlike: Vec<([usize; 2], String)> = measured
+        .touching
+        .iter()
+        .filter_map(|&pair| Some((pair, mixing(scene, pair, open(pair).map_or(1.0, |section| section.share))?)))
+        .collect();
+    let rest = sections.iter().filter(|own| !is_told(own.between) && unlike.iter().all(|known| known.0 != own.between));
+    let rest: Vec<String> = rest.map(|section| unparted(scene, section)).collect();
+    unlike.into_iter().map(|(_, note)| note).chain(rest).map(|note| scene.lines.told(note)).collect()
 }
 
 fn pressure(scene: &Scene, si: f64) -> String {
@@ -67,8 +82,26 @@ fn facing(scene: &Scene, measured: &Measured) -> Vec<String> {
     told.collect()
 }
 
-/// Two chambers of unlike gas without a wall between them.
-fn mixing(scene: &Scene, pair: [usize; 2]) -> Option<String> {
+/// "chambers `a` and `b`: no wall lies between them on about 40 % of where they touch".
+fn no_wall(scene: &Scene, [a, b]: [usize; 2], share: f64) -> String {
+    let part = if share < WHOLE { format!("on about {:.0} % of ", (100.0 * share).max(1.0)) } else { String::new() };
+    format!(
+        "chambers `{}` and `{}`: no wall lies between them {part}where they touch",
+        scene.chambers[a].name, scene.chambers[b].name
+    )
+}
+
+fn unparted(scene: &Scene, section: &OpenSection) -> String {
+    let (joined, question) = if section.share < WHOLE {
+        ("it is an open passage, which the plan counts as no hole", "Let the wall cover it if that was not meant")
+    } else {
+        ("they are one gas space", "Add a wall, or leave one of them out, if that was not meant")
+    };
+    format!("{}: {joined}. {question}", no_wall(scene, section.between, section.share))
+}
+
+/// Two chambers of unlike gas without a wall between them, on a share of where they touch.
+fn mixing(scene: &Scene, pair: [usize; 2], share: f64) -> Option<String> {
     let [a, b] = pair.map(|chamber| &scene.chambers[chamber]);
     let both = |of: &dyn Fn(&Chamber) -> String| format!("{} and {}", of(a), of(b));
     let mut unlike = Vec::new();
@@ -83,10 +116,8 @@ fn mixing(scene: &Scene, pair: [usize; 2]) -> Option<String> {
     }
     (!unlike.is_empty()).then(|| {
         format!(
-            "chambers `{}` and `{}`: no wall lies between them where they touch, and they have {}: they mix from the first step. Add a \
-             wall if that was not meant",
-            a.name,
-            b.name,
+            "{}, and they have {}: they mix from the first step. Add a wall if that was not meant",
+            no_wall(scene, pair, share),
             unlike.join(", ")
         )
     })

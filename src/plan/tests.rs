@@ -68,6 +68,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         walls: vec![],
         open_to_empty: false,
         touching: vec![],
+        open_sections: vec![],
         hindered: vec![],
         gaps_beside: vec![],
         strokes: vec![],

@@ -22,7 +22,10 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
         add("chamber", &chamber.value.name, &chamber.span);
         add("chambers", &chamber.value.name, &chamber.span);
     }
-    raw.orifice.iter().for_each(|at| add("orifice", &at.value.name, &at.span));
+    for orifice in &raw.orifice {
+        add("orifice", &orifice.value.name, &orifice.span);
+        add("orifices", &orifice.value.name, &orifice.span);
+    }
     raw.probe.iter().for_each(|at| add("probe", &at.value.name, &at.span));
     raw.surface.iter().for_each(|at| add("surface", &at.value.name, &at.span));
     for vent in &raw.vent {

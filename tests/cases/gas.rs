@@ -163,9 +163,30 @@ fn a_mass_that_is_given_for_its_flow_is_told() {
         note.contains("never falls, and levels off at 1.05 kg/s: is it the mass that has come in so far?"),
         "{note}"
     );
+    for (short, words) in [
+        (
+            "[[0, 0], [0.001, 0.002], [0.002, 0.0045], [0.003, 0.0063], [0.004, 0.0063]]",
+            "levels off at 0.0063 kg/s: is it",
+        ),
+        ("[[0, 0], [0.002, 0.0063], [0.004, 0.0063]]", "levels off at 0.0063 kg/s: is it"),
+        ("[[0, 0], [0.001, 0.002], [0.002, 0.0045], [0.003, 0.0063]]", "ends at 0.0063 kg/s: is it"),
+        ("[[0, 0], [0.004, 0.0063]]", "ends at 0.0063 kg/s: is it"),
+    ] {
+        let [note] = &notes_of(&[[FLOW, short]])[..] else { panic!("{short}") };
+        assert!(note.contains("its mass_flow never falls") && note.contains(words), "{note}");
+    }
     let [note] = &notes_of(&[[FLOW, "[[0.0, 0.0], [0.002, 1e-3], [0.004, 5e-4]]"]])[..] else { panic!() };
     assert!(note.contains("% of the gas that is there: are `mass_flow` and its times in the units"), "{note}");
-    for flow in [FLOW, "[[0, 0], [0.001, 0.5], [0.002, 1.0], [0.004, 1.0]]", "[[0, 1.0], [0.004, 1.0]]"] {
+    for flow in [
+        FLOW,
+        "[[0, 0], [0.001, 0.5], [0.002, 1.0], [0.004, 1.0]]",
+        "[[0, 1.0], [0.004, 1.0]]",
+        // One that falls, one that goes on after the end, one that is steady, one that was never nothing.
+        "[[0, 0], [0.002, 0.02], [0.004, 0.01]]",
+        "[[0, 0], [0.002, 0.02], [0.008, 0.04]]",
+        "[[0, 0.02], [0.004, 0.02]]",
+        "[[0, 0.02], [0.004, 0.03]]",
+    ] {
         assert_eq!(notes_of(&[[FLOW, flow]]), [""; 0], "{flow}");
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! Inputs lie in `inputs/`, a folder for each fault; what is one line of a known scene is made where it is used.
 
+mod borders;
 mod folders;
 mod gas;
+mod inflators;
 mod meshes;
 mod mistakes;
 mod plan;

@@ -91,6 +91,12 @@ fn holes_gaps_and_strokes_that_were_not_meant_are_told() {
             &[["size = [60, 60]", "size = [60, 46]"]],
             &["2 mm", "between walls `duct` and `plate`", "et the walls overlap if they were meant to touch"],
         ),
+        (
+            &[["center = [100, 0, 0]", "center = [100, 0, -25]"], [CENTER, "center = [0, 18]\n"]],
+            &[
+                "chambers `left` and `right`: no wall lies between them on about 38 % of where they touch: it is an open",
+            ],
+        ),
     ];
     let mut wrong = Vec::new();
     for (lines, words) in slips {
@@ -107,8 +113,7 @@ fn holes_gaps_and_strokes_that_were_not_meant_are_told() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The piston as it is, one that swings by little and often, a plate that ends at the walls, one that leaves a wide slit on purpose, and a hole as
-/// wide as its duct.
+/// The piston as it is, one that swings by little and often, a plate that ends at the walls, and a hole as wide as its duct.
 #[test]
 fn what_is_meant_has_no_note() {
     let swings: Vec<String> =
@@ -118,7 +123,6 @@ fn what_is_meant_has_no_note() {
         &[][..],
         &[["velocity = 6000", &swings]],
         &[["size = [60, 60]", "size = [50, 50]"]],
-        &[["center = [100, 0, 0]", "center = [100, 0, -25]"], [CENTER, "center = [0, 18]\n"]],
         &[["diameter = 20", "size = [50, 20]"]],
     ] {
         assert_eq!(told(&changed(lines)), [""; 0], "{lines:?}");
@@ -163,6 +167,21 @@ fn the_work_of_moving_walls_is_said_to_be_left_out() {
     assert_eq!(rows, 2, "{}", plan.render());
     let still = model(super::plausible::TANK).explained().render();
     assert!(still.contains("no heat lost") && !still.contains("moving walls"));
+}
+
+/// How far a wall moves, where to, and how far in all.
+#[test]
+fn the_way_of_a_wall_is_said() {
+    let row = |more: &[[&str; 2]]| {
+        let text = model(&changed(more)).plan.inventory.render();
+        assert!(text.contains("moving wall  moves until the end by  towards"), "{text}");
+        let row = text.lines().filter(|line| line.starts_with("piston ")).next_back().unwrap();
+        row.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(row(&[]), "piston 48 mm (1, 0, 0)");
+    assert_eq!(row(&[["velocity = 6000", "velocity = -3000"]]), "piston 24 mm (-1, 0, 0)");
+    let back = "displacement = [[0, 0], [0.004, 30], [0.008, 10]]";
+    assert_eq!(row(&[["velocity = 6000", back]]), "piston 10 mm (1, 0, 0) to and fro 50 mm in all");
 }
 
 /// A hole that is covered has its own note, and none that its chambers touch without a wall; without the wall they do.

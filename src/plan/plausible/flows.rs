@@ -8,17 +8,21 @@ use crate::scene::{Dimension, Orifice, Scene};
 
 /// Rising values from which on a curve that levels off is one of a mass: who lets a flow rise and stay gives fewer.
 const RISING: usize = 4;
+/// kg/s: an inflator gives a few. A curve that would be faster as one of a mass is a flow that rises at once, and stays.
+const FASTEST: f64 = 20.0;
 /// Of the steepest rise, what is level.
 const LEVEL: f64 = 0.3;
 /// Of the gas at the start: no inflator gives so little, and a thousand times as much is one in another unit.
 const LITTLE: f64 = 1e-3;
 
 pub fn notes(scene: &Scene, amounts: &Amounts) -> Vec<String> {
-    let masses = scene.orifices.iter().filter_map(|orifice| cumulative(scene, orifice));
-    masses.chain(little(scene, amounts)).collect()
+    let masses: Vec<String> = scene.orifices.iter().filter_map(|orifice| cumulative(scene, orifice)).collect();
+    // A mass is little as a flow.
+    if masses.is_empty() { little(scene, amounts).into_iter().collect() } else { masses }
 }
 
-/// A flow that starts from nothing, only rises, and levels off: that is how the mass that has come in grows.
+/// A flow that starts from nothing, only rises, and levels off or is over when it is largest: that is how the mass that has come in
+/// grows.
 fn cumulative(scene: &Scene, orifice: &Orifice) -> Option<String> {
     let points = &orifice.mass_flow.points;
     let slopes: Vec<f64> =
@@ -27,11 +31,15 @@ fn cumulative(scene: &Scene, orifice: &Orifice) -> Option<String> {
     let rising = slopes.iter().filter(|slope| **slope > 0.0).count();
     let falls = slopes.iter().any(|slope| *slope < 0.0);
     let level = slopes.last().is_some_and(|last| *last <= LEVEL * steepest);
-    (points.first().is_some_and(|first| first[1] == 0.0) && rising >= RISING && !falls && level).then(|| {
+    let smooth = rising >= RISING && level;
+    let is_over = points.last().is_some_and(|last| last[0] <= scene.end_time * (1.0 + 1e-9));
+    let as_mass = steepest / scene.units.factor(Dimension::MassFlow) * scene.units.factor(Dimension::Mass);
+    let short = rising > 0 && is_over && as_mass <= FASTEST;
+    (points.first().is_some_and(|first| first[1] == 0.0) && !falls && (smooth || short)).then(|| {
         format!(
-            "orifice `{}`: its mass_flow never falls, and levels off at {} {}: is it the mass that has come in so far? A mass flow is \
-             its rate",
+            "orifice `{}`: its mass_flow never falls, and {} {} {}: is it the mass that has come in so far? A mass flow is its rate",
             orifice.name,
+            if level { "levels off at" } else { "ends at" },
             significant(most(&orifice.mass_flow) / scene.units.factor(Dimension::MassFlow)),
             scene.units.symbol(Dimension::MassFlow)
         )

@@ -6,6 +6,7 @@
 
 mod flows;
 mod heat;
+mod inflators;
 mod known;
 mod named;
 mod places;
@@ -28,6 +29,7 @@ use range::{Kind, Range, largest, most, range_of};
 use shapes::longest;
 
 pub use flows::notes as notes_of_flows;
+pub use inflators::notes as notes_of_inflators;
 pub use known::notes as notes_of_gases;
 pub use times::{long_run, many_steps, short_step};
 pub use units::pressure_unit;
@@ -164,7 +166,7 @@ fn of_orifice(scene: &Scene, orifice: &Orifice) -> Vec<Option<String>> {
     let coldest = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let hottest = most(&orifice.temperature);
     let speed = match orifice.jet.map(|jet| jet.speed) {
-        Some(JetSpeed::Velocity(speed)) => slow(&named("jet velocity"), speed),
+        Some(JetSpeed::Velocity(speed)) => slow(scene, &named("jet velocity"), speed),
         _ => None,
     };
     vec![
@@ -192,9 +194,13 @@ fn narrow_cone(orifice: &Orifice) -> Option<String> {
 /// m/s: no jet that anybody models is slower.
 const SLOW: f64 = 1.0;
 
-fn slow(named: &Named<'_>, speed: f64) -> Option<String> {
+fn slow(scene: &Scene, named: &Named<'_>, speed: f64) -> Option<String> {
     let range = range_of(Kind::Speed);
-    let question = question(&likely(&Range { least: SLOW, ..*range }, speed, named.units));
+    let question = if inflators::may_be_mach(scene, speed) {
+        ": is it a Mach number? That is `mach`".into()
+    } else {
+        question(&likely(&Range { least: SLOW, ..*range }, speed, named.units))
+    };
     (speed < SLOW || !range.holds(speed)).then(|| named.beyond(&Range { least: SLOW, ..*range }, speed, &question))
 }
 

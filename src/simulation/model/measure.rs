@@ -5,6 +5,7 @@ use super::clearances::gaps_beside;
 use super::contact::{dry_motions, dry_surfaces};
 use super::holes::{Sides, hindered};
 use super::moving::{Moving, extent};
+use super::open_sections::open_sections;
 use super::outlook::{borders, is_open_to_empty, source};
 use super::strokes::strokes;
 use super::surface_models::SurfaceModels;
@@ -33,6 +34,7 @@ pub fn measured(
         bounds_min,
         bounds_max,
         touching: borders(scene, vessel, &openings),
+        open_sections: open_sections(scene, vessel, &openings),
         hindered: hindered(scene, vessel, moving),
         gaps_beside: gaps_beside(scene, vessel, moving),
         strokes: strokes(scene, vessel),

@@ -60,7 +60,7 @@ pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize;
         for (point, outward, area) in surface_of(region) {
             let at = |distance: f64| chamber_of(scene, vessel, (point + distance * outward).to_array());
             let (Some(inside), Some(outside)) = (at(-lift), at(lift)) else { continue };
-            if inside != index || outside == index || vessel.holes.iter().any(|hole| is_in_hole(hole, point)) {
+            if inside != index || outside == index || vessel.holes.iter().any(|hole| is_in_hole(hole, point, 0.0)) {
                 continue;
             }
             let pair = [index.min(outside), index.max(outside)];
@@ -78,11 +78,11 @@ pub fn borders(scene: &Scene, vessel: &Vessel, found: &[Opening]) -> Vec<[usize;
     open.into_iter().filter(|&(pair, area)| area > (OPEN - 1.0) * holes(pair)).map(|(pair, _)| pair).collect()
 }
 
-/// Whether a place lies in a hole, its ends included.
-fn is_in_hole(hole: &FoundHole, place: DVec3) -> bool {
+/// Whether a place lies in a hole, its ends included, or before it by no more than `before`, m.
+pub(super) fn is_in_hole(hole: &FoundHole, place: DVec3, before: f64) -> bool {
     let (middle, normal) = (DVec3::from(hole.center), DVec3::from(hole.normal));
     let rounding = 1e-6 * hole.perimeter;
-    if (place - middle).dot(normal).abs() > 0.5 * hole.thickness + rounding {
+    if (place - middle).dot(normal).abs() > 0.5 * hole.thickness + before + rounding {
         return false;
     }
     let corners: Vec<DVec3> = hole.outline.iter().map(|&corner| DVec3::from(corner)).collect();

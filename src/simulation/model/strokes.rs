@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::contact::places_before;
 use super::places::chamber_of;
-use crate::gas::{displacement, turns};
+use crate::gas::way;
 use crate::geometry::{Vessel, region_bounds};
 use crate::plan::Stroke;
 use crate::scene::{Motion, Scene};
@@ -23,18 +23,9 @@ pub fn strokes(scene: &Scene, vessel: &Vessel) -> Vec<Stroke> {
         }
         let length = |chamber: usize| (chamber, length_of(scene, vessel, chamber, DVec3::from(own.direction)));
         let (chamber, length) = borders.into_iter().map(length).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Stroke { motion, way: way(own, scene.end_time), chamber, length })
+        Some(Stroke { motion, way: way(&own.course, scene.end_time), chamber, length })
     };
     scene.motions.iter().enumerate().filter_map(stroke).collect()
-}
-
-fn way(motion: &Motion, end: f64) -> f64 {
-    let mut times = turns(&motion.course);
-    times.retain(|&time| time > 0.0 && time < end);
-    times.extend([0.0, end]);
-    times.sort_by(f64::total_cmp);
-    let places: Vec<f64> = times.into_iter().map(|time| displacement(&motion.course, time)).collect();
-    places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
 }
 
 /// How far the gas of a chamber reaches along a direction, m, to a part of its box.

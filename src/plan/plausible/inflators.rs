@@ -1,0 +1,90 @@
+//! Orifices that no inflator has: gas colder than what it flows into, jets as slow as a Mach number, one flow that several bring.
+
+use glam::DVec3;
+
+use super::SLOW;
+use super::range::{Kind, most, range_of};
+use crate::plan::text::as_written;
+use crate::scene::{Dimension, JetSpeed, Orifice, Scene};
+
+/// Of the temperature of the chamber: colder gas than this is not just as warm as the room.
+const COLDER: f64 = 0.97;
+/// K: hardly any inflator's gas is colder.
+const COLD: f64 = 250.0;
+/// Up to this a number may be a Mach number.
+const MOST_MACH: f64 = 10.0;
+/// Of the radius of an orifice, within which two are at one place.
+const SAME_PLACE: f64 = 0.1;
+
+/// `sources`: the chamber that each orifice blows into.
+pub fn notes(scene: &Scene, sources: &[Option<usize>]) -> Vec<String> {
+    let cold = scene.orifices.iter().zip(sources).filter_map(|(orifice, &into)| cold(scene, orifice, into));
+    let slow = scene.orifices.iter().filter_map(|orifice| slow_jet(scene, orifice));
+    cold.chain(slow).chain(shared_flows(scene)).collect()
+}
+
+/// Gas that is cold at its hottest. (What no gas has is doubted otherwise.)
+fn cold(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Option<String> {
+    let hottest = most(&orifice.temperature);
+    let warmer = into.map(|chamber| &scene.chambers[chamber]).filter(|own| hottest < COLDER * own.temperature);
+    if !range_of(Kind::Temperature).holds(hottest) || warmer.is_none() && hottest >= COLD {
+        return None;
+    }
+    let than = warmer.map_or(String::new(), |own| {
+        format!(", colder than the {} K of chamber `{}`", as_written(own.temperature), own.name)
+    });
+    let most = if orifice.temperature.points.len() > 1 { "at most " } else { "" };
+    let shown = as_written(hottest);
+    Some(format!(
+        "orifice `{}`: its gas has {most}{shown} K{than}: is it in degrees Celsius? {shown} C are {} K",
+        orifice.name,
+        as_written(hottest + 273.15)
+    ))
+}
+
+/// Whether the number of a speed, m/s, may be a Mach number.
+pub fn may_be_mach(scene: &Scene, speed: f64) -> bool {
+    speed / scene.units.factor(Dimension::Velocity) < MOST_MACH
+}
+
+/// Jets that are slower than any are doubted otherwise.
+fn slow_jet(scene: &Scene, orifice: &Orifice) -> Option<String> {
+    let JetSpeed::Velocity(speed) = orifice.jet?.speed else { return None };
+    (speed >= SLOW && may_be_mach(scene, speed)).then(|| {
+        format!(
+            "orifice `{}`: its jet has a velocity of {} {}: is it a Mach number? That is `mach`",
+            orifice.name,
+            as_written(speed / scene.units.factor(Dimension::Velocity)),
+            scene.units.symbol(Dimension::Velocity)
+        )
+    })
+}
+
+/// Orifices with one place, direction and mass flow: each species of a mixture, with the flow of all.
+fn shared_flows(scene: &Scene) -> Vec<String> {
+    let all = &scene.orifices;
+    let group = |index: usize| {
+        let first = &all[index];
+        if most(&first.mass_flow) <= 0.0 || all[..index].iter().any(|earlier| is_twin(earlier, first)) {
+            return None;
+        }
+        let names: Vec<String> =
+            all[index..].iter().filter(|own| is_twin(first, own)).map(|own| format!("`{}`", own.name)).collect();
+        let (last, rest) = names.split_last()?;
+        (!rest.is_empty()).then(|| {
+            format!(
+                "orifices {} and {last}: they have one place and one mass_flow, and each brings all of it: is it that of their mixture? \
+                 Give each its mass fraction of it, or give one orifice the mixture",
+                rest.join(", ")
+            )
+        })
+    };
+    (0..all.len()).filter_map(group).collect()
+}
+
+fn is_twin(a: &Orifice, b: &Orifice) -> bool {
+    let radius = libm::sqrt(a.area.min(b.area) / std::f64::consts::PI);
+    let apart = DVec3::from(a.position).distance(DVec3::from(b.position));
+    let along = DVec3::from(a.direction).dot(DVec3::from(b.direction));
+    a.mass_flow == b.mass_flow && apart < SAME_PLACE * radius && along > 1.0 - 1e-6
+}
