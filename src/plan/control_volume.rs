@@ -68,6 +68,7 @@ pub fn plan(
         particles: vec![0; scene.gases.len()],
     });
     let mut inventory = Inventory::of(scene, measured, amounts);
+    inventory.notes.extend(notes::open_beside_walls(scene, measured));
     inventory.notes.extend(notes::gaps_beside(scene, measured, false));
     Ok(Plan {
         inventory,

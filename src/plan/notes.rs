@@ -45,20 +45,27 @@ pub fn of_scene(scene: &Scene, measured: &Measured, shut: &Shut<'_>) -> Vec<Stri
 
 /// Of chambers that touch, in a run of particles: those of unlike gas, and all that no wall parts though none of its gaps is told.
 pub fn touching(scene: &Scene, measured: &Measured) -> Vec<String> {
-    let sections = &measured.open_sections;
-    let open = |pair: [usize; 2]| sections.iter().find(|section| section.between == pair).copied();
-    let is_told = |pair: [usize; 2]| {
-        let gaps = measured.gaps_beside.iter().filter_map(|beside| beside.chambers);
-        gaps.into_iter().any(|own| own == pair || own == [pair[1], pair[0]])
-    };
-    let unlike: Vec<([usize; 2], String)> = measured
-        .touching
-        .iter()
-        .filter_map(|&pair| Some((pair, mixing(scene, pair, open(pair).map_or(1.0, |section| section.share))?)))
-        .collect();
-    let rest = sections.iter().filter(|own| !is_told(own.between) && unlike.iter().all(|known| known.0 != own.between));
+    let share = |pair: [usize; 2]| measured.open_sections.iter().find(|own| own.between == pair).map(|own| own.share);
+    let unlike = |&pair: &[usize; 2]| Some((pair, mixing(scene, pair, share(pair).unwrap_or(1.0))?));
+    let unlike: Vec<([usize; 2], String)> = measured.touching.iter().filter_map(unlike).collect();
+    let rest = untold_sections(measured).filter(|own| unlike.iter().all(|known| known.0 != own.between));
     let rest: Vec<String> = rest.map(|section| unparted(scene, section)).collect();
     unlike.into_iter().map(|(_, note)| note).chain(rest).map(|note| scene.lines.told(note)).collect()
+}
+
+/// Of walls that part chambers in a part of where they touch: what a control volume does not know.
+pub fn open_beside_walls(scene: &Scene, measured: &Measured) -> Vec<String> {
+    let sections = untold_sections(measured).filter(|section| section.share < WHOLE);
+    sections.map(|section| scene.lines.told(unparted(scene, section))).collect()
+}
+
+/// Those between chambers of which no gap is told.
+fn untold_sections(measured: &Measured) -> impl Iterator<Item = &OpenSection> {
+    let is_told = |[a, b]: [usize; 2]| {
+        let mut gaps = measured.gaps_beside.iter().filter_map(|beside| beside.chambers);
+        gaps.any(|own| own == [a, b] || own == [b, a])
+    };
+    measured.open_sections.iter().filter(move |section| !is_told(section.between))
 }
 
 fn pressure(scene: &Scene, si: f64) -> String {

@@ -35,16 +35,17 @@ fn chambers_without_a_wall_between_are_told() {
 /// hole, and what the scene declares as an opening, are none of it.
 #[test]
 fn a_panel_that_covers_too_little_is_told() {
-    let notes = |size: &str, state: &str, more: &str| {
+    let notes_by = |method: &str, size: &str, state: &str, more: &str| {
         let panel = format!(
             "[[wall]]\nname = \"panel\"\nshape = \"plane\"\ncenter = [0.5, 0.5, 0.5]\nnormal = [1, 0, 0]\nu = [0, 1, 0]\nsize = {size}\n\
              thickness = 0.02\n[[wall.hole]]\nname = \"port\"\ncenter = [0, 0]\ndiameter = 0.2\n"
         );
         let chambers = chamber("left", LEFT, state) + &chamber("right", "", AIR);
-        let mut notes = model(&metre(&panel, &chambers, more)).notes();
+        let mut notes = model(&metre(&panel, &chambers, more).replace("particles = 2000", method)).notes();
         notes.retain(|note| note.starts_with("chambers `left` and `right`: no wall lies between them"));
         notes
     };
+    let notes = |size: &str, state: &str, more: &str| notes_by("particles = 2000", size, state, more);
     // .4 of the section, to the sixteenth part of its edge.
     let high = "pressure = 3e5\ntemperature = 300\ngas = \"n2\"";
     let told = notes("[1.2, 0.6]", AIR, "");
@@ -57,6 +58,9 @@ fn a_panel_that_covers_too_little_is_told() {
         told.len() == 1 && told[0].contains("on about 38 % of where they touch, and they have 300000 Pa"),
         "{told:?}"
     );
+    let by_volumes = "method = \"control-volume\"";
+    assert_eq!(notes_by(by_volumes, "[0.6, 1.2]", AIR, ""), notes("[0.6, 1.2]", AIR, ""));
+    assert_eq!(notes_by(by_volumes, "[1.2, 1.2]", AIR, ""), [""; 0]);
     let declared = "[[opening]]\nname = \"pass\"\nbetween = [\"left\", \"right\"]\narea = 0.4";
     assert_eq!(notes("[1.2, 0.6]", AIR, declared), [""; 0]);
     for state in [AIR, high] {

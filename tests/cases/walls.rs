@@ -175,7 +175,7 @@ fn the_way_of_a_wall_is_said() {
     let row = |more: &[[&str; 2]]| {
         let text = model(&changed(more)).plan.inventory.render();
         assert!(text.contains("moving wall  moves until the end by  towards"), "{text}");
-        let row = text.lines().filter(|line| line.starts_with("piston ")).next_back().unwrap();
+        let row = text.lines().rfind(|line| line.starts_with("piston ")).unwrap();
         row.split_whitespace().collect::<Vec<_>>().join(" ")
     };
     assert_eq!(row(&[]), "piston 48 mm (1, 0, 0)");
