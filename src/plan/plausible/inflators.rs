@@ -2,15 +2,18 @@
 
 use glam::DVec3;
 
-use super::SLOW;
-use super::range::{Kind, most, range_of};
+use super::named::Named;
+use super::range::{Kind, Range, most, range_of};
+use super::units::{likely, question};
 use crate::plan::text::as_written;
-use crate::scene::{Dimension, JetSpeed, Orifice, Scene};
+use crate::scene::{Dimension, JetSpeed, Orifice, Scene, UnitSystem};
 
 /// Of the temperature of the chamber: colder gas than this is not just as warm as the room.
 const COLDER: f64 = 0.97;
 /// K: hardly any inflator's gas is colder.
 const COLD: f64 = 250.0;
+/// m/s: no jet that anybody models is slower.
+const SLOW: f64 = 1.0;
 /// Up to this a number may be a Mach number.
 const MOST_MACH: f64 = 10.0;
 /// Of the radius of an orifice, within which two are at one place.
@@ -43,14 +46,25 @@ fn cold(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Option<String>
 }
 
 /// Whether the number of a speed, m/s, may be a Mach number.
-pub fn may_be_mach(scene: &Scene, speed: f64) -> bool {
-    speed / scene.units.factor(Dimension::Velocity) < MOST_MACH
+fn may_be_mach(units: UnitSystem, speed: f64) -> bool {
+    speed / units.factor(Dimension::Velocity) < MOST_MACH
+}
+
+/// A jet that is slower than any, or faster than gas.
+pub fn slow(named: &Named<'_>, speed: f64) -> Option<String> {
+    let range = Range { least: SLOW, ..*range_of(Kind::Speed) };
+    let question = if may_be_mach(named.units, speed) {
+        ": is it a Mach number? That is `mach`".into()
+    } else {
+        question(&likely(&range, speed, named.units))
+    };
+    (!range.holds(speed)).then(|| named.beyond(&range, speed, &question))
 }
 
 /// Jets that are slower than any are doubted otherwise.
 fn slow_jet(scene: &Scene, orifice: &Orifice) -> Option<String> {
     let JetSpeed::Velocity(speed) = orifice.jet?.speed else { return None };
-    (speed >= SLOW && may_be_mach(scene, speed)).then(|| {
+    (speed >= SLOW && may_be_mach(scene.units, speed)).then(|| {
         format!(
             "orifice `{}`: its jet has a velocity of {} {}: is it a Mach number? That is `mach`",
             orifice.name,

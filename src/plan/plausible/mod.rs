@@ -25,7 +25,7 @@ use crate::scene::{
     UnitSystem, Vent, VentFlow, Wall, WallHeat,
 };
 use named::Named;
-use range::{Kind, Range, largest, most, range_of};
+use range::{Kind, largest, most, range_of};
 use shapes::longest;
 
 pub use flows::notes as notes_of_flows;
@@ -33,7 +33,7 @@ pub use inflators::notes as notes_of_inflators;
 pub use known::notes as notes_of_gases;
 pub use times::{long_run, many_steps, short_step};
 pub use units::pressure_unit;
-use units::{likely, question};
+use units::likely;
 
 /// All that is beyond its range by the scene alone, in its order, with its line: known also where no plan can be made of it, often for
 /// that reason.
@@ -166,7 +166,7 @@ fn of_orifice(scene: &Scene, orifice: &Orifice) -> Vec<Option<String>> {
     let coldest = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let hottest = most(&orifice.temperature);
     let speed = match orifice.jet.map(|jet| jet.speed) {
-        Some(JetSpeed::Velocity(speed)) => slow(scene, &named("jet velocity"), speed),
+        Some(JetSpeed::Velocity(speed)) => inflators::slow(&named("jet velocity"), speed),
         _ => None,
     };
     vec![
@@ -189,19 +189,6 @@ fn narrow_cone(orifice: &Orifice) -> Option<String> {
             significant(degrees.to_degrees())
         )
     })
-}
-
-/// m/s: no jet that anybody models is slower.
-const SLOW: f64 = 1.0;
-
-fn slow(scene: &Scene, named: &Named<'_>, speed: f64) -> Option<String> {
-    let range = range_of(Kind::Speed);
-    let question = if inflators::may_be_mach(scene, speed) {
-        ": is it a Mach number? That is `mach`".into()
-    } else {
-        question(&likely(&Range { least: SLOW, ..*range }, speed, named.units))
-    };
-    (speed < SLOW || !range.holds(speed)).then(|| named.beyond(&Range { least: SLOW, ..*range }, speed, &question))
 }
 
 /// The pressure that drives a flow through an orifice at the speed of sound, p = G sqrt(R T/M) / .68: no inflator has more than
