@@ -32,8 +32,8 @@ pub use flows::notes as notes_of_flows;
 pub use inflators::notes as notes_of_inflators;
 pub use known::notes as notes_of_gases;
 pub use times::{long_run, many_steps, short_step};
-pub use units::pressure_unit;
 use units::likely;
+pub use units::pressure_unit;
 
 /// All that is beyond its range by the scene alone, in its order, with its line: known also where no plan can be made of it, often for
 /// that reason.
