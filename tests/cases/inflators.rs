@@ -56,6 +56,25 @@ fn a_mach_number_for_a_velocity_is_told() {
     assert_eq!(notes(&[[JET, &jet("12.0")]]), [""; 0]);
 }
 
+/// A diameter that is given for an area: a choked jet would have less pressure than what it flows into.
+#[test]
+fn a_jet_without_pressure_is_told() {
+    let told = notes(&[["area = 2e-4", "area = 0.016"]]);
+    let words = "orifice `inflator`: 1 kg/s at Mach 1 through 0.016 m2 come from ";
+    assert!(told.len() == 1 && told[0].starts_with(words), "{told:?}");
+    assert!(
+        told[0].contains("and chamber `tank` has 101300 Pa: is `area` a diameter") && told[0].ends_with("(line 23)")
+    );
+    // G/A sqrt(R T0/(gamma M)) (1 + (gamma-1)/2)^((gamma+1)/(2 (gamma-1))), gamma 1.4762, M 18.983 g/mol.
+    let found: f64 = told[0][words.len()..].split(' ').next().unwrap().parse().unwrap();
+    let expected = 1.0 / 0.016 * (8.314_463 * 700.0 / (1.4762 * 0.018_983)).sqrt() * 1.742_45;
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    for area in ["area = 2e-3", "area = 5e-3"] {
+        assert_eq!(notes(&[["area = 2e-4", area]]), [""; 0], "{area}");
+    }
+    assert_eq!(notes(&[["area = 2e-4", "area = 0.016"], [JET, "jet = { mach = 0.5 }"]]), [""; 0]);
+}
+
 /// The species of an inflator, each with the flow of all; not if the flows, the places or the directions differ.
 #[test]
 fn a_flow_that_is_given_twice_is_told() {

@@ -138,6 +138,13 @@ const SLIPS: &[Slip] = &[
         &["the model: time_step 1e-9 s is", "times shorter than the 1.", "4,000,000 steps in place of", "(line 50)"],
     ),
     slip(
+        TANK,
+        ["particles = 2000", "particles = 2000\nswitch = 5e-6"],
+        &[
+            "`model.switch`: particles end at 5e-6 s, and `end_time` 0.004 s is 800 times that: is one of them in another unit?",
+        ],
+    ),
+    slip(
         CAN,
         ["radius = 80", "radius = 0.080"],
         &["probe `mid`: longest side of its region 0.16 mm, usual is 1 to 10000 mm: is it in m?"],

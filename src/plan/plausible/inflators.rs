@@ -1,12 +1,13 @@
-//! Orifices that no inflator has: gas colder than what it flows into, jets as slow as a Mach number, one flow that several bring.
+//! Orifices that no inflator has: gas colder than what it flows into, jets as slow as a Mach number or with less pressure than where they flow,
+//! one flow that several bring.
 
 use glam::DVec3;
 
 use super::named::Named;
 use super::range::{Kind, Range, most, range_of};
 use super::units::{likely, question};
-use crate::plan::text::as_written;
-use crate::scene::{Dimension, JetSpeed, Orifice, Scene, UnitSystem};
+use crate::plan::text::{as_written, significant};
+use crate::scene::{Dimension, GAS_CONSTANT, HeatCapacity, JetSpeed, Orifice, Scene, UnitSystem};
 
 /// Of the temperature of the chamber: colder gas than this is not just as warm as the room.
 const COLDER: f64 = 0.97;
@@ -16,6 +17,8 @@ const COLD: f64 = 250.0;
 const SLOW: f64 = 1.0;
 /// Up to this a number may be a Mach number.
 const MOST_MACH: f64 = 10.0;
+/// Of the pressure where it flows: no choked nozzle has less at rest, which by itself takes 1.9 times that.
+const WEAK: f64 = 0.5;
 /// Of the radius of an orifice, within which two are at one place.
 const SAME_PLACE: f64 = 0.1;
 
@@ -23,7 +26,8 @@ const SAME_PLACE: f64 = 0.1;
 pub fn notes(scene: &Scene, sources: &[Option<usize>]) -> Vec<String> {
     let cold = scene.orifices.iter().zip(sources).filter_map(|(orifice, &into)| cold(scene, orifice, into));
     let slow = scene.orifices.iter().filter_map(|orifice| slow_jet(scene, orifice));
-    cold.chain(slow).chain(shared_flows(scene)).collect()
+    let weak = scene.orifices.iter().zip(sources).filter_map(|(orifice, &into)| weak_jet(scene, orifice, into));
+    cold.chain(slow).chain(weak).chain(shared_flows(scene)).collect()
 }
 
 /// Gas that is cold at its hottest. (What no gas has is doubted otherwise.)
@@ -72,6 +76,51 @@ fn slow_jet(scene: &Scene, orifice: &Orifice) -> Option<String> {
             scene.units.symbol(Dimension::Velocity)
         )
     })
+}
+
+/// Jets at the speed of sound and above that have less pressure at rest than the chamber that they flow into.
+///
+/// Where a mass flow G goes through an area A at a Mach number Ma, p0 = G/A sqrt(R T0/(gamma M)) / Ma (1 + (gamma-1)/2 Ma^2)^((gamma+1)/(2 (gamma-1))).
+fn weak_jet(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Option<String> {
+    let JetSpeed::Mach(mach) = orifice.jet?.speed else { return None };
+    let (chamber, flow) = (&scene.chambers[into?], most(&orifice.mass_flow));
+    if mach < 1.0 || flow <= 0.0 {
+        return None;
+    }
+    let hottest = most(&orifice.temperature);
+    let gamma = heat_capacity_ratio(scene, orifice, hottest);
+    let thermal = GAS_CONSTANT * hottest / orifice.mixture.molar_mass(&scene.gases);
+    let stagnation = 1.0 + 0.5 * (gamma - 1.0) * mach * mach;
+    let at_rest = flow / (orifice.area * mach)
+        * libm::sqrt(thermal / gamma)
+        * libm::pow(stagnation, 0.5 * (gamma + 1.0) / (gamma - 1.0));
+    let shown = |si: f64, dimension: Dimension| {
+        format!("{} {}", significant(si / scene.units.factor(dimension)), scene.units.symbol(dimension))
+    };
+    (at_rest < WEAK * chamber.pressure).then(|| {
+        format!(
+            "orifice `{}`: {} at Mach {} through {} come from {} at rest, and chamber `{}` has {}: is `area` a diameter, or in another unit?",
+            orifice.name,
+            shown(flow, Dimension::MassFlow),
+            as_written(mach),
+            shown(orifice.area, Dimension::Area),
+            shown(at_rest, Dimension::Pressure),
+            chamber.name,
+            shown(chamber.pressure, Dimension::Pressure)
+        )
+    })
+}
+
+/// Of the gas of an orifice, frozen.
+fn heat_capacity_ratio(scene: &Scene, orifice: &Orifice, temperature: f64) -> f64 {
+    let of_gas = |&(gas, fraction): &(usize, f64)| {
+        let at_constant_volume = match scene.gases[gas].heat {
+            HeatCapacity::Constant(cv) => cv,
+            HeatCapacity::Curve([a, b, c]) => a + (b + c * temperature) * temperature - GAS_CONSTANT,
+        };
+        fraction * at_constant_volume
+    };
+    1.0 + GAS_CONSTANT / orifice.mixture.0.iter().map(of_gas).sum::<f64>()
 }
 
 /// Orifices with one place, direction and mass flow: each species of a mixture, with the flow of all.

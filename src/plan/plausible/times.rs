@@ -4,7 +4,7 @@
 use super::range::{Kind, range_of};
 use crate::plan::measured::Measured;
 use crate::plan::text::{as_written, grouped, significant};
-use crate::scene::{Course, Curve, Dimension, GAS_CONSTANT, Method, Scene, VentFlow};
+use crate::scene::{Course, Curve, Dimension, GAS_CONSTANT, Method, Scene, Switch, VentFlow};
 
 /// How many times the length of a run a curve may go on.
 const FAR_BEYOND: f64 = 100.0;
@@ -43,6 +43,9 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
             found.extend(early(scene, &subject, "discharge", curve));
         }
     }
+    if let Some(Switch::At(at)) = scene.model.switch {
+        found.extend(early_switch(scene, at));
+    }
     for motion in &scene.motions {
         let (Course::Velocity(curve) | Course::Displacement(curve)) = &motion.course;
         let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
@@ -59,6 +62,18 @@ fn late(scene: &Scene, subject: &str, what: &str, ends: f64) -> Option<String> {
             shown(scene, ends),
             significant(ends / scene.end_time),
             shown(scene, scene.end_time)
+        )
+    })
+}
+
+/// A run that is a control volume nearly from its start.
+fn early_switch(scene: &Scene, at: f64) -> Option<String> {
+    (LONG_AFTER * at < scene.end_time).then(|| {
+        format!(
+            "`model.switch`: particles end at {}, and `end_time` {} is {} times that: is one of them in another unit?",
+            shown(scene, at),
+            shown(scene, scene.end_time),
+            significant(scene.end_time / at)
         )
     })
 }
