@@ -9,7 +9,7 @@ use crate::study::pareto::{Setting, model_with};
 use crate::subdomain::GpuParticle;
 
 use super::tube::{LENGTH, SOD, Tube};
-use super::waves::sounds;
+use super::waves::{NOTE, sounds};
 use super::{Check, Effort, Findings, run};
 
 /// The frequency of the first mode over pi c / L, and its standard error, from the mean of cos(pi x / L) over the
@@ -104,7 +104,7 @@ pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyEr
     let (particles, tolerance) = if effort == Effort::Quick { (24_000, 0.03) } else { (240_000, 0.01) };
     let mut checks = vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?];
     checks.extend(sounds(device, effort)?);
-    Ok(checks.into())
+    Ok(Findings { notes: vec![NOTE.into()], ..checks.into() })
 }
 
 /// Of a run with this setting.
