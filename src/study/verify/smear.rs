@@ -73,8 +73,9 @@ mod tests {
         assert!((folded(0.5, 1.0) - 0.895_6).abs() < 1e-3);
     }
 
-    /// A diffusivity of .5 d c0 makes of Sod's tube what the prototype has as the mean of 16 runs with 40,000 particles,
-    /// within a fourth: .0125 in the density, of which a part is noise.
+    /// A diffusivity of .5 d c0 makes of Sod's tube what the prototype has as the mean of 16 runs with 40,000 particles.
+    /// In the density it does so within a fourth: .0125, of which a part is noise. In the velocity it is an upper bound, at
+    /// most twice the .0235 found: all of that is at the shock, which steepens.
     #[test]
     fn sods_tube_is_smeared_as_much_as_it_was_found() {
         let exact = SOD.exact().unwrap();
@@ -88,8 +89,7 @@ mod tests {
         };
         let profile: Vec<Slice> = (0..BINS).map(slice).collect();
         let [density, velocity] = expected(&exact, SOD.end, 0.5, left.cbrt().recip(), &profile);
-        println!("{density} {velocity}");
         assert!((density / 0.0125 - 1.0).abs() < 0.25, "{density}");
-        assert!((velocity / 0.0235 - 1.0).abs() < 0.5, "{velocity}");
+        assert!((1.0..2.0).contains(&(velocity / 0.0235)), "{velocity}");
     }
 }
