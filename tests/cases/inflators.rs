@@ -67,7 +67,7 @@ fn a_jet_without_pressure_is_told() {
     );
     // G/A sqrt(R T0/(gamma M)) (1 + (gamma-1)/2)^((gamma+1)/(2 (gamma-1))), gamma 1.4762, M 18.983 g/mol.
     let found: f64 = told[0][words.len()..].split(' ').next().unwrap().parse().unwrap();
-    let expected = 1.0 / 0.016 * (8.314_463 * 700.0 / (1.4762 * 0.018_983)).sqrt() * 1.742_45;
+    let expected = 1.0 / 0.016 * (8.314_463_f64 * 700.0 / (1.4762 * 0.018_983)).sqrt() * 1.742_45;
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
     for area in ["area = 2e-3", "area = 5e-3"] {
         assert_eq!(notes(&[["area = 2e-4", area]]), [""; 0], "{area}");
