@@ -63,7 +63,7 @@ fn a_jet_without_pressure_is_told() {
     let words = "orifice `inflator`: 1 kg/s at Mach 1 through 0.016 m2 come from ";
     assert!(told.len() == 1 && told[0].starts_with(words), "{told:?}");
     assert!(
-        told[0].contains("and chamber `tank` has 101300 Pa: is `area` a diameter") && told[0].ends_with("(line 23)")
+        told[0].contains("and chamber `tank` has 101325 Pa: is `area` a diameter") && told[0].ends_with("(line 23)")
     );
     // G/A sqrt(R T0/(gamma M)) (1 + (gamma-1)/2)^((gamma+1)/(2 (gamma-1))), gamma 1.4762, M 18.983 g/mol.
     let found: f64 = told[0][words.len()..].split(' ').next().unwrap().parse().unwrap();

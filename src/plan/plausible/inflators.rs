@@ -19,6 +19,8 @@ const SLOW: f64 = 1.0;
 const MOST_MACH: f64 = 10.0;
 /// Of the pressure where it flows: no choked nozzle has less at rest, which by itself takes 1.9 times that.
 const WEAK: f64 = 0.5;
+/// m2: no nozzle is as large.
+const LARGE: f64 = 1e-3;
 /// Of the radius of an orifice, within which two are at one place.
 const SAME_PLACE: f64 = 0.1;
 
@@ -78,13 +80,13 @@ fn slow_jet(scene: &Scene, orifice: &Orifice) -> Option<String> {
     })
 }
 
-/// Jets at the speed of sound and above that have less pressure at rest than the chamber that they flow into.
+/// Jets at the speed of sound and above, from more than a nozzle, that have less pressure at rest than the chamber that they flow into.
 ///
 /// Where a mass flow G goes through an area A at a Mach number Ma, p0 = G/A sqrt(R T0/(gamma M)) / Ma (1 + (gamma-1)/2 Ma^2)^((gamma+1)/(2 (gamma-1))).
 fn weak_jet(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Option<String> {
     let JetSpeed::Mach(mach) = orifice.jet?.speed else { return None };
     let (chamber, flow) = (&scene.chambers[into?], most(&orifice.mass_flow));
-    if mach < 1.0 || flow <= 0.0 {
+    if mach < 1.0 || flow <= 0.0 || orifice.area < LARGE {
         return None;
     }
     let hottest = most(&orifice.temperature);
