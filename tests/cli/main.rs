@@ -176,14 +176,14 @@ fn reference_cases_are_listed_run_and_judged() {
     let folder = TempDir::new().unwrap();
     let page = folder.path().join("page.md");
     let text = printed(&["verify", "filling", "--markdown", page.to_str().unwrap()]);
-    assert!(text.contains("2 of 2 pass") && text.lines().count() == 4, "{text}");
+    assert!(text.contains("4 of 4 pass") && text.lines().count() == 6, "{text}");
     let first = fs::read_to_string(&page).unwrap();
-    assert!(first.contains("corpuscle verify filling --quick") && first.contains("2 of 2 pass"), "{first}");
+    assert!(first.contains("corpuscle verify filling --quick") && first.contains("4 of 4 pass"), "{first}");
     // Another case beside what the page has.
     printed(&["verify", "virial", "--markdown", page.to_str().unwrap(), "--keep"]);
     let both = fs::read_to_string(&page).unwrap();
     assert!(
-        both.contains("3 of 3 pass")
+        both.contains("5 of 5 pass")
             && first.lines().filter(|line| line.starts_with('|')).all(|row| both.contains(row))
     );
     fs::write(&page, "# Something else\n").unwrap();

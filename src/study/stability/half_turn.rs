@@ -8,8 +8,9 @@ use crate::scene::Method;
 use crate::simulation::Options;
 use crate::study::StudyError;
 use crate::study::verify::gas_box::EquilibriumBox;
-use crate::study::verify::half_turn::{FLOWN, viscosity};
+use crate::study::verify::half_turn::viscosity;
 use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of};
+use crate::study::verify::shear::FLOWN;
 use crate::study::verify::shear::HALF_TURN_FLOOR;
 use crate::study::verify::{Check, run};
 

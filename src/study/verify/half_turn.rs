@@ -8,12 +8,10 @@ use crate::study::StudyError;
 
 use super::gas_box::EquilibriumBox;
 use super::holes::{discharge_of, emptying_scene};
-use super::shear::{HALF_TURN_FLOOR, viscosity_in};
+use super::shear::{FLOWN, HALF_TURN_FLOOR, viscosity_in};
 use super::witness::model_from;
 use super::{Check, Effort, Findings, run};
 
-/// Spacings that thermal speed flies in a step, by plans.
-pub const FLOWN: f64 = 0.6;
 /// To which the viscosity is known.
 const KNOWN_TO: f64 = 0.03;
 /// Cd into vacuum against the diameter of a hole over the spacing of the particles before it: .843 - .374 d/D.

@@ -7,7 +7,7 @@ use crate::simulation::{Model, Options};
 use crate::study::StudyError;
 use crate::study::pareto::{Setting, model_with};
 
-use super::figures::half_turn;
+use super::prototype_tubes::single;
 use super::shear::FLOOR;
 use super::smear::expected;
 use super::statistics::mean_and_error;
@@ -82,7 +82,7 @@ fn half_turn_by_table(device: &Device, particles: u64) -> Result<Vec<Check>, Stu
     let setting = Setting { method: Some(Method::HalfTurn), ..Setting::default() };
     let (_, profile) = profile(device, &Tube { particles, ..SOD }, &setting, None)?;
     let (found, noise) = (mean_differences(&profile), counting_noise(&profile));
-    let table = half_turn::single(particles).unwrap_or([f64::NAN; 2]);
+    let table = single(particles).unwrap_or([f64::NAN; 2]);
     let check = |k: usize| {
         let quantity = format!("half-turn: mean |{} - exact|, N = {particles}, by its table", ["rho", "u"][k]);
         Check::of(quantity, table[k], (found[k], noise[k].1), (0.05 * table[k]).hypot(3.0 * noise[k].1))

@@ -14,9 +14,9 @@ use crate::simulation::Options;
 use crate::study::StudyError;
 use crate::subdomain::GpuParticle;
 
+use super::damped_wave::fit;
 use super::gas_box::{EDGE, EquilibriumBox};
 use super::shear::{HALF_TURN_FLOOR, decay};
-use super::sound::fit;
 use super::statistics::mean_and_error;
 use super::witness::{model_from, scene_of};
 use super::{Check, Effort, Findings, run};

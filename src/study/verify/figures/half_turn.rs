@@ -6,6 +6,7 @@ use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::pareto::Setting;
 use crate::study::verify::half_turn::viscosity;
+use crate::study::verify::prototype_tubes::{Row, TUBES};
 use crate::study::verify::sod::profile;
 use crate::study::verify::statistics::mean_and_error;
 use crate::study::verify::tube::{SOD, Slice, Tube, counting_noise, mean_differences};
@@ -44,21 +45,8 @@ pub fn flows(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     flows.iter().map(check).collect()
 }
 
-/// Particles, seeds, and mean |difference| of density and velocity: the mean of single runs, and of the mean over the seeds.
-type Row = (u64, u64, [[f64; 2]; 2]);
-const TUBES: [Row; 4] = [
-    (10_000, 32, [[0.0364, 0.075], [0.0185, 0.033]]),
-    (20_000, 8, [[0.0255, 0.054], [0.0158, 0.030]]),
-    (40_000, 16, [[0.0199, 0.041], [0.0125, 0.0235]]),
-    (160_000, 4, [[0.0131, 0.0255], [0.0104, 0.021]]),
-];
 /// What the figures are known to, besides their counting noise, which is that of as many runs as ours.
 const KNOWN: f64 = 0.05;
-
-/// The figures of single runs with so many particles.
-pub fn single(particles: u64) -> Option<[f64; 2]> {
-    TUBES.iter().find(|row| row.0 == particles).map(|row| row.2[0])
-}
 
 pub fn tubes(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let rows = if effort == Effort::Quick { &TUBES[1..2] } else { &TUBES };
