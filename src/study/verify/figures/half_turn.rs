@@ -6,7 +6,7 @@ use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::pareto::Setting;
 use crate::study::verify::half_turn::viscosity;
-use crate::study::verify::prototype_tubes::{Row, TUBES};
+use crate::study::verify::prototype_tubes::TUBES;
 use crate::study::verify::sod::profile;
 use crate::study::verify::statistics::mean_and_error;
 use crate::study::verify::tube::{SOD, Slice, Tube, counting_noise, mean_differences};
