@@ -97,11 +97,14 @@ pub fn effective_mean_free_path_over_spacing(occupancy: f64) -> f64 {
     TABLE[3][1]
 }
 
+/// Kinematic viscosity of the method `half-turn` over d c0, in collision cells of 14 particles and steps of .6 d/c0; known to .03.
+pub const HALF_TURN_VISCOSITY: f64 = 0.21;
+
 /// The mean free paths, in mean spacings, by which a hole acts on gas of the method `half-turn`, into vacuum and by small differences of pressure. Into vacuum
 /// its collision cells count, not its viscosity: a square hole of 8.9, 12, 15, 19 and 24 spacings has Cd .77, .79, .79, .81 and .82 (2 to 10 runs
 /// each; `corpuscle verify half-turn-orifice --full` prints such), as one of Kn .5 to .7 d over the radius. By small differences it is that of particles of the usual occupancy (.12) with its kinematic viscosity, .21 d c0;
 /// what these have is .783 lambda c0 times 1.31 ([`viscosity_of_crowds`]).
-pub const HALF_TURN_PATHS: [f64; 2] = [0.55, 0.21 / 0.783 / 1.31];
+pub const HALF_TURN_PATHS: [f64; 2] = [0.55, HALF_TURN_VISCOSITY / 0.783 / 1.31];
 
 /// How many times as viscous as their kinetic mean free path says particles are that crowd at this occupancy, over those at .12, about
 /// which the discharge of holes was measured.

@@ -15,7 +15,7 @@ use crate::scene::{Chamber, Curve, Dimension, GAS_CONSTANT, Jet, JetSpeed, Motio
 /// Of a solid's volume, from which on it is told how much lies outside of the vessel.
 const SHOWN: f64 = 0.01;
 
-/// Of all that an orifice brings, below which its flow goes on after the end.
+/// Share of all that an orifice brings: with less until the end of the run its flow goes on after that.
 const CUT: f64 = 0.999;
 /// Steps of a slow compression.
 const PARTS: u32 = 100;

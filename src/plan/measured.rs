@@ -108,7 +108,7 @@ pub struct MeasuredWall {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenSection {
     pub between: [usize; 2],
-    /// Of the area over which they would meet without the walls that are in the gas.
+    /// The open share of the area over which they would meet without the walls that are in the gas.
     pub share: f64,
 }
 

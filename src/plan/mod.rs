@@ -57,7 +57,7 @@ pub use planned::{ChamberPlan, GasPlan, OpeningPlan, Plan, VentPlan};
 pub use plausible::{by_meshes as doubts_of_meshes, by_scene as doubts_of};
 pub use reach::notes as notes_of_reach;
 pub use reason::Reason;
-pub use resolution::{COLLISION_CELL, FASTEST_PAIR, LADDER_TAIL, PER_CELL, TILE_EDGE};
+pub use resolution::{COLLISION_CELL, FASTEST_PAIR, LADDER_TAIL, PER_CELL, SPACINGS_FLOWN, TILE_EDGE};
 pub use text::significant;
 
 #[cfg(test)]

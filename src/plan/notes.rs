@@ -1,7 +1,7 @@
 //! What a scene does that it may well mean, and its author may not know: told as notes, which are no warnings.
 
 use super::text::{as_written, significant};
-use super::vent_notes::absolute_question;
+use super::vent_notes::{SAME, absolute_question, pressure};
 use super::{GapBeside, Hindered, Hindrance, Measured, MeasuredVent, OpenSection};
 use crate::gas::vent::opens;
 use crate::geometry::Passage;
@@ -13,18 +13,16 @@ const NARROW: f64 = 0.02;
 const GAUGE: f64 = 0.3;
 /// Share of a section from which on all of it is open.
 const WHOLE: f64 = 0.98;
-/// Share by which two pressures differ that were meant to be the same.
-const SAME: f64 = 1e-3;
 
 /// Vents that no gas opens.
 pub struct Shut<'a> {
     /// With the absolute pressure at which each would open, Pa.
     pub vents: &'a [(&'a str, f64)],
-    /// Of all gas together at the end, Pa.
+    /// The pressure of all gas together at the end, Pa.
     pub end: f64,
 }
 
-/// Of the holes and the vents, with the line of each in the file.
+/// What holes and vents do that may be meant, with the line of each in the file.
 pub fn of_scene(scene: &Scene, measured: &Measured, shut: &Shut<'_>) -> Vec<String> {
     let holes = measured.hindered.iter().map(|hole| hindered(scene, hole));
     let open = scene.vents.iter().zip(&measured.vents).filter_map(|vent| open_at_start(scene, vent));
@@ -66,11 +64,6 @@ fn untold_sections(measured: &Measured) -> impl Iterator<Item = &OpenSection> {
         gaps.any(|own| own == [a, b] || own == [b, a])
     };
     measured.open_sections.iter().filter(move |section| !is_told(section.between))
-}
-
-fn pressure(scene: &Scene, si: f64) -> String {
-    let unit = scene.units.symbol(Dimension::Pressure);
-    format!("{} {unit}", as_written(si / scene.units.factor(Dimension::Pressure)))
 }
 
 /// Orifices that blow at a wall right before them.

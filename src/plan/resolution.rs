@@ -33,7 +33,7 @@ pub const COLLISION_CELL: f64 = 2.41;
 pub const TILE_EDGE: f64 = 4.0;
 /// Mean spacings that gas of thermal speed flies in a step of the method `half-turn`: by the plan, and at most before a run halves the step. At 1 its
 /// viscosity is half as much again.
-const SPACINGS_FLOWN: f64 = 0.6;
+pub const SPACINGS_FLOWN: f64 = 0.6;
 const MOST_SPACINGS_FLOWN: f64 = 0.75;
 /// 99.97 %: the step is halved where more than .1 % cross a cell, and noise must not do that.
 const SURELY_FAST: f64 = 4.4;

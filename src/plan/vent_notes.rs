@@ -8,14 +8,14 @@ use super::{Measured, MeasuredVent};
 use crate::scene::{Curve, Dimension, Scene, Vent, VentFlow};
 
 /// Share by which two pressures differ that were meant to be the same.
-const SAME: f64 = 1e-3;
-/// Of the place of a vent, rounding of its area.
+pub const SAME: f64 = 1e-3;
+/// Area over that of a vent's place: what is less is rounding.
 const ALL: f64 = 1.05;
-/// Of what a chamber may have above the outside: a curve that ends below this share is in another unit, or one that begins beyond
-/// so many times of it.
+/// Shares of what a chamber may have above the outside: a curve that ends below the first is in another unit, or one that begins beyond
+/// the second.
 const FAR_BELOW: f64 = 0.003;
 const FAR_BEYOND: f64 = 3.0;
-/// Of the same, what another unit or the other column may make of the last point.
+/// What another unit or the other column may make of the last point, over the same.
 const FITS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 /// Coefficients below it are hardly those of a vent.
 const SMALL: f64 = 0.05;
@@ -49,7 +49,8 @@ pub fn is_absolute(scene: &Scene, vent: &Vent) -> bool {
     scene.lines.holds(&format!("vent `{}`: opening_pressure_absolute", vent.name))
 }
 
-fn pressure(scene: &Scene, si: f64) -> String {
+/// Up to six digits of a pressure, with the unit of the scene.
+pub fn pressure(scene: &Scene, si: f64) -> String {
     let unit = scene.units.symbol(Dimension::Pressure);
     format!("{} {unit}", as_written(si / scene.units.factor(Dimension::Pressure)))
 }

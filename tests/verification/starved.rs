@@ -22,7 +22,7 @@ fn viscosity(particles: u64, seeds: u64) -> (f64, f64) {
     let square = 1.0 / (2f64.sqrt() * std::f64::consts::PI * density * path);
     let occupancy = std::f64::consts::PI / 6.0 * density * square.powf(1.5);
     let gas = EquilibriumBox { method: "cell", particles, occupancy, step_over_tau: 0.2, ..EquilibriumBox::default() };
-    let found = viscosity_in(&device(), gas, seeds, Some(path)).expect("a run");
+    let found = viscosity_in(&device(), gas, seeds, Some(path), true).expect("a run");
     let scale = EDGE / (particles as f64).cbrt() / path;
     (found.0 * scale, found.1 * scale)
 }

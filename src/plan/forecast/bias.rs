@@ -7,8 +7,8 @@ use crate::scene::{Jet, Method, Orifice};
 
 /// Effective mean free path of the method `cell` over the mean spacing, where fronts are concerned (method.md, "Collisions").
 const CELL_PATH: f64 = 0.9;
-/// And of the method `half-turn`: viscosity .21 d c0 over .783 c0.
-const HALF_TURN_PATH: f64 = 0.21 / 0.783;
+/// And of the method `half-turn`: its viscosity over .783 c0.
+const HALF_TURN_PATH: f64 = kinetics::HALF_TURN_VISCOSITY / 0.783;
 /// T_int/T_tr falls by a tenth of the share of lost collisions: .985 where .186 are lost, .946 where .538 are
 /// (docs/explanation/method.md, "Collisions").
 const UNEQUAL_PER_LOST: f64 = 0.1;

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use crate::scene::HeatTransfer;
 
-/// Of the method `half-turn`, in intervals of 32 steps: how long energy keeps between translation and spin. It goes to
+/// How long energy keeps between translation and spin with the method `half-turn`, in intervals of 32 steps. It goes to
 /// and fro in every step, but rows look at every eighth. Measured: chamber pressures of 1000 particles of nitrogen
 /// scatter by .0105 in rows of one interval (four runs of a closed vessel that is filled), the moment's by .0163.
 pub const HALF_TURN_MEMORY: f64 = 0.28;
@@ -91,7 +91,7 @@ pub fn of_zone(particles: f64, all: f64, volume: f64, thermal_speed: f64, window
     5.0 / (3.0 * particles) * (1.0 - particles / all).max(0.0) * averaged(memory, window)
 }
 
-/// Of a profile, not squared: mean |rho - mean| over the mean density, rho of N particles in fiftieths of a tube.
+/// The noise of a profile, not squared: mean |rho - mean| over the mean density, rho of N particles in fiftieths of a tube.
 pub fn of_profile(particles: f64) -> f64 {
     (2.0 / PI * 50.0 / particles).sqrt()
 }

@@ -10,9 +10,9 @@ use crate::scene::{Dimension, Orifice, Scene};
 const RISING: usize = 4;
 /// kg/s: an inflator gives a few. A curve that would be faster as one of a mass is a flow that rises at once, and stays.
 const FASTEST: f64 = 20.0;
-/// Of the steepest rise, what is level.
+/// Slope over the steepest: what is less is level.
 const LEVEL: f64 = 0.3;
-/// Of the gas at the start: no inflator gives so little, and a thousand times as much is one in another unit.
+/// Inflow over the gas at the start: no inflator gives so little, and a thousand times as much is one in another unit.
 const LITTLE: f64 = 1e-3;
 
 pub fn notes(scene: &Scene, amounts: &Amounts) -> Vec<String> {

@@ -7,9 +7,9 @@ use super::named::Named;
 use super::range::{Kind, Range, most, range_of};
 use super::units::{likely, question};
 use crate::plan::text::{as_written, significant};
-use crate::scene::{Dimension, GAS_CONSTANT, HeatCapacity, JetSpeed, Orifice, Scene, UnitSystem};
+use crate::scene::{Dimension, GAS_CONSTANT, JetSpeed, Orifice, Scene, UnitSystem};
 
-/// Of the temperature of the chamber: colder gas than this is not just as warm as the room.
+/// Temperature over that of the chamber: colder gas than this is not just as warm as the room.
 const COLDER: f64 = 0.97;
 /// K: hardly any inflator's gas is colder.
 const COLD: f64 = 250.0;
@@ -17,11 +17,11 @@ const COLD: f64 = 250.0;
 const SLOW: f64 = 1.0;
 /// Up to this a number may be a Mach number.
 const MOST_MACH: f64 = 10.0;
-/// Of the pressure where it flows: no choked nozzle has less at rest, which by itself takes 1.9 times that.
+/// Pressure at rest over that where a jet flows: no choked nozzle has less; it takes 1.9.
 const WEAK: f64 = 0.5;
 /// m2: no nozzle is as large.
 const LARGE: f64 = 1e-3;
-/// Of the radius of an orifice, within which two are at one place.
+/// Distance over the radius of an orifice, within which two are at one place.
 const SAME_PLACE: f64 = 0.1;
 
 /// `sources`: the chamber that each orifice blows into.
@@ -113,15 +113,9 @@ fn weak_jet(scene: &Scene, orifice: &Orifice, into: Option<usize>) -> Option<Str
     })
 }
 
-/// Of the gas of an orifice, frozen.
+/// The frozen gamma of the gas of an orifice.
 fn heat_capacity_ratio(scene: &Scene, orifice: &Orifice, temperature: f64) -> f64 {
-    let of_gas = |&(gas, fraction): &(usize, f64)| {
-        let at_constant_volume = match scene.gases[gas].heat {
-            HeatCapacity::Constant(cv) => cv,
-            HeatCapacity::Curve([a, b, c]) => a + (b + c * temperature) * temperature - GAS_CONSTANT,
-        };
-        fraction * at_constant_volume
-    };
+    let of_gas = |&(gas, fraction): &(usize, f64)| fraction * scene.gases[gas].heat.molar_cv(temperature);
     1.0 + GAS_CONSTANT / orifice.mixture.0.iter().map(of_gas).sum::<f64>()
 }
 

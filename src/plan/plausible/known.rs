@@ -85,7 +85,7 @@ fn temperatures(scene: &Scene) -> [f64; 2] {
     [all[0], HOTTER * all[1]]
 }
 
-/// Of gases that are not what their names or their molar masses say.
+/// Gases that are not what their names or their molar masses say.
 pub fn notes(scene: &Scene) -> Vec<String> {
     let range = temperatures(scene);
     scene.gases.iter().flat_map(|gas| of_gas(scene, gas, range)).collect()

@@ -9,11 +9,11 @@ use crate::geometry::{Triangle, Vessel};
 use crate::plan::FacingOrifice;
 use crate::scene::{GasSide, Scene, Shape, Vent};
 
-/// Of the edge of a vent's place: a wall that is thinner parts gas from gas.
+/// Thickness over the edge of a vent's place: a wall that is thinner parts gas from gas.
 const THIN: f64 = 0.25;
 /// Steps through a wall to the gas behind it.
 const STEPS: u32 = 32;
-/// Of the radius of an orifice: a wall that is nearer stops the jet.
+/// Distance over the radius of an orifice: a wall that is nearer stops the jet.
 const NEAR: f64 = 0.5;
 
 /// The vents with gas behind most of their places, and its chamber.

@@ -6,12 +6,12 @@ use crate::geometry::{Vessel, region_volume};
 use crate::plan::OpenSection;
 use crate::scene::{Opening, Scene};
 
-/// Of the edge of a cube of a region's volume, how deep the gas on both sides of its surface is at least: a facet of a round wall lies
+/// Depth of the gas on both sides of a region's surface, at least, over the edge of a cube of its volume: a facet of a round wall lies
 /// nearer to its circle.
 const DEEP: f64 = 0.02;
 /// Places on each side within that depth.
 const PLACES: u32 = 8;
-/// Of a section: what is less is within the rounding of the points on the surface of a region.
+/// Share of a section: what is less is within the rounding of the points on the surface of a region.
 const LEAST: f64 = 0.02;
 
 /// `found`: the openings that holes of walls are; what the scene declares beside them is open on purpose.

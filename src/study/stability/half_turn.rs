@@ -2,16 +2,15 @@
 //! hole what they say.
 
 use crate::gas::CONTINUUM_COEFFICIENT;
+use crate::gas::kinetics::HALF_TURN_VISCOSITY;
 use crate::gpu::Device;
-use crate::plan::{COLLISION_CELL, TILE_EDGE};
+use crate::plan::{COLLISION_CELL, SPACINGS_FLOWN, TILE_EDGE};
 use crate::scene::Method;
 use crate::simulation::Options;
 use crate::study::StudyError;
 use crate::study::verify::gas_box::EquilibriumBox;
-use crate::study::verify::half_turn::viscosity;
+use crate::study::verify::half_turn::{Sheared, viscosity};
 use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of};
-use crate::study::verify::shear::FLOWN;
-use crate::study::verify::shear::HALF_TURN_FLOOR;
 use crate::study::verify::{Check, run};
 
 use super::Effort;
@@ -19,7 +18,7 @@ use super::at_rest::{at_rest, lasting, of_any};
 use super::flows::{FLOW, hole};
 
 /// Of its viscosity: half as much again. (Gas of `closest-approach` is three times as viscous.)
-const VISCOSITY: f64 = 0.5 * HALF_TURN_FLOOR;
+const VISCOSITY: f64 = 0.5 * HALF_TURN_VISCOSITY;
 
 /// Particles and seeds of a viscosity.
 fn size(effort: Effort) -> (u64, u64) {
@@ -31,7 +30,7 @@ fn size(effort: Effort) -> (u64, u64) {
 }
 
 fn of_viscosity(found: (f64, f64)) -> Check {
-    Check::of("viscosity, nu/(d c0)", HALF_TURN_FLOOR, found, VISCOSITY)
+    Check::of("viscosity, nu/(d c0)", HALF_TURN_VISCOSITY, found, VISCOSITY)
 }
 
 /// Steps in which thermal speed flies so many mean spacings: what gas at rest keeps, and its viscosity.
@@ -45,7 +44,8 @@ pub(super) fn spacings_flown(
         EquilibriumBox { method: method.name(), particles: 2000, step_over_tau: flown, ..EquilibriumBox::default() };
     let mut checks = at_rest(device, &lasting(gas, 120.0), 1.0)?;
     let (particles, seeds) = size(effort);
-    checks.push(of_viscosity(viscosity(device, particles, flown, 1.0, seeds)?));
+    let sheared = Sheared { particles, spacings_flown: flown, denser: 1.0, held: true };
+    checks.push(of_viscosity(viscosity(device, sheared, seeds)?));
     Ok(checks)
 }
 
@@ -53,7 +53,8 @@ pub(super) fn spacings_flown(
 pub(super) fn members(device: &Device, _: Method, members: f64, effort: Effort) -> Result<Vec<Check>, StudyError> {
     let (particles, seeds) = size(effort);
     let planned = (TILE_EDGE * 0.5 * COLLISION_CELL).powi(3);
-    Ok(vec![of_viscosity(viscosity(device, particles, FLOWN, planned / members, seeds)?)])
+    let sheared = Sheared { particles, spacings_flown: SPACINGS_FLOWN, denser: planned / members, held: true };
+    Ok(vec![of_viscosity(viscosity(device, sheared, seeds)?)])
 }
 
 /// A hole that is so many mean spacings wide before its chamber empties.

@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 
+use crate::gas::kinetics::HALF_TURN_VISCOSITY;
 use crate::geometry::{Grid, GridError};
 use crate::gpu::Device;
 use crate::plan::PlanError;
@@ -20,10 +21,6 @@ use super::{Check, Effort, Findings, run};
 
 /// Kinematic viscosity over d c0 of closest approach at f = .1 (method.md, "Collisions"), known to 10 %.
 pub const FLOOR: f64 = 0.65;
-/// And of the method `half-turn`, with collision cells of 14 particles in steps of .6 d/c0, known to .03.
-pub const HALF_TURN_FLOOR: f64 = 0.21;
-/// Spacings that thermal speed flies in a step of that method, by plans.
-pub const FLOWN: f64 = 0.6;
 /// U over the thermal speed.
 const START: f64 = 0.4;
 /// Of its first amplitude, down to which the decay is followed.
@@ -41,10 +38,10 @@ fn form(grid: &Grid, particle: &GpuParticle) -> [f64; 2] {
 /// # Errors
 /// If a run fails.
 pub fn viscosity(device: &Device, gas: EquilibriumBox<'_>, seeds: u64) -> Result<(f64, f64), StudyError> {
-    viscosity_in(device, gas, seeds, None)
+    viscosity_in(device, gas, seeds, None, true)
 }
 
-/// The same, with cells of this edge, m, in place of the plan's.
+/// The same, with cells of this edge, m, in place of the plan's. `held`: steps are as long as asked for; else a run may shorten them.
 ///
 /// # Errors
 /// If a run fails.
@@ -53,12 +50,13 @@ pub fn viscosity_in(
     gas: EquilibriumBox<'_>,
     seeds: u64,
     cell: Option<f64>,
+    held: bool,
 ) -> Result<(f64, f64), StudyError> {
     // Some .65 d c0 (docs/explanation/method.md, "Collisions"): the time in which the vortices fall to LAST.
     let distance = EDGE / (gas.particles as f64).cbrt();
     let mut gas_box = EquilibriumBox { snapshots: 40, ..gas };
     let speed = gas_box.thermal_speed();
-    let expected = if gas.method == "half-turn" { HALF_TURN_FLOOR } else { FLOOR };
+    let expected = if gas.method == "half-turn" { HALF_TURN_VISCOSITY } else { FLOOR };
     let rate = 2.0 * expected * distance * speed * (PI / EDGE).powi(2);
     gas_box.steps = (-LAST.ln() / rate / gas_box.time_step()).ceil() as u32;
     let mut found = Vec::new();
@@ -78,9 +76,7 @@ pub fn viscosity_in(
                 particle.velocity[1] += y;
             }
         };
-        // Steps of half-turn that are no longer than a plan's may be shortened, as in any run.
-        let hold_step = gas.method != "half-turn" || gas.step_over_tau > FLOWN;
-        let run = run(device, &model, Options { shuffle: Some(&stirred), hold_step, ..Options::default() })?;
+        let run = run(device, &model, Options { shuffle: Some(&stirred), hold_step: held, ..Options::default() })?;
         let amplitudes: Vec<(f64, f64)> = run.snapshots.iter().map(|(time, p)| (*time, amplitude(&model, p))).collect();
         found.push(decay(&amplitudes) / (2.0 * (PI / EDGE).powi(2)) / (distance * speed));
     }

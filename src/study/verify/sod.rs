@@ -9,10 +9,10 @@ use crate::study::pareto::{Setting, model_with};
 
 use super::prototype_tubes::single;
 use super::shear::FLOOR;
-use super::smear::expected;
+use super::smear::{OF_HALF_TURN, expected};
 use super::statistics::mean_and_error;
 use super::tube::{LENGTH, SOD, Slice, Tube, counting_noise, mean_differences};
-use super::waves::{DAMPING, DIFFUSIVITY};
+use super::waves::DAMPING;
 use super::{Check, Curves, Effort, Findings, run};
 
 /// The profile at the end of a run with this setting, and the model. Occupancy and step are of all particles in `volume` (m3),
@@ -47,7 +47,7 @@ const LIMITS: [Limits; 2] = [
     (Method::Cell, Some(0.1), [0.025, 1.05 * 0.046]),
 ];
 
-/// The checks of half-turn, and the profile. A profile is the exact one, smeared by at most the method's largest diffusivity, that of heat, and
+/// The checks of half-turn, and the profile. A profile is the exact one, smeared by the method's diffusivities, and
 /// counted: the limits are what that makes of it (`smear.rs`) and three standard deviations of the counting.
 ///
 /// # Errors
@@ -67,7 +67,7 @@ pub fn by_method_in(device: &Device, tube: &Tube, method: Method) -> Result<(Vec
     let density: u64 = left.particles.iter().sum();
     let spacing = kinetics::mean_spacing(density as f64 / left.volume) / LENGTH;
     let exact = tube.exact();
-    let most = exact.map_or([f64::NAN; 2], |exact| expected(&exact, tube.end, DIFFUSIVITY, spacing, &profile));
+    let most = exact.map_or([f64::NAN; 2], |exact| expected(&exact, tube.end, OF_HALF_TURN, spacing, &profile));
     let (found, noise) = (mean_differences(&profile), counting_noise(&profile));
     let check = |k: usize| {
         let quantity = format!("{}: mean |{} - exact|, N = {}", method.name(), ["rho", "u"][k], tube.particles);

@@ -14,8 +14,8 @@ use super::{Check, Effort, Findings, run};
 /// m: where the wall is, and how thick.
 const PLACE: f64 = 0.0391;
 const THICKNESS: f64 = 1e-4;
-/// What rounding may do to the temperature of a side: the tolerance of `energy-drift`.
-const ROUNDING: f64 = 1e-6;
+/// What rounding may do to the temperature of a side: the tolerance of `energy-drift` in 2,000 steps.
+const ROUNDING: f64 = 2e-7;
 
 /// Temperatures of the cold and of the hot side at the end of a run over those of its first snapshot, less 1.
 ///

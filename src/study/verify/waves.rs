@@ -8,15 +8,17 @@
 
 use std::f64::consts::PI;
 
+use crate::gas::kinetics::HALF_TURN_VISCOSITY;
 use crate::geometry::Grid;
 use crate::gpu::Device;
+use crate::plan::SPACINGS_FLOWN;
 use crate::simulation::Options;
 use crate::study::StudyError;
 use crate::subdomain::GpuParticle;
 
 use super::damped_wave::fit;
 use super::gas_box::{EDGE, EquilibriumBox};
-use super::shear::{HALF_TURN_FLOOR, decay};
+use super::shear::decay;
 use super::statistics::mean_and_error;
 use super::witness::{model_from, scene_of};
 use super::{Check, Effort, Findings, run};
@@ -28,7 +30,7 @@ const HEAT: f64 = 0.2;
 /// What the prototype found for the method, over d c0.
 pub const DIFFUSIVITY: f64 = 0.5;
 /// Gamma = (4/3 nu + (gamma - 1) chi)/2 (Landau and Lifshitz, Fluid Mechanics, section 79) of the prototype's nu and chi, without a bulk viscosity.
-pub const DAMPING: f64 = 0.5 * (4.0 / 3.0 * HALF_TURN_FLOOR + (GAMMA - 1.0) * DIFFUSIVITY);
+pub const DAMPING: f64 = 0.5 * (4.0 / 3.0 * HALF_TURN_VISCOSITY + (GAMMA - 1.0) * DIFFUSIVITY);
 /// What nu and chi are known to makes .02 of it, and spin that needs a step of .6 d/c0 to follow, (gamma - 1)^2 of that, at most .05.
 const DAMPING_KNOWN_TO: f64 = 0.05;
 
@@ -69,7 +71,7 @@ impl Waves {
             snapshots: 40,
             ..EquilibriumBox::default()
         };
-        gas.step_over_tau = if self.method == "half-turn" { 0.6 } else { 0.2 };
+        gas.step_over_tau = if self.method == "half-turn" { SPACINGS_FLOWN } else { 0.2 };
         let (k, speed) = (self.number(), gas.thermal_speed());
         gas.steps = (duration / (k * speed) / gas.time_step()).ceil() as u32;
         let mut found = Vec::new();
@@ -178,7 +180,7 @@ fn of(effort: Effort, sound: bool) -> Waves {
     Waves { method: "half-turn", particles, half_waves, seeds }
 }
 
-/// Of the case `sound`.
+/// A note of the case `sound`.
 pub(super) const NOTE: &str = "The prototype has .33 to .35 d c0 for the damping of sound with half-turn. Its own viscosity and diffusivity \
      of heat, which runs find too, make .24, and a bulk viscosity that would make up the rest, some .2 d c0, is more than spin that \
      follows within a step has: the reference is .24";

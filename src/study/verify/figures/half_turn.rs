@@ -5,7 +5,7 @@ use crate::gpu::Device;
 use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::pareto::Setting;
-use crate::study::verify::half_turn::viscosity;
+use crate::study::verify::half_turn::{Sheared, viscosity};
 use crate::study::verify::prototype_tubes::TUBES;
 use crate::study::verify::sod::profile;
 use crate::study::verify::statistics::mean_and_error;
@@ -38,7 +38,7 @@ pub fn flows(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let check = |&(cell, flown, particles, expected): &Flow| {
         let denser = (1.205 / cell).powi(3);
         let seeds = (TOGETHER / particles).max(SEEDS);
-        let found = viscosity(device, particles, flown, denser, seeds)?;
+        let found = viscosity(device, Sheared { particles, spacings_flown: flown, denser, held: true }, seeds)?;
         let quantity = format!("nu / (d c0), cells of {cell} d, steps of {flown} d/c0, N = {particles}");
         Ok(figure(quantity, expected, found, KNOWN_TO))
     };
