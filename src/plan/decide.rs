@@ -2,6 +2,7 @@
 
 use super::amounts::{Amounts, highest_temperature};
 use super::cap::diameter_cap;
+use super::continuum;
 use super::error::{MOST_CELLS, MOST_GASES};
 use super::heat::species;
 use super::limits::Quantity;
@@ -28,15 +29,17 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     if scene.gases.len() > MOST_GASES {
         return Err(PlanError::TooManyGases { found: scene.gases.len(), limit: MOST_GASES });
     }
-    let mut reasons = Vec::new();
-    let method = method(scene, &mut reasons);
-    let species = species(scene, measured, &mut reasons)?;
+    let mut of_heat = Vec::new();
+    let species = species(scene, measured, &mut of_heat)?;
     jets(scene, &species)?;
+    let amounts = Amounts::of(scene, &species, measured)?;
+    let (method, why) = continuum::method(scene, measured, &amounts);
+    let mut reasons = vec![why];
+    reasons.append(&mut of_heat);
     switch(scene, method, &mut reasons)?;
     if scene.model.switch.is_some() {
         measured.no_empty_space("`switch`")?;
     }
-    let amounts = Amounts::of(scene, &species, measured)?;
     if method == Method::ControlVolume {
         return control_volume::plan(scene, measured, &species, &amounts, reasons);
     }
@@ -64,7 +67,12 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let gas = ExpectedGas { states, extreme };
     let resolution = Resolution::choose(method, &request, gas, scene.end_time, &mut reasons)?;
     let diameter_cap = diameter_cap(scene, method, resolution.diameter, number_density, &mut reasons)?;
-    let (collision_number, gases) = gases(scene, &species, amounts.final_temperature, &population, &mut reasons)?;
+    let (collision_number, why) = collision_number(scene, &species, amounts.final_temperature);
+    // (Where all particles of a cell collide at once there is none.)
+    if method != Method::HalfTurn {
+        reasons.push(why);
+    }
+    let gases = gases(scene, &species, amounts.final_temperature, &population, collision_number)?;
 
     let grid = Grid::around(measured.bounds_min, measured.bounds_max, resolution.cell)?;
     // Each axis may fit a position while all cells together do not fit a number.
@@ -147,15 +155,6 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     })
 }
 
-fn method(scene: &Scene, reasons: &mut Vec<Reason>) -> Method {
-    let (method, why) = match scene.model.method {
-        Some(method) => (method, "asked for"),
-        None => (Method::ClosestApproach, "right for jets and vents, with the ideal gas's pressure at any occupancy"),
-    };
-    reasons.push(Reason { quantity: "method".into(), value: method.name().into(), why: why.into() });
-    method
-}
-
 /// Whether and when the run goes on as a control volume.
 fn switch(scene: &Scene, method: Method, reasons: &mut Vec<Reason>) -> Result<(), PlanError> {
     let value = match scene.model.switch {
@@ -236,16 +235,10 @@ pub fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, partic
     [start, end]
 }
 
-/// Z, raised where nothing was asked and a gas cannot relax that fast, and each gas's exchange.
+/// Z, raised where nothing was asked and a gas cannot relax that fast, and why.
 /// A heat capacity that depends on the temperature counts as it is at `temperature`, K: the exchange probability is
 /// constant.
-fn gases(
-    scene: &Scene,
-    species: &[Species],
-    temperature: f64,
-    population: &Population,
-    reasons: &mut Vec<Reason>,
-) -> Result<(f64, Vec<GasPlan>), PlanError> {
+fn collision_number(scene: &Scene, species: &[Species], temperature: f64) -> (f64, Reason) {
     let least = |gas: &Species| kinetics::least_collision_number(gas.spin_dof(temperature));
     let least = species.iter().map(least).fold(0.0, f64::max);
     let (number, why) = match scene.model.collision_number {
@@ -253,15 +246,22 @@ fn gases(
         None if least > DEFAULT_COLLISION_NUMBER => (least, "the fastest spin exchange of the gas with the most spin"),
         None => (DEFAULT_COLLISION_NUMBER, "rotation relaxes in about five collisions"),
     };
-    // (Where all particles of a cell collide at once there is none.)
-    if scene.model.method != Some(Method::HalfTurn) {
-        reasons.push(Reason { quantity: "collision number".into(), value: significant(number), why: why.into() });
-    }
+    (number, Reason { quantity: "collision number".into(), value: significant(number), why: why.into() })
+}
+
+/// Each gas with its exchange by this Z.
+fn gases(
+    scene: &Scene,
+    species: &[Species],
+    temperature: f64,
+    population: &Population,
+    collision_number: f64,
+) -> Result<Vec<GasPlan>, PlanError> {
     let gases = scene.gases.iter().zip(species).enumerate().map(|(index, (gas, species))| {
         let spin_dof = species.spin_dof(temperature);
-        let exchange_probability = kinetics::exchange_probability(spin_dof, number).ok_or_else(|| {
+        let exchange_probability = kinetics::exchange_probability(spin_dof, collision_number).ok_or_else(|| {
             let least = kinetics::least_collision_number(spin_dof);
-            PlanError::CollisionNumber { gas: gas.name.clone(), found: number, least }
+            PlanError::CollisionNumber { gas: gas.name.clone(), found: collision_number, least }
         })?;
         Ok(GasPlan {
             name: gas.name.clone(),
@@ -272,7 +272,7 @@ fn gases(
             species: species.clone(),
         })
     });
-    Ok((number, gases.collect::<Result<_, PlanError>>()?))
+    gases.collect()
 }
 
 fn chambers(scene: &Scene, measured: &Measured, counts: Vec<Vec<u64>>) -> Vec<ChamberPlan> {

@@ -16,6 +16,7 @@
 mod amounts;
 mod cap;
 mod choice;
+mod continuum;
 mod control_volume;
 mod decide;
 mod error;

@@ -4,6 +4,8 @@ use crate::geometry::Passage;
 use crate::scene::*;
 
 mod gases;
+mod methods;
+mod refusals;
 
 fn gas(name: &str, molar_mass: f64, cv: f64) -> Gas {
     Gas { name: name.into(), molar_mass, heat: HeatCapacity::Constant(cv * GAS_CONSTANT) }
@@ -47,7 +49,11 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         surfaces: vec![],
         vents: vec![],
         motions: vec![],
-        model: ModelRequest { particles: Some(1_000_000), ..ModelRequest::default() },
+        model: ModelRequest {
+            method: Some(Method::ClosestApproach),
+            particles: Some(1_000_000),
+            ..ModelRequest::default()
+        },
         output: OutputRequest { rows: 200, snapshots: 10 },
         lines: Lines::default(),
     };
@@ -196,170 +202,6 @@ fn particles_are_chosen_by_noise_or_resolution() {
     assert_eq!(free.particles, noise.particles);
 }
 
-#[test]
-fn free_flight_has_no_collisions() {
-    let plan = planned(|scene, _| scene.model.method = Some(Method::None)).unwrap();
-    assert_eq!((plan.diameter, plan.rounds, plan.occupancy), (0.0, 0, 0.0));
-    assert!(plan.mean_free_path.is_infinite());
-    // At the pressure of the atmosphere molecules do collide.
-    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("Knudsen number 1.641e-6"), "{:?}", plan.warnings);
-    let thin = planned(|scene, _| {
-        scene.model.method = Some(Method::None);
-        scene.orifices.clear();
-        scene.chambers.iter_mut().for_each(|chamber| chamber.pressure = 1e-2);
-    });
-    assert_eq!(thin.unwrap().warnings, Vec::<String>::new());
-    assert!(near(plan.grid.cell, kinetics::mean_spacing(plan.particles as f64 / 0.06), 1e-12));
-    let speed = 4.0 * kinetics::thermal_square(980.0, 0.0280134).sqrt();
-    assert!(speed * plan.time_step < plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
-}
-
-/// The method `cell`: six particles in a cell, hardly one of which leaves it in a step, at most two collisions each.
-#[test]
-fn cells_hold_a_few_particles() {
-    let cell = |change: &dyn Fn(&mut Scene)| {
-        planned(|scene, _| {
-            scene.model.method = Some(Method::Cell);
-            change(scene);
-        })
-        .unwrap()
-    };
-    let plan = cell(&|_| ());
-    let density = plan.particles as f64 / 0.06;
-    assert!(near(density * plan.grid.cell.powi(3), 6.0, 1e-9));
-    assert_eq!((plan.rounds, plan.collision_limit), (0, 2.0));
-    let speed = 4.4 * kinetics::thermal_square(980.0, 0.0280134).sqrt();
-    assert!(speed * plan.time_step <= plan.grid.cell && speed * plan.time_step > 0.95 * plan.grid.cell);
-    assert!(plan.warnings.len() == 1 && plan.warnings[0].contains("at most 0.03"), "{:?}", plan.warnings);
-    let of_cell = plan.reasons.iter().find(|reason| reason.quantity == "collisions per cell").unwrap();
-    let closest = planned(|_, _| ()).unwrap();
-    assert!(plan.time_step > 2.0 * closest.time_step && plan.diameter == closest.diameter);
-    // Dense gas is limited by its collisions: two per particle are six in a cell, where blocks of 384 are densest.
-    let dense = cell(&|scene| scene.model.occupancy = Some(0.5));
-    let value = |reason: &Reason| reason.value.parse::<f64>().unwrap();
-    let most = dense.reasons.iter().find(|reason| reason.quantity == "collisions per cell").unwrap();
-    assert!(value(of_cell) < value(most) && near(1.168 * value(most), 6.0, 1e-2), "{} {}", of_cell.value, most.value);
-    // Thin gas has the mean free path.
-    let thin = cell(&|scene| scene.model.occupancy = Some(0.02));
-    assert!(near(thin.grid.cell, thin.mean_free_path, 1e-9) && thin.grid.cell > plan.grid.cell);
-    // But no more particles than one thread has time for.
-    let thinner = cell(&|scene| scene.model.occupancy = Some(0.001));
-    assert!(near(density * thinner.grid.cell.powi(3), 20.0, 1e-9) && thinner.mean_free_path > thinner.grid.cell);
-}
-
-/// Rigid spheres touch before their closest approach: larger cells; and the plan says what they do to the pressure.
-#[test]
-fn rigid_spheres_come_with_a_warning() {
-    let plan = planned(|scene, _| scene.model.method = Some(Method::HardSphere)).unwrap();
-    assert!(near(plan.occupancy, 0.01, 1e-9));
-    let reach = 3.0 * kinetics::thermal_square(980.0, 0.0280134).sqrt() * plan.time_step;
-    assert!(plan.grid.cell >= plan.diameter + reach && plan.grid.cell < 1.001 * (plan.diameter + reach));
-    assert!(plan.warnings.iter().any(|warning| warning.contains("press 4.1 % harder")), "{:?}", plan.warnings);
-}
-
-/// Each warning fires when it should; `the_tank_at_a_million` has none of them.
-#[test]
-fn warnings_fire() {
-    let warns = |part: &str, change: &dyn Fn(&mut Scene, &mut Measured)| {
-        let plan = planned(|scene, measured| change(scene, measured)).unwrap();
-        assert!(plan.warnings.iter().any(|warning| warning.contains(part)), "{part}: {:?}", plan.warnings);
-    };
-    warns("Knudsen", &|scene, _| scene.model.particles = Some(20_000));
-    let into_thin = |share: f64| {
-        planned(|scene, _| scene.chambers[1].pressure *= share).unwrap().warnings.iter().any(|w| w.contains("fronts"))
-    };
-    assert!(into_thin(1e-3) && !into_thin(0.6) && !into_thin(1.0));
-    warns("are few", &|scene, _| scene.model.particles = Some(900));
-    let gap = |length| Some(Passage { length, walls: [0, 1], middle: [0.1, 0.0, -0.02] });
-    let walled = |scene: &mut Scene| scene.walls = vec![wall("tank"), wall("plate")];
-    warns(
-        "the smallest passage, 2 mm between walls `tank` and `plate` near (100, 0, -20) mm, with",
-        &|scene, measured| {
-            walled(scene);
-            measured.smallest_gap = gap(2e-3);
-        },
-    );
-    warns("a modelled vent; let the walls overlap if they were meant to touch", &|scene, measured| {
-        walled(scene);
-        measured.smallest_gap = gap(2e-3);
-    });
-    warns("the smallest passage, 2 mm of opening `vent`, with", &|_, measured| measured.openings[0].length = 2e-3);
-    warns("the thinnest body, 0.0001 mm: thickness", &|_, measured| measured.thinnest_body = Some(1e-7));
-    warns(
-        "the narrowest gap, 0.0001 mm between walls `tank` and `plate` near (100, 0, -20) mm: thickness",
-        &|scene, measured| {
-            walled(scene);
-            measured.smallest_gap = gap(1e-7);
-        },
-    );
-    warns("occupancy", &|scene, _| scene.model.occupancy = Some(0.35));
-    warns("lost", &|scene, _| scene.model.time_step = Some(3e-6));
-    warns("wall hits", &|_, measured| measured.wall_area = 1e4);
-    warns("chamber `inner box` at the start: occupancy 0.", &|scene, _| {
-        scene.chambers[0].pressure = 1e6;
-        scene.model.diameter_cap = Some(DiameterCap::Off);
-    });
-    warns("lost", &|scene, _| {
-        scene.model.rounds = Some(1);
-        scene.model.time_step = Some(3e-7);
-    });
-    warns("fly", &|scene, _| {
-        scene.model.method = Some(Method::None);
-        scene.model.time_step = Some(3e-6);
-    });
-    for part in ["fly", "over collision time"] {
-        warns(part, &|scene, _| {
-            scene.model.method = Some(Method::Cell);
-            scene.model.time_step = Some(3e-5);
-        });
-    }
-    warns("a cell of", &|scene, measured| {
-        scene.model.method = Some(Method::Cell);
-        measured.openings[0].length = 2e-3;
-    });
-}
-
-#[test]
-fn what_cannot_be_planned_is_refused() {
-    use PlanError::*;
-    let refused = |change: &dyn Fn(&mut Scene, &mut Measured)| planned(|s, m| change(s, m)).unwrap_err();
-    let empty = refused(&|scene, _| scene.model.particles = Some(20));
-    let EmptyChamber { needed, .. } = &empty else { panic!("{empty}") };
-    let needed = *needed;
-    assert!(planned(|scene, _| scene.model.particles = Some(needed)).is_ok(), "the help's number must do");
-    assert!(matches!(refused(&|s, _| s.model.particles = Some(1 << 28)), TooManyParticles { .. }));
-    assert!(planned(|s, _| s.model.particles = Some((1 << 28) - 10)).is_ok());
-    assert!(matches!(refused(&|s, _| s.model.diameter = Some(1e-6)), Grid(_)));
-    let refined = |s: &mut Scene, _: &mut Measured| (s.model.diameter, s.model.time_step) = (Some(1e-4), Some(1e-8));
-    assert!(matches!(refused(&refined), TooManyCells { .. }));
-    assert_eq!(refused(&|s, _| s.model.rounds = Some(0)), Rounds { found: 0, limit: 8 });
-    assert!(matches!(refused(&|s, _| s.model.collision_number = Some(1.0)), CollisionNumber { .. }));
-    assert!(matches!(refused(&|_, m| m.chamber_volumes[0] = 0.0), NoVolume { .. }));
-    assert_eq!(refused(&|_, m| m.chamber_volumes.truncate(1)), Volumes { volumes: 1, chambers: 2 });
-    assert!(matches!(refused(&|s, _| s.gases = vec![s.gases[0].clone(); 17]), TooManyGases { .. }));
-    let nothing = |s: &mut Scene, m: &mut Measured| {
-        s.chambers.clear();
-        s.orifices.clear();
-        m.chamber_volumes.clear();
-    };
-    assert_eq!(refused(&nothing), NoGas);
-    let late = |s: &mut Scene, _: &mut Measured| s.model.switch = Some(Switch::At(s.end_time));
-    assert!(matches!(refused(&late), SwitchTime { .. }));
-    let unseen = |s: &mut Scene, _: &mut Measured| {
-        (s.probes, s.surfaces) = (Vec::new(), Vec::new());
-        s.model.switch = Some(Switch::WhenUniform { lasting: 1e-3 });
-    };
-    assert_eq!(refused(&unseen), SwitchUnseen);
-    let long = |s: &mut Scene, _: &mut Measured| s.model.switch = Some(Switch::WhenUniform { lasting: s.end_time });
-    assert!(matches!(refused(&long), SwitchTime { .. }));
-    let rigid = |s: &mut Scene, _: &mut Measured| {
-        s.model.method = Some(Method::HardSphere);
-        s.surfaces = vec![Surface { name: "wall".into(), wall: 0, face: None }];
-        s.model.switch = Some(Switch::WhenUniform { lasting: 1e-3 });
-    };
-    assert_eq!(refused(&rigid), SwitchOfRigidSpheres);
-}
-
 /// A switch is told with when.
 #[test]
 fn a_switch_is_among_the_reasons() {
@@ -385,51 +227,4 @@ fn equal_scenes_give_equal_text() {
     let free = planned(|scene, _| scene.model.method = Some(Method::None)).unwrap();
     assert!(free.to_toml().unwrap().contains("mean_free_path = inf"));
     assert_ne!(free.render(), text);
-}
-
-/// The diameter is that of the mean density, and falls where gas is denser: from 1.5 times on, unless the scene says where.
-#[test]
-fn the_diameter_is_capped_where_gas_is_dense() {
-    let cap = |change: &dyn Fn(&mut Scene)| planned(|scene, _| change(scene));
-    let diameter_in = |plan: &Plan, density| kinetics::capped_diameter(plan.diameter, plan.diameter_cap, density);
-    let plan = cap(&|_| {}).unwrap();
-    let mean = 6.0 * plan.occupancy / (std::f64::consts::PI * plan.diameter.powi(3));
-    assert_eq!(plan.diameter_cap, Some(0.7));
-    assert_eq!(diameter_in(&plan, 1.49 * mean), plan.diameter);
-    assert!(near(diameter_in(&plan, 8.0 * 1.5 * mean), 0.5 * plan.diameter, 1e-3));
-    assert!(near(kinetics::occupancy(20.0 * mean, diameter_in(&plan, 20.0 * mean)), 0.18, 3e-3));
-    assert!(plan.reasons.iter().any(|reason| reason.quantity == "diameter at most"));
-    assert!(!plan.left_out.iter().any(|what| what.contains("local density")));
-    // What is asked for is kept at the mean density.
-    let large = cap(&|scene| scene.model.occupancy = Some(0.2)).unwrap();
-    let mean = 6.0 * large.occupancy / (std::f64::consts::PI * large.diameter.powi(3));
-    assert!(near(diameter_in(&large, 1.4 * mean) / large.diameter, 1.0, 1e-12), "{:?}", large.diameter_cap);
-    // No denser gas has more than the occupancy that is warned of, unless the mean has.
-    let large = cap(&|scene| scene.model.occupancy = Some(0.3)).unwrap();
-    let mean = 6.0 * large.occupancy / (std::f64::consts::PI * large.diameter.powi(3));
-    assert!(near(diameter_in(&large, mean) / large.diameter, 1.0, 1e-12), "{:?}", large.diameter_cap);
-    assert!(near(kinetics::occupancy(8.0 * mean, diameter_in(&large, 8.0 * mean)), 0.3, 1e-9));
-    let asked = |spacings| cap(&|scene| scene.model.diameter_cap = Some(DiameterCap::Spacings(spacings)));
-    assert_eq!(asked(0.62).unwrap().diameter_cap, Some(0.62));
-    assert!(matches!(asked(0.6), Err(PlanError::CapOfAll { asked: 0.6, spacings }) if near(spacings, 0.612, 1e-3)));
-    // None where it is not wanted, of no use, or the method has none.
-    for none in [
-        cap(&|scene| scene.model.diameter_cap = Some(DiameterCap::Off)),
-        cap(&|scene| scene.model.method = Some(Method::Cell)),
-        planned(|scene, measured| {
-            scene.orifices.clear();
-            scene.chambers[0].region = None;
-            scene.openings.clear();
-            measured.openings.clear();
-            scene.chambers.truncate(1);
-            measured.chamber_volumes.truncate(1);
-        }),
-    ] {
-        assert_eq!(none.unwrap().diameter_cap, None);
-    }
-    let rigid = cap(&|scene| {
-        scene.model.method = Some(Method::HardSphere);
-        scene.model.diameter_cap = Some(DiameterCap::Spacings(0.5));
-    });
-    assert!(matches!(rigid, Err(PlanError::CapOf { method: "hard-sphere" })));
 }

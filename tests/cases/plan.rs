@@ -55,7 +55,8 @@ fn a_wish_keeps_the_limits_that_plans_warn_of() {
     let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let folder = tempfile::tempdir().unwrap();
     let told = |name: &str, model: &str, wish: [&str; 2]| {
-        let text = std::fs::read_to_string(scenes.join(name)).unwrap().replace("[model]", &format!("[model]\n{model}"));
+        let text =
+            std::fs::read_to_string(scenes.join(name)).unwrap().replace("method = \"closest-approach\"\n", model);
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         let (code, out, err) = outcome(&[&["plan", path.to_str().unwrap()], &wish[..]].concat());

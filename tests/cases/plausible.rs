@@ -134,7 +134,7 @@ const SLIPS: &[Slip] = &[
     ),
     slip(
         TANK,
-        ["particles = 2000", "particles = 2000\ntime_step = 1e-9"],
+        ["particles = 2000", "particles = 2000\ntime_step = 1e-9\nmethod = \"closest-approach\""],
         &["the model: time_step 1e-9 s is", "times shorter than the 1.", "4,000,000 steps in place of", "(line 50)"],
     ),
     slip(

@@ -277,11 +277,21 @@ fn a_run_that_cannot_be_trusted_is_4_and_leaves_its_history() {
     assert!(out.join("snapshots/particles_000001.vtu").exists());
 }
 
+/// A scene of the package of which the plan decides the method.
+fn without_method(folder: &TempDir, name: &str) -> String {
+    let text = fs::read_to_string(Path::new(ROOT).join("scenes").join(name)).unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, text.replace("method = \"closest-approach\"\n", "")).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
 /// A wish of the command line chooses another plan for another accuracy, with reasons, and sets `particles` of the file aside;
 /// a time that is too short and a speed that nothing asks for are refused.
 #[test]
 fn a_wish_chooses_the_plan() {
-    let planned = |accuracy: &str| printed(&["plan", "scenes/tank.toml", "--accuracy", accuracy]);
+    let folder = TempDir::new().unwrap();
+    let tank = without_method(&folder, "tank.toml");
+    let planned = |accuracy: &str| printed(&["plan", &tank, "--accuracy", accuracy]);
     let (coarse, fine) = (planned("0.05"), planned("0.01"));
     let particles = |text: &str| -> u64 {
         let line = text.lines().find(|line| line.starts_with("particles counted")).unwrap();
@@ -295,13 +305,13 @@ fn a_wish_chooses_the_plan() {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }
-    let kept = printed(&["plan", "scenes/tank.toml", "--accuracy", "0.2", "--particles", "30000"]);
+    let kept = printed(&["plan", &tank, "--accuracy", "0.2", "--particles", "30000"]);
     assert!(particles(&kept).abs_diff(30_000) < 3 && !kept.contains("set aside"), "{kept}");
-    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--accuracy", "0.0003"]);
+    let (code, _, err) = outcome(&["plan", &tank, "--accuracy", "0.0003"]);
     assert!(code == 2 && err.contains("no plan is predicted to be within 0.0003"), "{err}");
-    let (code, _, err) = outcome(&["plan", "scenes/tank.toml", "--device-rate", "5"]);
+    let (code, _, err) = outcome(&["plan", &tank, "--device-rate", "5"]);
     assert!(code == 2 && err.contains("--device-rate without a wish"), "{err}");
-    assert_eq!(outcome(&["plan", "scenes/tank.toml", "--accuracy", "2"]).0, 2);
+    assert_eq!(outcome(&["plan", &tank, "--accuracy", "2"]).0, 2);
 }
 
 /// What a wish chose is in the run's scene: repeated, stopped and resumed, or refined, it is a run like any other.
@@ -313,7 +323,8 @@ fn a_chosen_run_can_be_repeated_resumed_and_refined() {
         let (code, _, err) = outcome(&[arguments, &[out.to_str().unwrap()]].concat());
         assert_eq!(code, 0, "{arguments:?}: {err}");
     };
-    let wish = ["run", "scenes/corner.toml", "--particle-budget", "3000"];
+    let corner = without_method(&folder, "corner.toml");
+    let wish = ["run", &corner, "--particle-budget", "3000"];
     done(&[&wish[..], &["--steps", "128", "--out"]].concat(), &wished);
     let text = |folder: &Path, name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let scene = text(&wished, "scene.toml");

@@ -24,7 +24,7 @@ fn a_plan_that_warns_is_2_with_strict() {
 const FILLING: &str = r#"
     end_time = 0.0044
     gas = [{ name = "nitrogen", molar_mass = 0.028, gamma = 1.4 }]
-    model = { particles = 3000 }
+    model = { particles = 3000, method = "closest-approach" }
     output = { rows = 1000, snapshots = 0 }
     wall = [{ name = "box", shape = "box", min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.1], gas = "inside" }]
     probe = [{ name = "far", region = { box = { min = [0.06, 0.03, 0.032], max = [0.09, 0.07, 0.066] } } }]

@@ -112,7 +112,7 @@ fn an_emulated_weak_sweep_holds_the_particles_of_a_device() {
 fn half_turn_can_be_swept_and_emulated() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("corner.toml");
-    let text = fs::read_to_string("scenes/corner.toml").unwrap().replace("[model]", "[model]\nmethod = \"half-turn\"");
+    let text = fs::read_to_string("scenes/corner.toml").unwrap().replace("\"closest-approach\"", "\"half-turn\"");
     fs::write(&scene, text).unwrap();
     let out = folder.path().join("out");
     let basic = ["sweep", scene.to_str().unwrap(), "--particles", "8000", "--out", out.to_str().unwrap()];

@@ -36,7 +36,7 @@ pub fn burst() -> Model {
          [[chamber]]\nname = \"all\"\npressure = 2e4\ntemperature = 300.0\ngas = \"air\"\n\
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.004\n\
          gas = \"air\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.7], [2e-3, 0.7]]\n\
-         [model]\nparticles = 3000\n[output]\nrows = 5\nsnapshots = 0\n",
+         [model]\nmethod = \"closest-approach\"\nparticles = 3000\n[output]\nrows = 5\nsnapshots = 0\n",
     )
 }
 
@@ -64,7 +64,7 @@ pub fn curves() -> Model {
          [[chamber]]\nname = \"all\"\npressure = 4e4\ntemperature = 300.0\ngas = { air = 0.7, helium = 0.3 }\n\
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.004\n\
          gas = { helium = 0.25, \"carbon dioxide\" = 0.75 }\ntemperature = 700.0\nmass_flow = [[0.0, 0.3], [2e-3, 0.3]]\n\
-         [model]\nparticles = 2000\n[output]\nrows = 5\nsnapshots = 0\n",
+         [model]\nmethod = \"closest-approach\"\nparticles = 2000\n[output]\nrows = 5\nsnapshots = 0\n",
     )
 }
 
@@ -119,6 +119,7 @@ pub fn thin() -> Model {
 /// Gas flows in and leaves through a vent that opens on the way and through leaking walls.
 pub fn venting() -> Model {
     let mut scene = published("vent.toml", 1000, 0.004).scene;
+    scene.model.method = Some(Method::ClosestApproach);
     scene.vents[0].opening_pressure = 1e3;
     scene.vents[0].area = Some(0.004);
     scene.output.rows = 10;
@@ -128,7 +129,7 @@ pub fn venting() -> Model {
 /// The same in free flight, where those that have left leave their places empty.
 pub fn venting_freely() -> Model {
     let mut scene = venting().scene;
-    scene.model.method = Some(corpuscle::scene::Method::None);
+    scene.model.method = Some(Method::None);
     Model::new(scene).expect("a model")
 }
 
@@ -174,7 +175,7 @@ pub fn switching() -> Model {
          [[vent]]\nname = \"pores\"\nwall = \"box\"\ndischarge = 0.01\nexternal_pressure = 1e5\n\
          [[surface]]\nname = \"behind\"\nwall = \"box\"\nface = \"-x\"\n[[probe]]\nname = \"corner\"\n\
          region = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.04, 0.04] } }\n\
-         [model]\nparticles = 2000\nswitch = \"when-uniform\"\nuniform_for = 5e-4\n[output]\nrows = 40\nsnapshots = 0\n",
+         [model]\nmethod = \"closest-approach\"\nparticles = 2000\nswitch = \"when-uniform\"\nuniform_for = 5e-4\n[output]\nrows = 40\nsnapshots = 0\n",
     )
 }
 

@@ -81,7 +81,7 @@ pub fn tank() -> &'static Cut {
 /// The same by the method `half-turn`, whose steps are longer.
 pub fn half_turn_tank() -> &'static Cut {
     static CUT: OnceLock<Cut> = OnceLock::new();
-    CUT.get_or_init(|| cut(&tank_text(4000).replace("[model]", "[model]\nmethod = \"half-turn\""), 128))
+    CUT.get_or_init(|| cut(&tank_text(4000).replace("\"closest-approach\"", "\"half-turn\""), 128))
 }
 
 /// Before the first particle has entered.
@@ -137,6 +137,7 @@ name = "walls"
 wall = "box"
 
 [model]
+method = "closest-approach"
 particles = 4000
 
 [output]

@@ -75,7 +75,7 @@ fn a_light_gas_beside_a_hot_wall_is_tallied() {
          [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n\
          temperature = 900.0\n\
          [[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 200.0\ngas = { nitrogen = 0.5, hydrogen = 0.5 }\n\
-         [model]\nparticles = 2000\n[output]\nrows = 1\nsnapshots = 0\n";
+         [model]\nmethod = \"closest-approach\"\nparticles = 2000\n[output]\nrows = 1\nsnapshots = 0\n";
     let model = model(text);
     let run = run(&model, Options::default());
     assert!(run.outcome.audit.verdict(&AuditLimits::default()).is_empty());

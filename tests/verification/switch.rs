@@ -53,7 +53,7 @@ fn kept(run: &Run) -> &corpuscle::simulation::Continued {
 
 #[test]
 fn at_a_time_the_control_volume_takes_over_what_is_there() {
-    let switched = model(&blow_down("switch = 1e-3"));
+    let switched = model(&blow_down("method = \"closest-approach\"\nswitch = 1e-3"));
     let found = run(&switched, Options::default());
     let continued = kept(&found);
     let time = found.outcome.time;
@@ -117,7 +117,7 @@ fn it_switches_once_pressures_are_uniform() {
          jet = { mach = 5.0, cone_angle = 10.0 }\ngas = \"nitrogen\"\ntemperature = 300.0\nmass_flow = [[0.0, 0.4], [2e-3, 0.4]]\n\
          [[surface]]\nname = \"behind the jet\"\nwall = \"box\"\nface = \"-x\"\n[[probe]]\nname = \"corner\"\n\
          region = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.03, 0.03] } }\n\
-         [model]\nparticles = 6000\nswitch = \"when-uniform\"\nuniform_for = 1e-3\n[output]\nrows = 80\nsnapshots = 0\n";
+         [model]\nmethod = \"closest-approach\"\nparticles = 6000\nswitch = \"when-uniform\"\nuniform_for = 1e-3\n[output]\nrows = 80\nsnapshots = 0\n";
     let found = run(&model(text), Options::default());
     let continued = kept(&found);
     println!("{:.4} ms: {}", 1e3 * found.outcome.time, continued.why);

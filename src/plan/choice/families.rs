@@ -1,9 +1,9 @@
 //! The ways to run a scene that the plan chooses from: methods, occupancies, rounds (method.md, "What the plan decides, and why"),
 //! lengths of the step.
 
-use super::continuum;
 use crate::gas::kinetics;
 use crate::plan::amounts::Amounts;
+use crate::plan::continuum;
 use crate::plan::resolution::default_occupancy;
 use crate::plan::{Measured, PlanError, Quantity, Reason, forecast::Forecaster, limit};
 use crate::scene::{DiameterCap, Method, Scene};

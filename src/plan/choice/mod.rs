@@ -6,7 +6,6 @@
 //! request, made as any other's, is the plan of the run.
 
 mod chooser;
-mod continuum;
 mod cost;
 mod families;
 mod halvings;
@@ -19,8 +18,7 @@ mod words;
 use super::amounts::{Amounts, highest_temperature};
 use super::forecast::{Forecaster, Outlook};
 use super::heat::species;
-use super::population::openings;
-use super::resolution::{COLLISION_CELL, Extreme, Resolution};
+use super::resolution::{Extreme, Resolution};
 use super::{Measured, PlanError, Quantity};
 use crate::gas::kinetics;
 use crate::scene::{Method, Scene};

@@ -166,10 +166,10 @@ mod tests {
     #[test]
     fn without_a_wish_the_plan_decides() {
         let plan = model_with("tube", SOD.scene().unwrap(), &Setting::default(), None).unwrap().plan;
-        assert_eq!(plan.method, Method::ClosestApproach);
+        assert_eq!(plan.method, Method::HalfTurn);
         assert!(plan.collision_limit.is_finite());
         let mut wishless = SOD.scene().unwrap();
-        wishless.model.particles = None;
+        (wishless.model.method, wishless.model.particles) = (None, None);
         assert_eq!(plan, model_from("tube", wishless).unwrap().plan);
     }
 }

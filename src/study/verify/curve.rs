@@ -45,7 +45,7 @@ pub fn tank(particles: u64) -> Result<Model, StudyError> {
          [[chamber]]\nname = \"tank\"\npressure = 1e5\ntemperature = {START}\ngas = \"curved\"\n\
          [[orifice]]\nname = \"inlet\"\nposition = [0.0, 0.05, 0.05]\ndirection = [1.0, 0.0, 0.0]\narea = 0.002\n\
          gas = \"curved\"\ntemperature = {INFLOW}\nmass_flow = [[0.0, 0.0], [0.002, {flow}], [0.006, {flow}], [0.008, 0.0]]\n\
-         [model]\nparticles = {particles}\n[output]\nrows = 60\nsnapshots = 0\n"
+         [model]\nmethod = \"closest-approach\"\nparticles = {particles}\n[output]\nrows = 60\nsnapshots = 0\n"
     );
     model_of("filling-curve", &text)
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::gpu::Device;
+use crate::scene::Method;
 use crate::simulation::Options;
 use crate::study::StudyError;
 use crate::study::pareto::{Setting, model_with};
@@ -50,7 +51,9 @@ pub fn wave(device: &Device, setting: &Setting, faster: f64) -> Result<(f64, f64
 pub(super) fn sound(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     // One per cent is allowed; a third of it takes 200,000 particles, and fewer know less.
     let (particles, tolerance) = if effort == Effort::Quick { (24_000, 0.03) } else { (240_000, 0.01) };
-    let mut checks = vec![frequency(device, &Setting { particles: Some(particles), ..Setting::default() }, tolerance)?];
+    let method = Some(Method::ClosestApproach);
+    let setting = Setting { method, particles: Some(particles), ..Setting::default() };
+    let mut checks = vec![frequency(device, &setting, tolerance)?];
     checks.extend(sounds(device, effort)?);
     Ok(Findings { notes: vec![NOTE.into()], ..checks.into() })
 }

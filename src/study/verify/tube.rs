@@ -70,7 +70,7 @@ impl Tube {
              gas = \"inside\"\n\
              [[chamber]]\nname = \"left\"\npressure = {PRESSURE}\ntemperature = {TEMPERATURE}\ngas = \"gas\"\n\
              region = {{ box = {{ min = [0.0, 0.0, 0.0], max = [{half}, {width}, {width}] }} }}\n{right}\
-             [model]\nparticles = {particles}\n[output]\nrows = 4\nsnapshots = {snapshots}\n",
+             [model]\nmethod = \"closest-approach\"\nparticles = {particles}\n[output]\nrows = 4\nsnapshots = {snapshots}\n",
             end = self.end * LENGTH / self.speed(),
             half = 0.5 * LENGTH,
         );

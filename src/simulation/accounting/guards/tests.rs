@@ -6,7 +6,9 @@ use std::path::Path;
 
 fn model() -> Model {
     let text = include_str!("../../../../scenes/vent.toml");
-    Model::new(crate::scene::parse(text, "vent.toml", Path::new("")).unwrap()).unwrap()
+    let mut scene = crate::scene::parse(text, "vent.toml", Path::new("")).unwrap();
+    scene.model.method = Some(Method::ClosestApproach);
+    Model::new(scene).unwrap()
 }
 
 fn tallies(lost: u32, sampled: u32, blocks: Vec<BlockSum>) -> Tallies {
