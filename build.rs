@@ -10,17 +10,20 @@
 //! gets the binding number of the buffer NAME from there; `//! binds: BUFFER as NAME` says that a kernel (or what uses a shared file)
 //! has another buffer by that name. `//! phase: choose lost` names the phases of the step in which a kernel is dispatched.
 //!
-//! What the program says of its own version is found in `build/version.rs`.
+//! The shaders of pictures are in `shaders/render/`, and found by `build/render.rs`. What the program says of its own version is found in
+//! `build/version.rs`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs, process};
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 #[path = "src/subdomain/registry.rs"]
 #[allow(dead_code)] // Most of it is for the host.
 mod registry;
+#[path = "build/render.rs"]
+pub mod render;
 #[path = "build/version.rs"]
 mod version;
 
@@ -31,12 +34,17 @@ pub struct Registry<'a> {
     pub buffers: &'a [&'a str],
     /// The uniform of which each dispatch sees a part of its own.
     pub stepped: &'a str,
+    /// The file that all of this stands in.
+    pub path: &'a str,
 }
 
 /// That of the package.
-pub const REGISTRY: Registry<'static> =
-    Registry { numbers: &registry::NUMBERS, buffers: registry::BUFFERS, stepped: registry::STEPPED };
-const REGISTRY_PATH: &str = "src/subdomain/registry.rs";
+pub const REGISTRY: Registry<'static> = Registry {
+    numbers: &registry::NUMBERS,
+    buffers: registry::BUFFERS,
+    stepped: registry::STEPPED,
+    path: "src/subdomain/registry.rs",
+};
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
 pub const CAPABILITIES: Capabilities = Capabilities::empty();
@@ -86,18 +94,27 @@ fn main() {
     for path in version::SOURCES {
         println!("cargo::rerun-if-changed={path}");
     }
-    let written = kernels(Path::new("shaders"), REGISTRY).and_then(|(kernels, unused)| {
-        for path in unused {
-            println!("cargo::warning={} is used by no kernel", path.display());
-        }
-        let out = env::var_os("OUT_DIR").ok_or("cargo did not set OUT_DIR")?;
-        let path = Path::new(&out).join("shaders.rs");
-        fs::write(&path, table(&kernels)).map_err(|error| format!("{}: {error}", path.display()))
-    });
-    if let Err(message) = written.and_then(|()| version::tell()) {
+    if let Err(message) = write_tables().and_then(|()| version::tell()) {
         eprintln!("{message}");
         process::exit(1);
     }
+}
+
+fn write_tables() -> Result<(), String> {
+    let out = env::var_os("OUT_DIR").ok_or("cargo did not set OUT_DIR")?;
+    let write = |name: &str, text: String| {
+        let path = Path::new(&out).join(name);
+        fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    let (kernels, mut unused) = kernels(Path::new("shaders"), REGISTRY)?;
+    write("shaders.rs", table(&kernels))?;
+    let (shaders, unused_there) = render::shaders(Path::new("shaders/render"))?;
+    write("render_shaders.rs", render::table(&shaders))?;
+    unused.extend(unused_there);
+    for path in unused {
+        println!("cargo::warning={} is used by no shader", path.display());
+    }
+    Ok(())
 }
 
 /// The validated kernels of a folder by name, and the shared files that none of them uses. A missing folder has no kernels.
@@ -185,7 +202,7 @@ impl Kernel {
             bindings: Vec::new(),
             overrides: Vec::new(),
             aliases: Vec::new(),
-            files_of_source: vec![SourceFile { path: PathBuf::from(REGISTRY_PATH), start: 0 }],
+            files_of_source: vec![SourceFile { path: PathBuf::from(files.registry.path), start: 0 }],
         };
         for (name, value) in files.registry.numbers.iter().copied().flatten() {
             kernel.source += &format!("const {name}: u32 = {value}u;\n");
@@ -224,13 +241,14 @@ impl Kernel {
                 let buffer = self.aliases.iter().find(|(_, known)| known == name).map_or(name, |(buffer, _)| buffer);
                 let Some(binding) = registry.buffers.iter().position(|known| *known == buffer) else {
                     let (path, line) = (path.display(), number + 1);
-                    return Err(format!("{path}:{line}: error: no buffer {buffer} in {REGISTRY_PATH}"));
+                    return Err(format!("{path}:{line}: error: no buffer {buffer} in {}", registry.path));
                 };
                 self.source += &format!("@group(0) @binding({binding}) ");
             } else if line.contains("@binding(") {
                 let (path, line) = (path.display(), number + 1);
                 return Err(format!(
-                    "{path}:{line}: error: binding numbers are those of {REGISTRY_PATH}: leave it out"
+                    "{path}:{line}: error: binding numbers are those of {}: leave it out",
+                    registry.path
                 ));
             }
             self.source += line;
@@ -240,15 +258,13 @@ impl Kernel {
         Ok(())
     }
 
-    fn validate(&mut self, capabilities: Capabilities, registry: Registry<'_>) -> Result<(), String> {
+    /// The parsed and validated source.
+    fn checked(&self, capabilities: Capabilities) -> Result<(naga::Module, ModuleInfo), String> {
         let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
             let labels = error.labels().map(|(span, label)| (span, label.to_owned())).collect();
             let notes = error.notes().map(str::to_owned).collect();
             self.report(error.message(), labels, notes)
         })?;
-        let [entry_point] = module.entry_points.as_slice() else {
-            return Err(self.report("a kernel file needs one entry point", Vec::new(), Vec::new()));
-        };
         let mut validator = Validator::new(ValidationFlags::all(), capabilities);
         let info = validator.validate(&module).map_err(|error| {
             let labels = error.spans().cloned().collect();
@@ -260,6 +276,14 @@ impl Kernel {
             }
             self.report(&error.as_inner().to_string(), labels, causes)
         })?;
+        Ok((module, info))
+    }
+
+    fn validate(&mut self, capabilities: Capabilities, registry: Registry<'_>) -> Result<(), String> {
+        let (module, info) = self.checked(capabilities)?;
+        let [entry_point] = module.entry_points.as_slice() else {
+            return Err(self.report("a kernel file needs one entry point", Vec::new(), Vec::new()));
+        };
         self.entry_point = entry_point.name.clone();
         for (handle, global) in module.global_variables.iter() {
             // A shared file may declare what this kernel does not touch.

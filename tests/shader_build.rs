@@ -7,8 +7,12 @@ mod build;
 
 use std::path::Path;
 
-const REGISTRY: build::Registry<'static> =
-    build::Registry { numbers: &[&[("ONE", 1)]], buffers: &["values", "more"], stepped: "more" };
+const REGISTRY: build::Registry<'static> = build::Registry {
+    numbers: &[&[("ONE", 1)]],
+    buffers: &["values", "more"],
+    stepped: "more",
+    path: "src/subdomain/registry.rs",
+};
 
 const KERNEL: &str = "//! Doubles a value.\n//! uses: double.wgsl\n//! phase: advect\n\
     var<storage, read_write> values: array<u32>;\n\
@@ -191,4 +195,33 @@ fn the_kernels_of_the_benches_are_valid() {
         found += module.entry_points.len();
     }
     assert!(found >= 6);
+}
+
+const PICTURE: &str = "//! Draws triangles.\n//! uses: view.wgsl\n//! binds: items as corners\n\
+    var<storage, read> corners: array<vec4<f32>>;\n\
+    @vertex\nfn vertex(@builtin(vertex_index) k: u32) -> @builtin(position) vec4<f32> {\n    return view * corners[k];\n}\n\
+    @fragment\nfn fragment() -> @location(0) vec4<f32> {\n    return vec4<f32>(1.0);\n}\n";
+const VIEW: &str = "var<uniform> view: mat4x4<f32>;\n";
+
+/// Shaders of pictures are joined and checked like kernels, and have the two entry points.
+#[test]
+fn shaders_of_pictures_are_checked() {
+    let found = |text: &str| {
+        let dir = folder(&[("surface.wgsl", text), ("shared/view.wgsl", VIEW), ("shared/idle.wgsl", VIEW)]);
+        let place = dir.path().display().to_string();
+        build::render::shaders(dir.path())
+            .map(|(shaders, unused)| (shaders, unused.len()))
+            .map_err(|message| message.replace(&place, "render"))
+    };
+    let (shaders, unused) = found(PICTURE).unwrap();
+    assert_eq!((shaders.len(), shaders[0].0.as_str(), unused), (1, "surface", 1));
+    assert!(shaders[0].1.contains("@group(0) @binding(0) var<uniform> view"));
+    assert!(shaders[0].1.contains("@group(0) @binding(1) var<storage, read> corners"));
+    assert!(build::render::table(&shaders).contains("RenderSource { name: \"surface\", source: "));
+    let unknown = found(&PICTURE.replace("view * corners", "views * corners")).unwrap_err();
+    assert!(unknown.contains("render/surface.wgsl:7:12: unknown identifier"), "{unknown}");
+    let alone = found(&PICTURE.replace("fn fragment", "fn paint")).unwrap_err();
+    assert!(alone.contains("needs an @fragment fn fragment"), "{alone}");
+    let unbound = found(&PICTURE.replace("items as corners", "things as corners")).unwrap_err();
+    assert!(unbound.contains("no buffer things in build/render.rs"), "{unbound}");
 }

@@ -1,6 +1,7 @@
 //! The command line as typed. Help, completions and man pages all come from these types.
 
 mod counts;
+mod pictures;
 mod runs;
 mod studies;
 
@@ -10,6 +11,7 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use runs::EXIT_CODES;
 
+pub use pictures::RenderArguments;
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,
@@ -92,6 +94,8 @@ pub enum Verb {
     Stability(StabilityArguments),
     /// Measure what a step costs on this device, phase by phase: time, bytes, share of what it can do
     Bench(BenchArguments),
+    /// Draw a run's snapshot, or a mesh, as a PNG picture
+    Render(RenderArguments),
     /// Print what a run would model, and why; opens no device
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
@@ -118,6 +122,7 @@ impl Verb {
             Verb::Pareto(_) => Some("pareto"),
             Verb::Stability(_) => Some("stability"),
             Verb::Bench(_) => Some("bench"),
+            Verb::Render(_) => Some("render"),
             Verb::Run(_)
             | Verb::Resume(_)
             | Verb::Plan(_)

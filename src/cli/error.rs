@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 
 use crate::gpu::GpuError;
+use crate::output::picture::PictureError;
 use crate::output::{CheckpointError, OutputError};
 use crate::ranks::RankError;
 use crate::scene::{Lines, SceneError};
@@ -68,6 +69,15 @@ pub enum CliError {
     #[error("{}: this is the folder of the run to be refined", path.display())]
     #[diagnostic(help("name another with --out: the refined run is a run of its own"))]
     RefinedOntoItself { path: PathBuf },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Picture(PictureError),
+    #[error("{}: there is no such folder or file", path.display())]
+    #[diagnostic(help("name the folder of a run, as it was given as --out, or a mesh (OBJ, STL)"))]
+    NoSubject { path: PathBuf },
+    #[error("{option} with {}: it is for pictures of runs, and this is a file", path.display())]
+    #[diagnostic(help("leave it out, or name the folder of a run"))]
+    OptionOfRuns { option: &'static str, path: PathBuf },
     #[error("--steps {asked}: the run has done {done} steps already")]
     #[diagnostic(help("--steps counts from the start of the run; leave it out to go on to the end of the scene"))]
     StepsDone { asked: u64, done: u64 },
@@ -179,6 +189,7 @@ impl CliError {
             CliError::Study(error) => study_code(error),
             CliError::Gpu(_)
             | CliError::Rank(_)
+            | CliError::Picture(PictureError::Gpu(_))
             | CliError::Simulation(
                 SimulationError::Gpu(_)
                 | SimulationError::Rank(_)
@@ -235,6 +246,9 @@ impl CliError {
             | CliError::RepeatedSwitch
             | CliError::NothingToBench
             | CliError::SeedsBeyond { .. }
+            | CliError::Picture(_)
+            | CliError::NoSubject { .. }
+            | CliError::OptionOfRuns { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }

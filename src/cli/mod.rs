@@ -16,6 +16,7 @@ mod pareto;
 mod plan;
 mod reference;
 mod refine;
+mod render;
 mod resume;
 mod run;
 mod schema;
@@ -74,6 +75,7 @@ fn perform(arguments: Arguments) -> Result<u8, CliError> {
         Verb::Refine(raw) => refine::refine(raw),
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Bench(raw) => bench::bench(raw),
+        Verb::Render(raw) => render::render(raw),
         Verb::Plan(raw) => plan::plan(raw),
         Verb::Verify(raw) => verify::verify(raw),
         Verb::Pareto(raw) => pareto::pareto(raw),

@@ -40,6 +40,7 @@ pub use closed::check_closed;
 pub use error::{GeometryError, Places};
 pub use gaps::{Narrowest, Passage};
 pub use grid::{Grid, GridError};
+pub use mesh_file::read_surface;
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};
 pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, MovingWalls, TriangleGrid};

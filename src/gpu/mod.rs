@@ -1,6 +1,7 @@
-//! wgpu and nothing else: adapters, devices, buffers, kernels, timers, readback. Knows no particles, and no shader by name.
+//! wgpu and nothing else: adapters, devices, buffers, kernels, timers, readback, pictures. Knows no particles, and no shader by name.
 
 mod buffer;
+mod canvas;
 mod device;
 mod kernel;
 mod operations;
@@ -10,11 +11,12 @@ mod source;
 mod timer;
 
 pub use buffer::Readback;
+pub use canvas::{Batch, Drawn, Layer, Painter, draw};
 pub use device::{AdapterDescription, Device, WORKGROUP_DIVISOR, adapters};
 pub use kernel::{BoundKernel, Kernel, Pass, fold};
 pub use operations::{MARK, Operations, Stretch};
 pub use runtime_constants::RuntimeConstants;
-pub use source::{Access, Binding, Constants, KernelSource, KernelVariant};
+pub use source::{Access, Binding, Constants, KernelSource, KernelVariant, RenderSource};
 pub use timer::{PhaseTimer, Recording};
 
 /// Trouble with the device: exit code 3.
@@ -36,6 +38,10 @@ pub enum GpuError {
     Memory { name: &'static str, bytes: u64, reason: String },
     #[error("the kernel `{kernel}` cannot be used on this device: {reason}")]
     Kernel { kernel: String, reason: String },
+    #[error("the shader `{shader}` cannot be used on this device: {reason}")]
+    Shader { shader: String, reason: String },
+    #[error("a picture is drawn at {width} x {height}, twice its size; this device allows 1 to {most} each way")]
+    Texture { width: u32, height: u32, most: u32 },
     #[error("the device failed: {reason}")]
     Trouble { reason: String },
 }

@@ -81,5 +81,12 @@ impl KernelVariant {
     }
 }
 
+/// A shader of pictures, with the shared files it uses: a file of `shaders/render/`, with entry points `vertex` and `fragment`.
+#[derive(Debug)]
+pub struct RenderSource {
+    pub name: &'static str,
+    pub source: &'static str,
+}
+
 /// Values of override constants by name; a kernel takes those it declares.
 pub type Constants = [(&'static str, f64)];

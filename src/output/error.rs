@@ -77,6 +77,8 @@ pub enum OutputError {
         path = path.display()
     )]
     SnapshotLength { path: PathBuf, found: u64, expected: u64 },
+    #[error("{path} is not as a run writes it: {problem}", path = path.display())]
+    Vtk { path: PathBuf, problem: String },
     #[error("the history has two columns called {header:?}")]
     DuplicateColumn { header: String },
     #[error("a history row has {found} values, the table has {expected} columns")]

@@ -1,7 +1,7 @@
 //! What a run leaves behind: its folder, the history table, snapshots, checkpoints, charts, the record of the
-//! environment, the closing audit and phase table, and the progress display.
+//! environment, the closing audit and phase table, the progress display, and pictures.
 //!
-//! Everything here takes plain data in SI units and knows neither devices nor the time loop. Numbers are
+//! Everything here takes plain data in SI units and knows no time loop; only [`picture`] draws on a device. Numbers are
 //! written with the fewest digits that read back to the same bits, so equal runs leave equal bytes. Files
 //! that are rewritten or that must never be seen half done are written beside their place and renamed.
 
@@ -20,15 +20,18 @@ mod marker;
 mod meshes;
 mod names;
 mod phases;
+pub mod picture;
 mod progress;
 mod scatter;
 mod snapshot;
+mod snapshot_read;
 mod spread;
 mod subdomains;
 mod table;
 mod ticks;
 mod timing;
 mod vtk;
+mod vtk_read;
 
 pub use appended::{AppendedFile, AppendedState};
 pub use audit::{Audit, AuditLimits, CollisionCells};
@@ -55,6 +58,7 @@ pub use phases::PhaseTable;
 pub use progress::{LOG_ONLY, Progress, Shown};
 pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};
 pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
+pub use snapshot_read::{Snapshot, SnapshotEntry, SnapshotWalls, snapshots_of};
 pub use spread::spread as history_spread;
 pub use subdomains::{Frame, subdomain_chart};
 pub use table::{aligned, figure, grouped};

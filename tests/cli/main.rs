@@ -80,7 +80,7 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 14] = [
+const VERBS: [&str; 15] = [
     "run",
     "resume",
     "refine",
@@ -89,6 +89,7 @@ const VERBS: [&str; 14] = [
     "pareto",
     "stability",
     "bench",
+    "render",
     "plan",
     "check",
     "schema",
