@@ -12,8 +12,14 @@ use super::{CAPABILITIES, Files, Kernel, Registry, wgsl_files};
 /// Their binding numbers are their places: the camera, and what is drawn.
 pub const BINDINGS: [&str; 2] = ["view", "items"];
 
-/// Name and joined source of the valid shaders of a folder, and the shared files that none of them uses.
-pub fn shaders(folder: &Path) -> Result<(Vec<(String, String)>, Vec<PathBuf>), String> {
+/// A shader with the shared files before it.
+pub struct RenderShader {
+    pub name: String,
+    pub source: String,
+}
+
+/// The valid shaders of a folder by name, and the shared files that none of them uses.
+pub fn shaders(folder: &Path) -> Result<(Vec<RenderShader>, Vec<PathBuf>), String> {
     let registry = Registry { numbers: &[], buffers: &BINDINGS, stepped: "", path: "build/render.rs" };
     let files = Files { folder, registry };
     let (mut shaders, mut errors, mut unused) = (Vec::new(), Vec::new(), wgsl_files(&folder.join("shared"))?);
@@ -21,7 +27,7 @@ pub fn shaders(folder: &Path) -> Result<(Vec<(String, String)>, Vec<PathBuf>), S
         match shader(files, &path) {
             Ok(shader) => {
                 unused.retain(|path| !shader.files_of_source.iter().any(|part| part.path == *path));
-                shaders.push((shader.name, shader.source));
+                shaders.push(RenderShader { name: shader.name, source: shader.source });
             }
             Err(error) => errors.push(error),
         }
@@ -45,9 +51,9 @@ fn shader(files: Files<'_>, path: &Path) -> Result<Kernel, String> {
 }
 
 /// Rust source of the table.
-pub fn table(shaders: &[(String, String)]) -> String {
+pub fn table(shaders: &[RenderShader]) -> String {
     let mut rust = String::from("pub static RENDER_SHADERS: &[RenderSource] = &[\n");
-    for (name, source) in shaders {
+    for RenderShader { name, source } in shaders {
         rust += &format!("RenderSource {{ name: {name:?}, source: {source:?} }},\n");
     }
     rust + "];\n"

@@ -22,7 +22,7 @@ pub struct RenderArguments {
     /// Whence it is seen: `iso`, `front` (along +y), `side` (along -x), `top`, or degrees from the front and above it
     #[arg(long, value_name = "VIEW", default_value = "iso", value_parser = view, allow_hyphen_values = true)]
     pub view: View,
-    /// Pixels
+    /// Pixels of the picture
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = size)]
     pub size: [u32; 2],
     /// All snapshots, as NAME_000000.png and so on
@@ -40,9 +40,7 @@ pub struct RenderArguments {
 pub enum ColorBy {
     Gas,
     Speed,
-    /// Of the gas about each particle
     Temperature,
-    /// Of a run among several ranks
     Subdomain,
 }
 
