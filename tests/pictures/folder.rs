@@ -39,6 +39,7 @@ temperature = 300.0
 gas = "helium"
 
 [model]
+method = "closest-approach"
 particles = 2000
 "#;
 
