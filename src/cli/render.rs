@@ -9,7 +9,7 @@ use crate::geometry::read_surface;
 use crate::gpu::Device;
 use crate::output::grouped;
 use crate::output::picture::{
-    Camera, Colouring, Key, LengthUnit, Picture, PictureError, RunPictures, Studio, Surface, frame,
+    Camera, Colouring, FabricLook, Key, LengthUnit, Picture, PictureError, RunPictures, Studio, Surface, frame,
 };
 
 pub fn render(raw: RenderArguments) -> Result<(), CliError> {
@@ -24,6 +24,10 @@ fn render_run(raw: &RenderArguments) -> Result<(), CliError> {
     let run = RunPictures::open(&raw.subject).map_err(CliError::Picture)?;
     let chosen = chosen(raw, &run);
     let colouring = raw.color_by.map_or(Colouring::Gas, Colouring::from);
+    if raw.fabric.is_some() {
+        run.check_fabric(chosen[0]).map_err(CliError::Picture)?;
+    }
+    let fabric = raw.fabric.map_or(FabricLook::Clear, FabricLook::from);
     let series = run.series(&chosen, colouring).map_err(CliError::Picture)?;
     let device = Device::open(raw.gpu.as_deref())?;
     let studio = Studio::new(&device)?;
@@ -32,7 +36,7 @@ fn render_run(raw: &RenderArguments) -> Result<(), CliError> {
     let places = run.places(&chosen).map_err(CliError::Picture)?;
     let camera = Camera::around(raw.view, frame(raw.size, &series.key), places.into_iter());
     for (number, &index) in chosen.iter().enumerate() {
-        let picture = run.picture(index, &series).map_err(CliError::Picture)?;
+        let picture = run.picture(index, &series, fabric).map_err(CliError::Picture)?;
         let path = if raw.movie { numbered(&out, number) } else { out.clone() };
         paint(&studio, &camera, &picture, &path)?;
     }
@@ -60,7 +64,12 @@ fn chosen(raw: &RenderArguments, run: &RunPictures) -> Vec<usize> {
 }
 
 fn render_mesh(raw: &RenderArguments) -> Result<(), CliError> {
-    let of_runs = [("--time", raw.time.is_some()), ("--color-by", raw.color_by.is_some()), ("--movie", raw.movie)];
+    let of_runs = [
+        ("--time", raw.time.is_some()),
+        ("--color-by", raw.color_by.is_some()),
+        ("--fabric", raw.fabric.is_some()),
+        ("--movie", raw.movie),
+    ];
     if let Some((option, _)) = of_runs.into_iter().find(|(_, given)| *given) {
         return Err(CliError::OptionOfRuns { option, path: raw.subject.clone() });
     }
@@ -74,7 +83,7 @@ fn render_mesh(raw: &RenderArguments) -> Result<(), CliError> {
         balls: Vec::new(),
         most_balls: 0,
         meshes: vec![Surface { vertices, triangles }],
-        walls: Vec::new(),
+        panes: Vec::new(),
         key: Key::Nothing,
         unit: LengthUnit::OfFile,
     };

@@ -1,4 +1,4 @@
-//! Reads the snapshots of a run: which there are, the particles of one, and the walls.
+//! Reads the snapshots of a run: which there are, the particles and the fabric of one, and the walls.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,14 +31,14 @@ pub struct Snapshot {
     pub subdomains: Option<Vec<u32>>,
 }
 
-/// The walls of a run as drawn, that is at its start.
+/// Surfaces of a run: its walls as drawn, that is at its start, or its fabric at the time of a snapshot.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SnapshotWalls {
+pub struct SnapshotSurfaces {
     /// m.
     pub vertices: Vec<[f64; 3]>,
     pub triangles: Vec<[u32; 3]>,
-    /// The wall of each triangle.
-    pub walls: Vec<u32>,
+    /// The wall or the fabric of each triangle.
+    pub owners: Vec<u32>,
     pub names: Vec<String>,
 }
 
@@ -92,30 +92,42 @@ impl Snapshot {
     }
 }
 
-impl SnapshotWalls {
-    /// Those of the run in `dir`; `None` if it has written none.
+impl SnapshotSurfaces {
+    /// The walls of the run in `dir`; `None` if it has written none.
     ///
     /// # Errors
     /// If the file cannot be read or is none of walls.
-    pub fn read(dir: &Path) -> Result<Option<SnapshotWalls>, OutputError> {
-        let path = dir.join(SNAPSHOT_FOLDER).join("walls.vtp");
+    pub fn walls(dir: &Path) -> Result<Option<SnapshotSurfaces>, OutputError> {
+        SnapshotSurfaces::read(&dir.join(SNAPSHOT_FOLDER).join("walls.vtp"), "wall", "wall_names")
+    }
+
+    /// The fabric beside a snapshot; `None` if it has none.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is none of fabric.
+    pub fn fabric(entry: &SnapshotEntry) -> Result<Option<SnapshotSurfaces>, OutputError> {
+        let name = entry.path.file_stem().unwrap_or_default().to_string_lossy().replace("particles_", "fabric_");
+        SnapshotSurfaces::read(&entry.path.with_file_name(name + ".vtp"), "fabric", "fabric_names")
+    }
+
+    fn read(path: &Path, owners: &str, names: &str) -> Result<Option<SnapshotSurfaces>, OutputError> {
         if !path.is_file() {
             return Ok(None);
         }
-        let file = VtkFile::read(&path)?;
-        let broken = |problem: &str| OutputError::Vtk { path: path.clone(), problem: problem.to_owned() };
+        let file = VtkFile::read(path)?;
+        let broken = |problem: &str| OutputError::Vtk { path: path.to_path_buf(), problem: problem.to_owned() };
         let vertices: Vec<[f64; 3]> = file.array("position")?;
         let corners = file.array::<i64, 1>("connectivity")?.into_flattened();
         let corner = |&corner: &i64| u32::try_from(corner).ok().filter(|&corner| (corner as usize) < vertices.len());
         let corners: Option<Vec<u32>> = corners.iter().map(corner).collect();
         let corners = corners.ok_or_else(|| broken("a triangle names a vertex that is not there"))?;
-        let walls = file.array::<u32, 1>("wall")?.into_flattened();
+        let owners = file.array::<u32, 1>(owners)?.into_flattened();
         let (triangles, rest) = corners.as_chunks::<3>();
-        if !rest.is_empty() || walls.len() != triangles.len() {
+        if !rest.is_empty() || owners.len() != triangles.len() {
             return Err(broken("its arrays are of different lengths"));
         }
         let triangles = triangles.to_vec();
-        Ok(Some(SnapshotWalls { triangles, walls, names: file.names("wall_names"), vertices }))
+        Ok(Some(SnapshotSurfaces { triangles, owners, names: file.names(names), vertices }))
     }
 }
 
@@ -139,7 +151,7 @@ mod tests {
     fn what_was_written_is_read() {
         let dir = tempfile::tempdir().unwrap();
         assert_eq!(snapshots_of(dir.path()).unwrap(), []);
-        assert_eq!(SnapshotWalls::read(dir.path()).unwrap(), None);
+        assert_eq!(SnapshotSurfaces::walls(dir.path()).unwrap(), None);
         let names = ["air".to_owned(), "CO2 <hot>".to_owned()];
         let mut writer = SnapshotWriter::create(dir.path()).unwrap().naming(names.clone());
         let rows: Vec<ParticleRow> = (0..5).map(row).collect();
@@ -157,14 +169,23 @@ mod tests {
         assert_eq!(read.velocities, rows.iter().map(|row| row.velocity).collect::<Vec<_>>());
         assert_eq!(read.gases, [0, 1, 0, 1, 0]);
         assert_eq!(read.subdomains, Some(vec![0, 1, 1, 0, 2]));
-        let walls = SnapshotWalls::read(dir.path()).unwrap().unwrap();
-        let expected = SnapshotWalls {
+        let walls = SnapshotSurfaces::walls(dir.path()).unwrap().unwrap();
+        let expected = SnapshotSurfaces {
             vertices: vertices.to_vec(),
             triangles: triangles.to_vec(),
-            walls: vec![0, 1],
+            owners: vec![0, 1],
             names: names.to_vec(),
         };
         assert_eq!(walls, expected);
+
+        // Fabric has a file of the same form beside each snapshot.
+        assert_eq!(SnapshotSurfaces::fabric(&list[1]).unwrap(), None);
+        let bytes = fs::read(dir.path().join("snapshots/walls.vtp")).unwrap();
+        let text =
+            bytes.iter().map(|&byte| char::from(byte)).collect::<String>().replace("Name=\"wall", "Name=\"fabric");
+        let bytes: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        fs::write(dir.path().join("snapshots/fabric_000001.vtp"), bytes).unwrap();
+        assert_eq!(SnapshotSurfaces::fabric(&list[1]).unwrap(), Some(expected));
     }
 
     #[test]

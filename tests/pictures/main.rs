@@ -140,6 +140,31 @@ fn a_movie_has_all_snapshots_and_a_time_its_nearest() {
     assert!(last == frames[times.len() - 1] && err.contains("no snapshot within half an interval"), "{err}");
 }
 
+/// Fabric hides the gas behind it or lets it through, as asked. Here it is the box itself.
+#[test]
+fn fabric_is_seen_through_or_with_its_folds() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = finished_run(dir.path(), "");
+    let picture = |look: &[&str]| Png::read(&rendered(&run, &[&["--time", "0s", "--size", SIZE], look].concat()));
+    let gas = |image: &Png| shades(image, [[0.0; 2], [330.0, 0.0]], [0.0, 1.0], &[of_kind(0), of_kind(1)]);
+    let (code, _, err) = outcome(&["render", run.to_str().unwrap(), "--time", "0s", "--fabric", "opaque"]);
+    assert!(code == 2 && err.contains("there is no fabric beside it"), "{err}");
+    let bare = picture(&[]);
+    folder::add_fabric(&run);
+    let (clear, opaque, none) = (picture(&[]), picture(&["--fabric", "opaque"]), picture(&["--fabric", "none"]));
+    assert!(none.bytes == bare.bytes && clear.bytes != bare.bytes);
+    assert_eq!(gas(&opaque), [0, 0]);
+    assert!(gas(&clear).iter().all(|&pixels| pixels > 500), "{:?}", gas(&clear));
+    let inside = Camera::around(
+        "iso".parse().unwrap(),
+        frame(opaque.size, &RunPictures::open(&run).unwrap().series(&[0], Colouring::Gas).unwrap().key),
+        [[0.0; 3], [0.2, 0.1, 0.1]].map(Into::into).into_iter(),
+    );
+    let [x, y] = inside.pixel([0.1, 0.05, 0.05].into());
+    let [r, _, b] = opaque.at(x as u32, y as u32);
+    assert!(r < 250 && r.abs_diff(b) > 8, "the middle is no side of a mesh: {:?}", opaque.at(x as u32, y as u32));
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let dir = tempfile::tempdir().unwrap();
@@ -158,6 +183,7 @@ fn what_is_wrong_is_said() {
         (vec![&mesh, "--time", "1ms"], "--time with"),
         (vec![&mesh, "--color-by", "gas"], "--color-by with"),
         (vec![&mesh, "--movie"], "--movie with"),
+        (vec![&mesh, "--fabric", "clear"], "--fabric with"),
         (vec![&path("broken.obj")], "line 2: found a face with vertex 3"),
         (vec![&path("empty.obj")], "there are no triangles"),
         (vec![&path("notes.txt")], "neither `stl` nor `obj`"),

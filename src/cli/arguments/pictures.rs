@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum, ValueHint};
 
 use super::runs::EXIT_CODES;
-use crate::output::picture::{Colouring, View};
+use crate::output::picture::{Colouring, FabricLook, View};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
@@ -19,6 +19,9 @@ pub struct RenderArguments {
     /// What the colours of the particles say [default: gas]
     #[arg(long, value_enum, value_name = "WHAT")]
     pub color_by: Option<ColorBy>,
+    /// How fabric is drawn [default: clear]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub fabric: Option<Fabric>,
     /// Whence it is seen: `iso`, `front` (along +y), `side` (along -x), `top`, or degrees from the front and above it
     #[arg(long, value_name = "VIEW", default_value = "iso", value_parser = view, allow_hyphen_values = true)]
     pub view: View,
@@ -51,6 +54,23 @@ impl From<ColorBy> for Colouring {
             ColorBy::Speed => Colouring::Speed,
             ColorBy::Temperature => Colouring::Temperature,
             ColorBy::Subdomain => Colouring::Subdomain,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Fabric {
+    Clear,
+    Opaque,
+    None,
+}
+
+impl From<Fabric> for FabricLook {
+    fn from(fabric: Fabric) -> FabricLook {
+        match fabric {
+            Fabric::Clear => FabricLook::Clear,
+            Fabric::Opaque => FabricLook::Opaque,
+            Fabric::None => FabricLook::Left,
         }
     }
 }

@@ -46,8 +46,16 @@ pub fn annotate(image: &mut Image, camera: &Camera, picture: &Picture) {
     match &picture.key {
         Key::Nothing => {}
         Key::Kinds(kinds) => {
-            for (row, (name, colour)) in kinds.iter().enumerate() {
-                let top = top + row as i64 * (line + GAP / 2);
+            let row_height = line + GAP / 2;
+            let rows = ((i64::from(image.size[1]) - top - GAP) / row_height).max(1) as usize;
+            // The last row says how many have none.
+            let shown = if kinds.len() > rows { rows - 1 } else { kinds.len() };
+            if shown < kinds.len() {
+                let text = format!("and {} more", kinds.len() - shown);
+                lettering.write(image, [left, top + shown as i64 * row_height], &text, INK);
+            }
+            for (row, (name, colour)) in kinds[..shown].iter().enumerate() {
+                let top = top + row as i64 * row_height;
                 image.fill([left, top], [line, line], *colour);
                 let name = lettering.fitting(name, NAME_LETTERS * lettering.width("m"));
                 lettering.write(image, [left + line + GAP / 2, top], &name, INK);

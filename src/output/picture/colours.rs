@@ -8,6 +8,8 @@ pub const WHITE: Colour = [255, 255, 255];
 pub const INK: Colour = [40, 40, 40];
 /// Of walls and their edges.
 pub const WALL: Colour = [120, 132, 148];
+/// Of fabric that is seen through.
+pub const FABRIC: Colour = [178, 142, 84];
 /// Of the two sides of a mesh.
 pub const MESH: [Colour; 2] = [[236, 226, 205], [150, 178, 205]];
 

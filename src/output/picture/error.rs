@@ -28,6 +28,9 @@ pub enum PictureError {
         "only a run among several ranks has them, such as one with --subdomains 4; take another --color-by"
     ))]
     NoSubdomains { path: PathBuf },
+    #[error("{}: there is no fabric beside it", path.display())]
+    #[diagnostic(help("leave out --fabric: a run without fabric has none to be drawn"))]
+    NoFabric { path: PathBuf },
     #[error("{}: it has a particle of gas {gas}, the scene of the run has {known} gases, from 0", path.display())]
     #[diagnostic(help("the snapshots and scene.toml are of different runs"))]
     UnknownGas { path: PathBuf, gas: u8, known: usize },

@@ -18,10 +18,18 @@ pub struct Picture {
     pub most_balls: usize,
     /// They hide what is behind them.
     pub meshes: Vec<Surface>,
-    /// They let through what is behind them.
-    pub walls: Vec<Surface>,
+    pub panes: Vec<Pane>,
     pub key: Key,
     pub unit: LengthUnit,
+}
+
+/// A surface that lets through what is behind it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pane {
+    pub surface: Surface,
+    pub colour: Colour,
+    /// Of 255; several panes lie one behind the other.
+    pub opacity: u8,
 }
 
 /// What the colours of the balls mean.
@@ -57,7 +65,7 @@ pub enum LengthUnit {
 impl Picture {
     /// All that is to be seen.
     pub fn points(&self) -> impl Iterator<Item = DVec3> {
-        let surfaces = self.meshes.iter().chain(&self.walls);
+        let surfaces = self.meshes.iter().chain(self.panes.iter().map(|pane| &pane.surface));
         surfaces.flat_map(|surface| surface.vertices.iter().copied()).chain(self.balls.iter().map(|ball| ball.0))
     }
 }

@@ -1,17 +1,18 @@
 //! Pictures of a run, from what it has left in its folder.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec3;
 
 use super::annotation::round_below;
-use super::colours::{Colour, of_kind, viridis};
+use super::colours::{Colour, FABRIC, WALL, of_kind, viridis};
 use super::error::PictureError;
 use super::local_temperature::local_temperatures;
-use super::model::{Key, LengthUnit, Picture, Scale};
+use super::model::{Key, LengthUnit, Pane, Picture, Scale};
 use super::surface::Surface;
 use crate::gas::displacement;
-use crate::output::{SCENE_FILE, Snapshot, SnapshotEntry, SnapshotWalls, check_marker, grouped, snapshots_of};
+use crate::output::{SCENE_FILE, Snapshot, SnapshotEntry, SnapshotSurfaces, check_marker, grouped, snapshots_of};
 use crate::scene::{Scene, load};
 
 /// What the colours of the particles say.
@@ -23,13 +24,27 @@ pub enum Colouring {
     Subdomain,
 }
 
+/// How fabric is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FabricLook {
+    /// With the gas behind it.
+    Clear,
+    /// With its folds.
+    Opaque,
+    Left,
+}
+
+/// Of 255.
+const WALL_OPACITY: u8 = 22;
+const FABRIC_OPACITY: u8 = 48;
+
 /// Of all values so many, in shares, lie within the ends of the colours.
 const WITHIN: [f64; 2] = [0.01, 0.99];
 
 /// A run that has written snapshots.
 pub struct RunPictures {
     scene: Scene,
-    walls: Option<SnapshotWalls>,
+    walls: Option<SnapshotSurfaces>,
     snapshots: Vec<SnapshotEntry>,
 }
 
@@ -57,7 +72,7 @@ impl RunPictures {
             return Err(PictureError::NoSnapshots { path: folder.to_path_buf() });
         }
         let scene = load(&folder.join(SCENE_FILE))?;
-        Ok(RunPictures { scene, walls: SnapshotWalls::read(folder)?, snapshots })
+        Ok(RunPictures { scene, walls: SnapshotSurfaces::walls(folder)?, snapshots })
     }
 
     /// In the order of time; at least one.
@@ -112,7 +127,7 @@ impl RunPictures {
     ///
     /// # Errors
     /// As [`RunPictures::series`].
-    pub fn picture(&self, index: usize, series: &Series) -> Result<Picture, PictureError> {
+    pub fn picture(&self, index: usize, series: &Series, fabric: FabricLook) -> Result<Picture, PictureError> {
         let snapshot = Snapshot::read(&self.snapshots[index])?;
         let colours: Vec<Colour> = match (self.marks(&snapshot, index, series.colouring)?, &series.key) {
             (Marks::Values(values), Key::Values(scale)) => {
@@ -123,13 +138,22 @@ impl RunPictures {
         };
         let places = snapshot.positions.iter().map(|&place| DVec3::from(place));
         let count = grouped(snapshot.positions.len() as u64);
+        let walls = self.walls_at(snapshot.time).into_iter();
+        let pane = |colour: Colour, opacity: u8| move |surface: Surface| Pane { surface, colour, opacity };
+        let mut panes: Vec<Pane> = walls.map(pane(WALL, WALL_OPACITY)).collect();
+        let mut meshes = Vec::new();
+        match fabric {
+            FabricLook::Clear => panes.extend(self.fabric(index)?.into_iter().map(pane(FABRIC, FABRIC_OPACITY))),
+            FabricLook::Opaque => meshes = self.fabric(index)?,
+            FabricLook::Left => {}
+        }
         Ok(Picture {
             title: self.scene.title.clone(),
             caption: format!("{:.3} ms, {count} particles", 1e3 * snapshot.time),
             balls: places.zip(colours).collect(),
             most_balls: series.most_particles,
-            meshes: Vec::new(),
-            walls: self.walls_at(snapshot.time),
+            meshes,
+            panes,
             key: series.key.clone(),
             unit: LengthUnit::Metre,
         })
@@ -166,23 +190,26 @@ impl RunPictures {
     }
 
     /// The walls where they are at a time, s.
-    pub fn walls_at(&self, time: f64) -> Vec<Surface> {
-        let Some(walls) = &self.walls else { return Vec::new() };
-        let count = walls.walls.iter().map(|&wall| wall as usize + 1).max().unwrap_or(0);
-        let mut surfaces = vec![Surface::default(); count];
-        let mut vertex_in: Vec<Vec<Option<u32>>> = vec![vec![None; walls.vertices.len()]; count];
-        let moved: Vec<DVec3> = (0..count).map(|wall| self.moved(wall, time)).collect();
-        for (triangle, &wall) in walls.triangles.iter().zip(&walls.walls) {
-            let wall = wall as usize;
-            let Surface { vertices, triangles } = &mut surfaces[wall];
-            triangles.push(triangle.map(|vertex| {
-                *vertex_in[wall][vertex as usize].get_or_insert_with(|| {
-                    vertices.push(DVec3::from(walls.vertices[vertex as usize]) + moved[wall]);
-                    vertices.len() as u32 - 1
-                })
-            }));
+    fn walls_at(&self, time: f64) -> Vec<Surface> {
+        let mut walls = self.walls.as_ref().map_or(Vec::new(), surfaces_of);
+        for (wall, surface) in walls.iter_mut().enumerate() {
+            let moved = self.moved(wall, time);
+            surface.vertices.iter_mut().for_each(|vertex| *vertex += moved);
         }
-        surfaces
+        walls
+    }
+
+    /// # Errors
+    /// If there is no fabric beside a snapshot.
+    pub fn check_fabric(&self, index: usize) -> Result<(), PictureError> {
+        let none = || PictureError::NoFabric { path: self.snapshots[index].path.clone() };
+        SnapshotSurfaces::fabric(&self.snapshots[index])?.map(|_| ()).ok_or_else(none)
+    }
+
+    /// The fabric of a snapshot; none of a run without any.
+    fn fabric(&self, index: usize) -> Result<Vec<Surface>, PictureError> {
+        let fabric = SnapshotSurfaces::fabric(&self.snapshots[index])?;
+        Ok(fabric.as_ref().map_or(Vec::new(), surfaces_of))
     }
 
     /// How far a wall has moved by then, m.
@@ -191,7 +218,7 @@ impl RunPictures {
         motion.map_or(DVec3::ZERO, |motion| DVec3::from(motion.direction) * displacement(&motion.course, time))
     }
 
-    /// What pictures of these snapshots show all together: the walls, or the particles of a run without any.
+    /// What pictures of these snapshots show all together: walls and fabric, and the particles of a run without walls.
     ///
     /// # Errors
     /// If a snapshot cannot be read.
@@ -199,13 +226,31 @@ impl RunPictures {
         let mut places = Vec::new();
         for &index in chosen {
             let snapshot = &self.snapshots[index];
-            places.extend(self.walls_at(snapshot.time).into_iter().flat_map(|wall| wall.vertices));
+            let surfaces = self.walls_at(snapshot.time).into_iter().chain(self.fabric(index)?);
+            places.extend(surfaces.flat_map(|surface| surface.vertices));
             if self.walls.is_none() {
                 places.extend(Snapshot::read(snapshot)?.positions.into_iter().map(DVec3::from));
             }
         }
         Ok(places)
     }
+}
+
+/// The surface of each owner, with its own vertices.
+fn surfaces_of(all: &SnapshotSurfaces) -> Vec<Surface> {
+    let count = all.owners.iter().map(|&owner| owner as usize + 1).max().unwrap_or(0);
+    let mut surfaces = vec![Surface::default(); count];
+    let mut own: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    for (triangle, &owner) in all.triangles.iter().zip(&all.owners) {
+        let Surface { vertices, triangles } = &mut surfaces[owner as usize];
+        triangles.push(triangle.map(|vertex| {
+            *own.entry((owner, vertex)).or_insert_with(|| {
+                vertices.push(DVec3::from(all.vertices[vertex as usize]));
+                vertices.len() as u32 - 1
+            })
+        }));
+    }
+    surfaces
 }
 
 fn named(names: impl Iterator<Item = String>) -> Key {

@@ -1,5 +1,5 @@
-//! Draws a picture on a device: balls and meshes, which hide each other by their depths, then walls over them from the
-//! farthest to the nearest, and the edges of the walls, which are faint where something is before them.
+//! Draws a picture on a device: balls and meshes, which hide each other by their depths, then panes over them from the
+//! farthest to the nearest, and the edges of the panes, which are faint where something is before them.
 //!
 //! The device draws twice as large as the picture is, without multisampling, in a fixed order; the host makes the outlines
 //! and the pixels of it ([`ink`](super::ink)) and writes what explains it ([`annotation`](super::annotation)). So a picture
@@ -10,10 +10,10 @@ use glam::DVec3;
 
 use super::annotation::annotate;
 use super::camera::Camera;
-use super::colours::{Colour, INK, MESH, WALL, WHITE, word};
+use super::colours::{Colour, INK, MESH, WHITE, word};
 use super::image::Image;
 use super::ink::{TEXELS, halved, outline};
-use super::model::Picture;
+use super::model::{Pane, Picture};
 use super::surface::Surface;
 use crate::gpu::{Batch, Device, GpuError, Layer, Painter, RenderSource, draw};
 
@@ -23,12 +23,13 @@ include!(concat!(env!("OUT_DIR"), "/render_shaders.rs"));
 const COVER: f64 = 1.2;
 /// Pixels.
 const RADIUS: std::ops::RangeInclusive<f64> = 1.2..=9.0;
-/// Of a wall, of 255; several lie one behind the other.
-const WALL_OPACITY: u8 = 22;
-/// Of its edges where something is before them.
+/// Of the edges of panes where something is before them, of 255.
 const HIDDEN_OPACITY: u8 = 130;
 /// How much of the background the farthest has, among particles and without any.
 const FADING: [f32; 2] = [0.45, 0.12];
+/// Texels of the width of lines.
+const EDGE: f32 = 2.0;
+const CREASE: f32 = 1.5;
 /// Pixels by which a line comes before what it lies on, and by which a step of depth is an outline.
 const LIFT: f64 = 1.5;
 const STEP: f64 = 3.0;
@@ -78,7 +79,7 @@ pub struct Studio<'a> {
     device: &'a Device,
     balls: Painter,
     meshes: Painter,
-    walls: Painter,
+    panes: Painter,
     lines: Painter,
 }
 
@@ -103,7 +104,7 @@ impl<'a> Studio<'a> {
             device,
             balls: painter("ball", Layer::Opaque)?,
             meshes: painter("surface", Layer::Opaque)?,
-            walls: painter("surface", Layer::Translucent)?,
+            panes: painter("surface", Layer::Translucent)?,
             lines: painter("line", Layer::Translucent)?,
         })
     }
@@ -112,14 +113,24 @@ impl<'a> Studio<'a> {
     /// If the picture is too large for the device, or it fails.
     pub fn paint(&self, camera: &Camera, picture: &Picture) -> Result<Image, GpuError> {
         let [view, lifted] = self.views(camera, picture)?;
-        let wall_edges = |colour, opacity| self.edges(camera, &picture.walls, word(colour, opacity), 2.0);
+        let mut edges = Vec::new();
+        let mut hidden_edges = Vec::new();
+        for Pane { surface, colour, .. } in &picture.panes {
+            let own = surface.drawn_edges(camera);
+            add_lines(&mut edges, camera, &own, (word(*colour, u8::MAX), EDGE));
+            add_lines(&mut hidden_edges, camera, &own, (word(INK, HIDDEN_OPACITY), EDGE));
+        }
+        let mut creases = Vec::new();
+        for mesh in &picture.meshes {
+            add_lines(&mut creases, camera, &mesh.drawn_edges(camera), (word(INK, u8::MAX), CREASE));
+        }
         let loads = [
             (&view, self.opaque_meshes(camera, picture)?),
-            (&view, self.edges(camera, &picture.meshes, word(INK, u8::MAX), 1.5)?),
+            (&view, self.all_lines(&creases)?),
             (&view, self.all_balls(camera, picture)?),
-            (&view, self.translucent_walls(camera, picture)?),
-            (&view, wall_edges(WALL, u8::MAX)?),
-            (&lifted, wall_edges(INK, HIDDEN_OPACITY)?),
+            (&view, self.all_panes(camera, picture)?),
+            (&view, self.all_lines(&edges)?),
+            (&lifted, self.all_lines(&hidden_edges)?),
         ];
         let some = loads.iter().filter(|(_, load)| load.vertices * load.instances > 0);
         let batches: Vec<Batch<'_>> = some
@@ -167,16 +178,15 @@ impl<'a> Studio<'a> {
         self.triangles(&self.meshes, "meshes", &corners)
     }
 
-    /// The triangles of all walls in one order: so of walls within each other the farther is laid down first.
-    fn translucent_walls(&self, camera: &Camera, picture: &Picture) -> Result<Load<'_>, GpuError> {
+    /// The triangles of all panes in one order: of panes within each other the farther is laid down first.
+    fn all_panes(&self, camera: &Camera, picture: &Picture) -> Result<Load<'_>, GpuError> {
         let mut all = Vec::new();
-        for wall in &picture.walls {
-            add_triangles(&mut all, camera, wall, [word(WALL, WALL_OPACITY); 2]);
+        for Pane { surface, colour, opacity } in &picture.panes {
+            add_triangles(&mut all, camera, surface, [word(*colour, *opacity); 2]);
         }
-        let joined = joined(&picture.walls);
-        let corners: Vec<GpuCorner> =
-            joined.from_behind(camera).into_iter().flat_map(|k| all[3 * k..3 * k + 3].iter().copied()).collect();
-        self.triangles(&self.walls, "walls", &corners)
+        let order = joined(&picture.panes).from_behind(camera);
+        let corners: Vec<GpuCorner> = order.into_iter().flat_map(|k| all[3 * k..3 * k + 3].iter().copied()).collect();
+        self.triangles(&self.panes, "panes", &corners)
     }
 
     fn triangles<'b>(
@@ -189,21 +199,22 @@ impl<'a> Studio<'a> {
         Ok(Load { painter, items, vertices: corners.len(), instances: 1 })
     }
 
-    fn edges(&self, camera: &Camera, surfaces: &[Surface], colour: u32, width: f32) -> Result<Load<'_>, GpuError> {
-        let edges = surfaces.iter().flat_map(|surface| surface.drawn_edges(camera));
-        let line = |[from, to]: [DVec3; 2]| {
-            let [from, to] = [from, to].map(|end| from_centre(camera, end));
-            GpuLine { from, colour, to, width }
-        };
-        let lines: Vec<GpuLine> = edges.map(line).collect();
-        let items = self.device.storage_of("lines", &lines)?;
+    fn all_lines(&self, lines: &[GpuLine]) -> Result<Load<'_>, GpuError> {
+        let items = self.device.storage_of("lines", lines)?;
         Ok(Load { painter: &self.lines, items, vertices: 6, instances: lines.len() })
     }
 }
 
-fn joined(surfaces: &[Surface]) -> Surface {
+fn add_lines(lines: &mut Vec<GpuLine>, camera: &Camera, edges: &[[DVec3; 2]], (colour, width): (u32, f32)) {
+    lines.extend(edges.iter().map(|ends| {
+        let [from, to] = ends.map(|end| from_centre(camera, end));
+        GpuLine { from, colour, to, width }
+    }));
+}
+
+fn joined(panes: &[Pane]) -> Surface {
     let mut all = Surface::default();
-    for surface in surfaces {
+    for Pane { surface, .. } in panes {
         let first = all.vertices.len() as u32;
         all.vertices.extend(&surface.vertices);
         all.triangles.extend(surface.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
