@@ -2,8 +2,9 @@
 //! uses: view.wgsl
 //! binds: items as balls
 //!
-//! Reads the balls, writes colour and depth; in the alpha channel is BALL, by which the host knows them. The depth test
-//! decides, of equal depths the first in the list.
+//! Reads the balls, writes colour and depth; in the alpha channel is BALL, by which the host knows them. A ball has the
+//! depth of its centre: one behind a sheet does not come through it. The depth test decides, of equal depths the first in
+//! the list.
 
 struct Ball {
     x: f32,
@@ -24,11 +25,6 @@ struct Corner {
     @location(1) @interpolate(flat) colour: vec3<f32>,
 }
 
-struct Shaded {
-    @location(0) colour: vec4<f32>,
-    @builtin(frag_depth) depth: f32,
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) which: u32) -> Corner {
     let ball = balls[which];
@@ -41,15 +37,14 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) which: u32
 }
 
 @fragment
-fn fragment(corner: Corner) -> Shaded {
+fn fragment(corner: Corner) -> @location(0) vec4<f32> {
     let far = dot(corner.offset, corner.offset);
     if far > 1.0 {
         discard;
     }
     let normal = vec3<f32>(corner.offset, sqrt(1.0 - far));
-    let depth = corner.position.z - normal.z * view.middle.w * view.towards.w;
     // A dark rim sets a ball off from those behind it.
     let rim = 1.0 - 0.5 * smoothstep(0.6, 1.0, far);
-    let colour = faded(min(corner.colour * lit(normal) * rim * 1.1, vec3<f32>(1.0)), depth);
-    return Shaded(vec4<f32>(colour, BALL), depth);
+    let colour = min(corner.colour * lit(normal) * rim * 1.1, vec3<f32>(1.0));
+    return vec4<f32>(faded(colour, corner.position.z), BALL);
 }

@@ -153,8 +153,9 @@ fn fabric_is_seen_through_or_with_its_folds() {
     folder::add_fabric(&run);
     let (clear, opaque, none) = (picture(&[]), picture(&["--fabric", "opaque"]), picture(&["--fabric", "none"]));
     assert!(none.bytes == bare.bytes && clear.bytes != bare.bytes);
-    assert_eq!(gas(&opaque), [0, 0]);
-    assert!(gas(&clear).iter().all(|&pixels| pixels > 500), "{:?}", gas(&clear));
+    // Balls at the outline of the box stand out beside it.
+    let (seen, hidden) = (gas(&clear), gas(&opaque));
+    assert!(seen.iter().zip(&hidden).all(|(seen, hidden)| *seen > 500 && 10 * hidden < *seen), "{seen:?} {hidden:?}");
     let inside = Camera::around(
         "iso".parse().unwrap(),
         frame(opaque.size, &RunPictures::open(&run).unwrap().series(&[0], Colouring::Gas).unwrap().key),
