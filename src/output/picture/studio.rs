@@ -122,7 +122,7 @@ impl<'a> Studio<'a> {
         }
         let mut creases = Vec::new();
         for mesh in &picture.meshes {
-            add_lines(&mut creases, camera, &mesh.drawn_edges(camera), (word(INK, u8::MAX), CREASE));
+            add_lines(&mut creases, camera, &mesh.sharp_edges(), (word(INK, u8::MAX), CREASE));
         }
         let loads = [
             (&view, self.opaque_meshes(camera, picture)?),

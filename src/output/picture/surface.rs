@@ -11,6 +11,8 @@ use super::camera::Camera;
 
 /// Degrees between the normals of neighbours, above which their edge is one.
 const CREASE: f64 = 35.0;
+/// The same of what hides all behind it.
+const SHARP: f64 = 60.0;
 
 /// A triangle mesh, m.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -67,17 +69,31 @@ impl Surface {
         self.edges().values().all(|sides| sides.len() != 2 || sides[0].1 != sides[1].1)
     }
 
-    /// The ends of the edges that are drawn: of one triangle alone or of several, sharp ones, and those behind which the
-    /// mesh turns away from the viewer.
+    /// The ends of the edges of what is seen through: of one triangle alone or of several, sharp ones, and those behind
+    /// which the surface turns away from the viewer.
     pub fn drawn_edges(&self, camera: &Camera) -> Vec<[DVec3; 2]> {
-        let normals = self.normals();
         let least = CREASE.to_radians().cos();
+        self.edges_between(|normals| {
+            let towards = normals.map(|normal| normal.dot(camera.axes[2]) > 0.0);
+            normals[0].dot(normals[1]) < least || towards[0] != towards[1]
+        })
+    }
+
+    /// The ends of the edges of what hides all behind it: of one triangle alone or of several, and those that are sharper than
+    /// a round fold of few triangles has. Where it turns away from the viewer its depth has a step.
+    pub fn sharp_edges(&self) -> Vec<[DVec3; 2]> {
+        let least = SHARP.to_radians().cos();
+        self.edges_between(|[one, other]| one.dot(other) < least)
+    }
+
+    /// The ends of the edges with other than two triangles, and of those whose normals, as if both were turned the same way,
+    /// are such.
+    fn edges_between(&self, are_such: impl Fn([DVec3; 2]) -> bool) -> Vec<[DVec3; 2]> {
+        let normals = self.normals();
         let is_drawn = |sides: &Sides| match sides[..] {
             [(one, ahead), (other, also_ahead)] => {
-                // As if both were turned the same way.
                 let sign = if ahead == also_ahead { -1.0 } else { 1.0 };
-                let towards = [normals[one], sign * normals[other]].map(|normal| normal.dot(camera.axes[2]));
-                sign * normals[one].dot(normals[other]) < least || (towards[0] > 0.0) != (towards[1] > 0.0)
+                are_such([normals[one], sign * normals[other]])
             }
             _ => true,
         };
@@ -154,6 +170,7 @@ mod tests {
         let grazing = camera("-45,5");
         assert_eq!(folded(-20.0, false).drawn_edges(&grazing).len(), 5);
         assert_eq!(folded(-20.0, true).drawn_edges(&grazing).len(), 5);
+        assert_eq!([50.0, 70.0].map(|degrees| folded(degrees, true).sharp_edges().len()), [4, 5]);
     }
 
     #[test]
