@@ -2,6 +2,7 @@
 
 mod counts;
 mod pictures;
+mod meshes;
 mod runs;
 mod studies;
 
@@ -12,6 +13,7 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 use runs::EXIT_CODES;
 
 pub use pictures::RenderArguments;
+pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,
@@ -100,6 +102,8 @@ pub enum Verb {
     Plan(PlanArguments),
     /// Check scenes, their walls and their plans; opens no device
     Check(CheckArguments),
+    /// Make a mesh (a bag of two sheets, a cylinder, a sphere) or motion of its nodes; convert and check their files
+    Mesh(MeshArguments),
     /// Print the JSON schema of scene files
     #[command(after_help = EXIT_CODES)]
     Schema,
@@ -123,6 +127,7 @@ impl Verb {
             Verb::Stability(_) => Some("stability"),
             Verb::Bench(_) => Some("bench"),
             Verb::Render(_) => Some("render"),
+            Verb::Mesh(_) => Some("mesh"),
             Verb::Run(_)
             | Verb::Resume(_)
             | Verb::Plan(_)

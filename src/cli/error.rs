@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
 
+use crate::geometry::{MeshError, NodeFramesError};
 use crate::gpu::GpuError;
 use crate::output::picture::PictureError;
 use crate::output::{CheckpointError, OutputError};
@@ -146,6 +147,21 @@ pub enum CliError {
     #[error("--strict, and the run warns:{}", list(warnings))]
     #[diagnostic(help("the results are written; without --strict this would be no error"))]
     RunWarnings { warnings: Vec<String> },
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Mesh(#[from] MeshError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    NodeFrames(#[from] NodeFramesError),
+    #[error("`{found}` is no mesh: expected {}, or a file with the ending obj, stl, nodes, series or pvd", shapes.join(", "))]
+    MeshSource { found: String, shapes: Vec<&'static str> },
+    #[error("{source_name} needs {option}")]
+    MeshNeeds { source_name: String, option: &'static str },
+    #[error("{source_name} takes no {option}; it takes {}", if takes.is_empty() { "none".into() } else { takes.join(", ") })]
+    MeshOption { source_name: String, option: &'static str, takes: Vec<&'static str> },
+    #[error("{}: found {found}, expected a file for {expected}", path.display())]
+    #[diagnostic(help("meshes are .obj or .stl files; frames, of --shake or --scale-to, .nodes or .vtk.series files"))]
+    MeshOutput { path: PathBuf, found: &'static str, expected: &'static str },
     #[error("the audit failed:{}", list(failures))]
     #[diagnostic(help("the results are written, and cannot be trusted; please report it with the scene"))]
     Audit { failures: Vec<String> },
@@ -249,6 +265,12 @@ impl CliError {
             | CliError::Picture(_)
             | CliError::NoSubject { .. }
             | CliError::OptionOfRuns { .. }
+            | CliError::Mesh(_)
+            | CliError::NodeFrames(_)
+            | CliError::MeshSource { .. }
+            | CliError::MeshNeeds { .. }
+            | CliError::MeshOption { .. }
+            | CliError::MeshOutput { .. }
             | CliError::UnknownCase { .. } => BAD_INPUT,
         }
     }

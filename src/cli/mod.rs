@@ -12,6 +12,7 @@ mod check;
 mod completions;
 mod error;
 mod man;
+mod mesh;
 mod pareto;
 mod plan;
 mod reference;
@@ -81,6 +82,7 @@ fn perform(arguments: Arguments) -> Result<u8, CliError> {
         Verb::Pareto(raw) => pareto::pareto(raw),
         Verb::Stability(raw) => stability::stability(raw),
         Verb::Check(raw) => check::check(raw, quiet),
+        Verb::Mesh(raw) => mesh::mesh(raw),
         Verb::Schema => schema::schema(),
         Verb::Adapters => adapters::adapters(),
         Verb::Completions(raw) => completions::completions(raw),

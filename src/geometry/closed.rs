@@ -27,10 +27,12 @@ pub fn check_closed(wall: &str, vertices: &[DVec3], triangles: &[[u32; 3]]) -> R
         let first = Places::of(flat.iter().map(|corners| corners.to_vec()), "");
         return Err(GeometryError::Degenerate { wall, count: flat.len(), first });
     }
-    check_edges(wall, vertices, triangles)
+    check_edges(&wall, vertices, triangles)
 }
 
-fn check_edges(wall: String, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
+/// The same of edges alone: triangles may have no area, as those of a mesh in motion may at times.
+pub(super) fn check_edges(wall: &str, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
+    let wall = wall.to_string();
     // Sorted: triangles that share an edge become neighbours.
     let mut edges: Vec<(u32, u32, bool)> = directed_edges(triangles).collect();
     edges.sort_unstable();
@@ -87,7 +89,11 @@ pub fn signed_volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
         return 0.0;
     };
     // Relative to a vertex of the mesh, so that a mesh far from the origin loses no digits.
-    let origin = vertices[first[0] as usize];
+    signed_volume_about(vertices[first[0] as usize], vertices, triangles)
+}
+
+/// The same of the cone from a point to a surface that need not be closed, m3.
+pub fn signed_volume_about(origin: DVec3, vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     let corner = |v: u32| vertices[v as usize] - origin;
     triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>() / 6.0
 }

@@ -4,7 +4,8 @@
 //! `Vessel::build` turns the walls of a scene into one checked mesh (`build` of
 //! `primitives`, `round`, `plate`, `polygon`, `mesh_file` of `stl`, `obj` and `facet`, `mend`, `closed`, `crossings`) and answers where the gas is (`lines`) and how much of it
 //! (`vessel`, `region`, `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
-//! that part the gas near them from them.
+//! that part the gas near them from them. `meshes` makes meshes of fabric, reads, writes and measures them, and
+//! `node_frames` has the motion of their nodes.
 
 mod blocks;
 mod build;
@@ -19,6 +20,8 @@ mod grid;
 mod lines;
 mod mend;
 mod mesh_file;
+mod meshes;
+mod node_frames;
 mod notes;
 mod obj;
 mod plate;
@@ -41,6 +44,8 @@ pub use error::{GeometryError, Places};
 pub use gaps::{Narrowest, Passage};
 pub use grid::{Grid, GridError};
 pub use mesh_file::read_surface;
+pub use meshes::{ClosedSurface, MeshError, MeshShape, PartMeasure, TriangleMesh, inside};
+pub use node_frames::{FrameFault, FrameNote, Motion, NodeFrames, NodeFramesError, Precision};
 pub use region::{region_bounds, region_contains, region_volume};
 pub use round::{Facets, facets};
 pub use triangle_grid::{Body, CellClass, FixedTriangle, Lists, MovingWalls, TriangleGrid};

@@ -36,12 +36,55 @@ struct Face {
     part: PartOf,
 }
 
+/// The mesh of a file with the numbers of its nodes, in file units.
+pub(super) struct Mesh {
+    pub nodes: Vec<[f64; 3]>,
+    pub triangles: Vec<[u32; 3]>,
+    pub parts: Vec<PartOf>,
+    /// No two alike, in the order of the file.
+    pub names: Vec<String>,
+}
+
+/// What of a file is a mesh: as `f32`, corners by their place.
 pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
+    let mut file = parse(bytes)?;
+    for face in std::mem::take(&mut file.faces) {
+        for triangle in triangles_of(&file.places, &face)? {
+            file.soup.triangle(triangle.map(|k| file.places[k]), face.part);
+        }
+    }
+    Ok(file.soup)
+}
+
+/// The same as `f64`, corners by their number.
+pub(super) fn read_mesh(bytes: &[u8]) -> Result<Mesh, String> {
+    let File { places, exact, faces, soup } = parse(bytes)?;
+    let mut mesh = Mesh { nodes: exact, triangles: Vec::new(), parts: Vec::new(), names: soup.names };
+    for face in &faces {
+        for triangle in triangles_of(&places, face)? {
+            mesh.triangles.push(triangle.map(|k| k as u32));
+            mesh.parts.push(face.part);
+        }
+    }
+    Ok(mesh)
+}
+
+/// A file before its faces are triangles.
+struct File {
+    places: Vec<[f32; 3]>,
+    /// The same, as precise as they are written.
+    exact: Vec<[f64; 3]>,
+    faces: Vec<Face>,
+    /// Has the names of the parts.
+    soup: Soup,
+}
+
+fn parse(bytes: &[u8]) -> Result<File, String> {
     if bytes.contains(&0) {
         return Err("no OBJ text: it has bytes of value 0 (save it as UTF-8)".into());
     }
     let mut soup = Soup::default();
-    let mut places: Vec<[f32; 3]> = Vec::new();
+    let (mut places, mut exact): (Vec<[f32; 3]>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
     let mut faces: Vec<Face> = Vec::new();
     let (mut object, mut group) = (None, None);
     // The face that names the vertex farthest ahead: its line, and the vertex.
@@ -51,9 +94,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
         let wrong = |allowed: &str| format!("line {line}: found `{}`, allowed: {allowed}", quoted(&statement));
         match words.next() {
             Some("v") => {
-                let mut number = || words.next()?.parse::<f32>().ok().filter(|x| x.is_finite());
+                let mut number = || {
+                    let word = words.next()?;
+                    word.parse::<f32>().ok().filter(|x| x.is_finite()).zip(word.parse::<f64>().ok())
+                };
                 let place = (|| Some([number()?, number()?, number()?]))();
-                places.push(place.ok_or_else(|| wrong("three numbers"))?);
+                let place = place.ok_or_else(|| wrong("three numbers"))?;
+                places.push(place.map(|(single, _)| single));
+                exact.push(place.map(|(_, double)| double));
             }
             Some("f") => {
                 let mut corners = Vec::new();
@@ -88,17 +136,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, String> {
         let count = places.len();
         return Err(format!("line {line}: found a face with vertex {index}, allowed: one of the {count} in the file"));
     }
-    for face in &faces {
-        add(&mut soup, &places, face)?;
-    }
-    Ok(soup)
+    Ok(File { places, exact, faces, soup })
 }
 
 fn joined<'a>(words: impl Iterator<Item = &'a str>) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-fn add(soup: &mut Soup, places: &[[f32; 3]], face: &Face) -> Result<(), String> {
+/// Triangles of places in the file.
+fn triangles_of(places: &[[f32; 3]], face: &Face) -> Result<Vec<[usize; 3]>, String> {
     let corners: Vec<DVec3> = face.corners.iter().map(|&k| DVec3::from(places[k].map(f64::from))).collect();
     let triangles = triangulated(&corners).map_err(|fault| {
         let (line, count) = (face.line, face.corners.len());
@@ -113,10 +159,7 @@ fn add(soup: &mut Soup, places: &[[f32; 3]], face: &Face) -> Result<(), String> 
             ),
         }
     })?;
-    for triangle in triangles {
-        soup.triangle(triangle.map(|k| places[face.corners[k]]), face.part);
-    }
-    Ok(())
+    Ok(triangles.into_iter().map(|triangle| triangle.map(|k| face.corners[k])).collect())
 }
 
 /// The statements of an OBJ file, each with its line, from 1; one that ends with a backslash goes on in the next line.

@@ -71,9 +71,9 @@ pub(super) fn cylinder(base: DVec3, axis: DVec3, radius: f64, height: f64, segme
 }
 
 /// Unit directions and the triangles between them.
-struct Polyhedron {
-    directions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
+pub(super) struct Polyhedron {
+    pub directions: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Polyhedron {
@@ -102,7 +102,7 @@ pub(super) fn sphere(center: DVec3, radius: f64, subdivisions: u32) -> WallMesh 
 }
 
 /// An icosahedron whose triangles are quartered `subdivisions` times.
-fn polyhedron(subdivisions: u32) -> Polyhedron {
+pub(super) fn polyhedron(subdivisions: u32) -> Polyhedron {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut directions: Vec<DVec3> = Vec::new();
     for axis in 0..3 {

@@ -3,6 +3,7 @@
 //! Texts are snapshots in `snapshots/`, which INSTA_UPDATE=always renews. Runs take 64 steps of 500 particles on
 //! whatever adapter the machine has.
 
+mod mesh;
 mod pareto;
 mod repeat;
 mod results;
@@ -92,6 +93,7 @@ const VERBS: [&str; 15] = [
     "render",
     "plan",
     "check",
+    "mesh",
     "schema",
     "adapters",
     "completions",

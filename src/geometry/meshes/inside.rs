@@ -1,0 +1,117 @@
+//! Which points a closed mesh encloses.
+//!
+//! A point is inside where a ray from it along +x crosses the surface an odd number of times. Which triangles the ray
+//! passes is decided in integers ([`LineIndex`]): y and z are rounded to 2^-48 of the mesh's extent, and a ray through an
+//! edge or a node counts as moved by an infinitesimal. So of the triangles around an edge that it grazes it passes just
+//! those that one ray beside it would pass. Only for points nearer to the surface than rounding the answer is either.
+
+use super::mesh::TriangleMesh;
+use crate::geometry::GeometryError;
+use crate::geometry::closed::check_edges;
+use crate::geometry::lines::LineIndex;
+use crate::geometry::sampling::map;
+use glam::DVec3;
+
+/// Points that a thread takes at a time.
+const CHUNK: usize = 1024;
+
+/// A closed surface that is asked for many points.
+#[derive(Debug, Clone)]
+pub struct ClosedSurface {
+    lines: LineIndex,
+}
+
+impl ClosedSurface {
+    /// The surface of `triangles` with their nodes at `nodes` (m): not those of a mesh at rest, but where they are now.
+    ///
+    /// # Errors
+    /// It is not closed, or a node is not finite; `subject` names it.
+    pub fn new(nodes: &[[f64; 3]], triangles: &[[u32; 3]], subject: &str) -> Result<ClosedSurface, GeometryError> {
+        let places: Vec<DVec3> = nodes.iter().copied().map(DVec3::from).collect();
+        check_edges(subject, &places, triangles)?;
+        let used = || triangles.iter().flatten().map(|&v| places[v as usize]);
+        let (low, high) = used().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+        let lines = LineIndex::new(&places, triangles.iter().map(|&t| (t, 0)), low, high);
+        Ok(ClosedSurface { lines })
+    }
+
+    /// Whether it encloses a point (m); a place that is no number is outside.
+    pub fn contains(&self, [x, y, z]: [f64; 3]) -> bool {
+        let mut crossings = 0u32;
+        self.lines.cross(y, z, |crossing| crossings += u32::from(crossing.x > x));
+        crossings % 2 == 1
+    }
+
+    /// Of each point, on all cores.
+    pub fn inside(&self, points: &[[f64; 3]]) -> Vec<bool> {
+        let chunk = |k: usize| &points[k * CHUNK..points.len().min((k + 1) * CHUNK)];
+        let answers = map(points.len().div_ceil(CHUNK), |k, _| {
+            chunk(k).iter().map(|&point| self.contains(point)).collect::<Vec<bool>>()
+        });
+        answers.into_iter().flatten().collect()
+    }
+}
+
+/// Which of the points a closed mesh encloses.
+///
+/// # Errors
+/// It is not closed.
+pub fn inside(points: &[[f64; 3]], mesh: &TriangleMesh) -> Result<Vec<bool>, GeometryError> {
+    Ok(ClosedSurface::new(&mesh.nodes, &mesh.triangles, "the mesh")?.inside(points))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::meshes::MeshShape;
+
+    /// A lattice whose lines pass nodes, edges and diagonals of a bag: the heights decide.
+    #[test]
+    fn rays_through_nodes_and_edges_are_not_mistaken() {
+        let (side, gap, n) = (1.0, 0.1, 4);
+        let bag = MeshShape::Teabag { side, elements: n, gap }.mesh([0.0; 3]).unwrap();
+        let share = |k: i32| f64::from(k) / 16.0 - 0.75;
+        let points: Vec<[f64; 3]> = (0..25 * 25)
+            .flat_map(|k| [-0.2, -0.04, 0.0, 0.04, 0.2].map(|z| [share(k % 25), share(k / 25), z]))
+            .collect();
+        let found = inside(&points, &bag).unwrap();
+        let mut count = 0;
+        for (point, found) in points.iter().zip(found) {
+            let [x, y, z] = *point;
+            // Within the outermost row sheets rise linearly with the distance from the seam; in corners, too.
+            let rise = ((0.5 - x.abs()).min(0.5 - y.abs()) * f64::from(n)).min(1.0);
+            let expected = rise > 0.0 && z.abs() < 0.5 * gap * rise;
+            let on_it = (z.abs() - 0.5 * gap * rise.max(0.0)).abs() < 1e-9 && rise >= 0.0;
+            assert!(on_it || found == expected, "{point:?}: {found}");
+            count += usize::from(expected);
+        }
+        // Of 15 x 15 lines within the seam all at z = 0; above and below those of 9 x 9 where it is that high.
+        assert_eq!(count, 225 + 2 * 81);
+    }
+
+    /// Against the distance from the centre, with a hollow: a sphere turned inwards within another.
+    #[test]
+    fn a_hollow_is_outside() {
+        let mut mesh = MeshShape::Sphere { radius: 1.0, subdivisions: 3 }.mesh([0.0; 3]).unwrap();
+        let hollow = MeshShape::Sphere { radius: 0.5, subdivisions: 3 }.mesh([0.0; 3]).unwrap();
+        let first = mesh.nodes.len() as u32;
+        mesh.nodes.extend(hollow.nodes);
+        mesh.triangles.extend(hollow.triangles.iter().map(|t| [t[0] + first, t[2] + first, t[1] + first]));
+        let surface = ClosedSurface::new(&mesh.nodes, &mesh.triangles, "hollow").unwrap();
+        let along = DVec3::new(0.6, 0.0, 0.8);
+        for (r, expected) in [(0.0, false), (0.48, false), (0.52, true), (0.97, true), (1.01, false)] {
+            for way in [along, -along, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE.normalize()] {
+                assert_eq!(surface.contains((way * r).to_array()), expected, "{r} {way}");
+            }
+        }
+        assert!(!surface.contains([f64::NAN, 0.0, 0.0]) && !surface.contains([0.75, f64::NAN, 0.0]));
+    }
+
+    #[test]
+    fn an_open_surface_is_refused() {
+        let shape = MeshShape::Cylinder { radius: 1.0, height: 1.0, around: 8, along: Some(2), closed: false };
+        let open = shape.mesh([0.0; 3]).unwrap();
+        let error = inside(&[[0.0; 3]], &open).unwrap_err();
+        assert!(matches!(error, GeometryError::OpenEdges { count: 16, .. }), "{error}");
+    }
+}
