@@ -159,7 +159,7 @@ pub enum CliError {
     MeshNeeds { source_name: String, option: &'static str },
     #[error("{source_name} takes no {option}; it takes {}", if takes.is_empty() { "none".into() } else { takes.join(", ") })]
     MeshOption { source_name: String, option: &'static str, takes: Vec<&'static str> },
-    #[error("{}: found {found}, expected a file for {expected}", path.display())]
+    #[error("{}: found {found}, expected {expected}", path.display())]
     #[diagnostic(help("meshes are .obj or .stl files; frames, of --shake or --scale-to, .nodes or .vtk.series files"))]
     MeshOutput { path: PathBuf, found: &'static str, expected: &'static str },
     #[error("the audit failed:{}", list(failures))]

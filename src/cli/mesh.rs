@@ -39,7 +39,8 @@ fn content(raw: &MeshArguments) -> Result<(TriangleMesh, Option<NodeFrames>), Cl
         let frames = motion(&mesh, raw)?;
         return Ok((mesh, frames));
     }
-    let is_mesh = path.extension().is_some_and(|ending| ["obj", "stl"].iter().any(|own| ending.eq_ignore_ascii_case(own)));
+    let is_mesh =
+        path.extension().is_some_and(|ending| ["obj", "stl"].iter().any(|own| ending.eq_ignore_ascii_case(own)));
     if is_mesh {
         refuse_others(&raw.source, &given(&raw.shape), &[])?;
         let mut mesh = TriangleMesh::read(path)?;
@@ -47,8 +48,14 @@ fn content(raw: &MeshArguments) -> Result<(TriangleMesh, Option<NodeFrames>), Cl
         let frames = motion(&mesh, raw)?;
         Ok((mesh, frames))
     } else if NodeFrames::is_file(path) {
-        let of_motion = [("--shake", raw.motion.shake.is_some()), ("--scale-to", raw.motion.scale_to.is_some())];
-        refuse_others(&raw.source, &[&given(&raw.shape)[..], &of_motion].concat(), &[])?;
+        let MotionArguments { shake, scale_to, frames, until, .. } = &raw.motion;
+        let of_motion = [
+            ("--shake", shake.is_some()),
+            ("--scale-to", scale_to.is_some()),
+            ("--frames", frames.is_some()),
+            ("--until", until.is_some()),
+        ];
+        refuse_others(&raw.source, &[&given(&raw.shape)[..], &of_motion].concat(), &["--speed-limit"])?;
         let frames = NodeFrames::read(path)?.scaled(length, time).map_err(fault_of(path))?;
         let (nodes, triangles) = (frames.frame(0).to_vec(), frames.triangles().to_vec());
         let parts = vec![None; triangles.len()];
@@ -92,10 +99,7 @@ fn shape(name: &str, raw: &ShapeArguments, unit: f64) -> Result<MeshShape, CliEr
             along: raw.along,
             closed: raw.closed,
         },
-        _ => MeshShape::Sphere {
-            radius: length("--radius", raw.radius)?,
-            subdivisions: raw.subdivisions.unwrap_or(3),
-        },
+        _ => MeshShape::Sphere { radius: length("--radius", raw.radius)?, subdivisions: raw.subdivisions.unwrap_or(3) },
     })
 }
 
@@ -137,7 +141,8 @@ fn motion(mesh: &TriangleMesh, raw: &MeshArguments) -> Result<Option<NodeFrames>
         },
         (None, Some(factor)) => Motion::Scale { factor },
         (None, None) => {
-            let asked = [("--frames", frames.is_some()), ("--until", until.is_some())];
+            let limit = ("--speed-limit", raw.motion.speed_limit.is_some());
+            let asked = [("--frames", frames.is_some()), ("--until", until.is_some()), limit];
             refuse_others("a mesh without --shake or --scale-to", &asked, &[])?;
             return Ok(None);
         }
@@ -179,9 +184,8 @@ fn described(mesh: &TriangleMesh, raw: &MeshArguments) -> String {
 /// What frames do, and what is doubtful in them.
 fn course(frames: &NodeFrames, mesh: &TriangleMesh, raw: &MeshArguments) -> Result<String, CliError> {
     let units = raw.units;
-    let of = |quantity: Dimension, value: f64| {
-        format!("{:.4e} {}", value / units.factor(quantity), units.symbol(quantity))
-    };
+    let of =
+        |quantity: Dimension, value: f64| format!("{:.4e} {}", value / units.factor(quantity), units.symbol(quantity));
     let place = |point: [f64; 3]| format!("({})", point.map(|x| format!("{:.4e}", x / units.length().0)).join(", "));
     let times = frames.times();
     let [low, high] = frames.bounds();
@@ -207,13 +211,13 @@ fn write(path: &Path, mesh: &TriangleMesh, frames: Option<&NodeFrames>, units: U
     let [length, time] = [Dimension::Length, Dimension::Time].map(|quantity| units.factor(quantity));
     if !NodeFrames::is_file(path) {
         if mesh.triangles.is_empty() {
-            let (found, expected) = ("nodes without triangles", "frames");
+            let (found, expected) = ("nodes without triangles", "a mesh, or a file for frames");
             return Err(CliError::MeshOutput { path: path.into(), found, expected });
         }
         return Ok(mesh.write(path, length)?);
     }
     let Some(frames) = frames else {
-        let (found, expected) = ("a mesh at rest", "a mesh, or a motion");
+        let (found, expected) = ("a mesh without motion", "--shake or --scale-to, or a file for a mesh");
         return Err(CliError::MeshOutput { path: path.into(), found, expected });
     };
     let scaled = frames.clone().scaled(1.0 / length, 1.0 / time).map_err(fault_of(path))?;

@@ -27,19 +27,28 @@ fn a_bag_and_its_motion_are_made_together() {
     let motion = "--shake 5 --frames 11 --until 0.001";
     let text = sound(&folder, &format!("teabag --side 0.5 --elements 10 {motion} -o bag.obj -o bag.stl -o bag.nodes"));
     assert!(text.starts_with("teabag: 202 nodes, 400 triangles, closed, area 5.0"), "{text}");
-    assert!(text.contains("  lower: 200 triangles") && text.contains("11 frames from 0.0000e0 s to 1.0000e-3 s"), "{text}");
+    assert!(
+        text.contains("  lower: 200 triangles") && text.contains("11 frames from 0.0000e0 s to 1.0000e-3 s"),
+        "{text}"
+    );
     assert!(text.contains("top speed 5.0000e0 m/s") && text.matches("written ").count() == 3, "{text}");
     let obj = fs::read_to_string(folder.path().join("bag.obj")).unwrap();
     assert_eq!(obj.lines().filter(|line| line.starts_with("g ")).collect::<Vec<_>>(), ["g upper", "g lower"]);
     let text = sound(&folder, "bag.nodes --speed-limit 4 -o bag.vtk.series");
-    assert!(text.contains("nodes, 400 triangles, closed") && text.contains("note: 2020 times a node moves faster"), "{text}");
+    assert!(
+        text.contains("nodes, 400 triangles, closed") && text.contains("note: 2020 times a node moves faster"),
+        "{text}"
+    );
     let again = sound(&folder, "bag.vtk.series -o again.nodes");
     assert!(again.contains("11 frames") && !again.contains("note"), "{again}");
     let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert_eq!(bytes("bag.nodes"), bytes("again.nodes"));
     let mm = "--units kg-mm-ms --gap 5 --shake 5 --frames 11 --until 1";
     let text = sound(&folder, &format!("teabag --side 500 --elements 10 {mm} -o mm.obj"));
-    assert!(text.contains("area 5.0") && text.contains("e5 mm2") && text.contains("top speed 5.0000e0 mm/ms"), "{text}");
+    assert!(
+        text.contains("area 5.0") && text.contains("e5 mm2") && text.contains("top speed 5.0000e0 mm/ms"),
+        "{text}"
+    );
 }
 
 /// A scene takes what is made as a wall: its gas is inside, and has the volume that was told.
@@ -47,7 +56,8 @@ fn a_bag_and_its_motion_are_made_together() {
 fn a_scene_takes_the_mesh() {
     let folder = TempDir::new().unwrap();
     let told = sound(&folder, "cylinder --radius 0.05 --height 0.1 --closed -o can.obj");
-    let volume: f64 = told.lines().next().unwrap().split("volume ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let volume: f64 =
+        told.lines().next().unwrap().split("volume ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     let scene = "end_time = 1e-3\n[[gas]]\nname = \"n\"\nmolar_mass = 0.028\ngamma = 1.4\n[[wall]]\nname = \"can\"\n\
         shape = \"mesh\"\nfile = \"can.obj\"\ngas = \"inside\"\n[[chamber]]\nname = \"can\"\npressure = 1e5\n\
         temperature = 300.0\ngas = \"n\"\n[model]\nparticles = 2000\n";
@@ -64,7 +74,10 @@ fn other_meshes_are_made_and_shaken() {
     let folder = TempDir::new().unwrap();
     assert!(sound(&folder, "cushion --radius 0.3 --rings 6 --center -1,2,0.5").contains("432 triangles, closed"));
     assert!(sound(&folder, "cylinder --radius 0.05 --height 0.1 --around 12 --along 3").contains("72 triangles, open"));
-    let text = sound(&folder, "sphere --radius 0.1 --subdivisions 2 -o ball.stl --scale-to 0.5 --frames 3 --until 1 -o ball.nodes");
+    let text = sound(
+        &folder,
+        "sphere --radius 0.1 --subdivisions 2 -o ball.stl --scale-to 0.5 --frames 3 --until 1 -o ball.nodes",
+    );
     assert!(text.contains("320 triangles, closed") && text.contains("3 frames"), "{text}");
     assert!(sound(&folder, "ball.stl --shake 1 --frames 20 --until 0.01 -o s.nodes").contains("20 frames"));
     assert!(sound(&folder, "sphere --radius 100").contains("note: the mesh extends over 2.0000e2 m"));
@@ -82,12 +95,17 @@ fn what_cannot_be_made_is_2_and_said() {
         ("teabag --side 1 --elements 1", "elements a side: found 1, expected 2 to 1000"),
         ("teabag --side 1 --frames 3", "a mesh without --shake or --scale-to takes no --frames"),
         ("teabag --side 1 --shake 3", "--frames"),
-        ("teabag --side 1 -o bag.nodes", "found a mesh at rest"),
+        ("teabag --side 1 -o bag.nodes", "found a mesh without motion, expected --shake or --scale-to"),
         ("teabag --side 1 -o bag.csv", "found the ending `csv`, expected `obj` or `stl`"),
         ("teabag --side 1 --shake 100 --frames 3 --until 1", "the amplitude: found 2.000e-3 m"),
         ("none.obj", "cannot read"),
         ("cut.nodes", "found 8 bytes, expected at least 44: it is cut off"),
-        ("cut.nodes --side 1", "takes no --side; it takes none"),
+        ("cut.nodes --side 1", "takes no --side; it takes --speed-limit"),
+        ("cut.nodes --until 1", "takes no --until"),
+        (
+            "teabag --side 1 --speed-limit 1",
+            "a mesh without --shake or --scale-to takes no --speed-limit; it takes none",
+        ),
         ("sphere --radius 1 --center 1,2", "three numbers with commas"),
         ("sphere --radius 1 --units m", "SI, kg-mm-ms, t-mm-s are possible"),
     ] {

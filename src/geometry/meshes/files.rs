@@ -19,18 +19,19 @@ impl TriangleMesh {
     pub fn read(path: &Path) -> Result<TriangleMesh, MeshError> {
         let unreadable = |reason: String| MeshError::Unreadable { path: path.into(), reason };
         let read = ending(path)?;
-        let bytes = std::fs::read(path)
-            .map_err(|error| MeshError::Io { action: "read", path: path.into(), reason: error.to_string() })?;
-        let mesh = match read {
-            Ending::Obj => obj::read_mesh(&bytes).map(|obj::Mesh { nodes, triangles, parts, names }| TriangleMesh {
-                nodes,
-                triangles,
-                parts,
-                names,
-            }),
-            Ending::Stl => stl::read(&bytes).map(joined),
-        }
-        .map_err(unreadable)?;
+        let bytes = std::fs::read(path).map_err(|error| MeshError::Io {
+            action: "read",
+            path: path.into(),
+            reason: error.to_string(),
+        })?;
+        let mesh =
+            match read {
+                Ending::Obj => obj::read_mesh(&bytes).map(|obj::Mesh { nodes, triangles, parts, names }| {
+                    TriangleMesh { nodes, triangles, parts, names }
+                }),
+                Ending::Stl => stl::read(&bytes).map(joined),
+            }
+            .map_err(unreadable)?;
         if mesh.triangles.is_empty() {
             return Err(unreadable("there are no triangles in it".into()));
         }
@@ -46,8 +47,11 @@ impl TriangleMesh {
             Ending::Obj => self.to_obj(unit),
             Ending::Stl => self.to_stl(unit),
         };
-        std::fs::write(path, text)
-            .map_err(|error| MeshError::Io { action: "write", path: path.into(), reason: error.to_string() })
+        std::fs::write(path, text).map_err(|error| MeshError::Io {
+            action: "write",
+            path: path.into(),
+            reason: error.to_string(),
+        })
     }
 
     fn to_obj(&self, unit: f64) -> String {
@@ -58,8 +62,10 @@ impl TriangleMesh {
         }
         let mut before = None;
         for (t, part) in self.triangles.iter().zip(&self.parts) {
-            if let Some(part) = part.filter(|_| *part != before) {
-                let _ = writeln!(text, "g {}", self.names[part as usize]);
+            if *part != before {
+                // A group without a name is none.
+                let name = part.map_or("", |part| &self.names[part as usize]);
+                let _ = writeln!(text, "{}", format!("g {name}").trim_end());
             }
             before = *part;
             let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
@@ -136,6 +142,20 @@ mod tests {
             mesh.write(&path, 1.0).unwrap();
             assert_eq!(TriangleMesh::read(&path).unwrap(), mesh);
         }
+    }
+
+    #[test]
+    fn triangles_of_no_part_stay_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut mesh = BAG.mesh([0.0; 3]).unwrap();
+        mesh.parts[60..].fill(None);
+        for name in ["bag.obj", "bag.stl"] {
+            let path = folder.path().join(name);
+            mesh.write(&path, 1.0).unwrap();
+            assert_eq!(TriangleMesh::read(&path).unwrap().parts, mesh.parts, "{name}");
+        }
+        let parts = mesh.measures();
+        assert_eq!((parts[1].triangles, parts[2].name.as_str(), parts[2].triangles), (10, "", 40));
     }
 
     /// STL has no numbers; joined in the order of the file, nodes get those of the mesh.

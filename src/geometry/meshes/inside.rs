@@ -63,7 +63,8 @@ pub fn inside(points: &[[f64; 3]], mesh: &TriangleMesh) -> Result<Vec<bool>, Geo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::meshes::MeshShape;
+    use crate::geometry::sampling::r2;
+    use crate::geometry::{MeshShape, Motion};
 
     /// A lattice whose lines pass nodes, edges and diagonals of a bag: the heights decide.
     #[test]
@@ -105,6 +106,37 @@ mod tests {
             }
         }
         assert!(!surface.contains([f64::NAN, 0.0, 0.0]) && !surface.contains([0.75, f64::NAN, 0.0]));
+    }
+
+    /// Against the solid angle under which a point sees the surface (van Oosterom and Strackee 1983), of a bag whose nodes
+    /// are anywhere near their places.
+    #[test]
+    fn points_agree_with_the_solid_angle() {
+        let bag = MeshShape::Teabag { side: 1.0, elements: 6, gap: 0.2 }.mesh([0.0; 3]).unwrap();
+        let shake = Motion::Shake { speed: 1.0, amplitude: Some(0.05), seed: 7 };
+        let nodes = shake.frames(&bag, 30, 1.0).unwrap().at(0.9);
+        let surface = ClosedSurface::new(&nodes, &bag.triangles, "bag").unwrap();
+        let points: Vec<[f64; 3]> = (0..3000)
+            .map(|i| {
+                let [x, y] = r2(i);
+                [1.2 * x - 0.6, 1.2 * y - 0.6, 0.4 * r2(7 * i + 3)[0] - 0.2]
+            })
+            .collect();
+        let winding = |point: &[f64; 3]| {
+            let angle = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|v| DVec3::from(nodes[v as usize]) - DVec3::from(*point));
+                let (p, q, r) = (a.length(), b.length(), c.length());
+                2.0 * libm::atan2(a.dot(b.cross(c)), p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q)
+            };
+            bag.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+        };
+        let found = surface.inside(&points);
+        for (point, found) in points.iter().zip(&found) {
+            assert!((winding(point) - f64::from(u8::from(*found))).abs() < 1e-6, "{point:?} {found}");
+        }
+        let share = found.iter().filter(|found| **found).count() as f64 / 3000.0;
+        let volume = TriangleMesh { nodes, ..bag }.volume();
+        assert!((share * 1.2 * 1.2 * 0.4 / volume - 1.0).abs() < 0.05, "{share} {volume}");
     }
 
     #[test]

@@ -159,10 +159,10 @@ mod tests {
         for at in [0.0, 1000.0] {
             let mesh = tetrahedron(at);
             let parts = mesh.measures();
-            assert_eq!(parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect::<Vec<_>>(), [
-                ("low", 3),
-                ("high", 1)
-            ]);
+            assert_eq!(
+                parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect::<Vec<_>>(),
+                [("low", 3), ("high", 1)]
+            );
             assert!((parts[0].area - 1.5).abs() < 1e-12 && (parts[1].area - 0.75f64.sqrt()).abs() < 1e-12);
             let sum: f64 = parts.iter().map(|part| part.volume).sum();
             assert!((sum - 1.0 / 6.0).abs() < 1e-12 && (mesh.volume() - sum).abs() < 1e-15, "{sum}");

@@ -97,12 +97,7 @@ impl MeshShape {
         Err(self.refused("the gap", format!("{gap} m"), expected))
     }
 
-    fn count(
-        &self,
-        what: &'static str,
-        found: u32,
-        allowed: std::ops::RangeInclusive<u32>,
-    ) -> Result<(), MeshError> {
+    fn count(&self, what: &'static str, found: u32, allowed: std::ops::RangeInclusive<u32>) -> Result<(), MeshError> {
         if allowed.contains(&found) {
             return Ok(());
         }
@@ -110,7 +105,7 @@ impl MeshShape {
     }
 
     fn center(&self, center: [f64; 3]) -> Result<(), MeshError> {
-        match center.iter().find(|x| !(x.abs() <= LONGEST)) {
+        match center.iter().find(|x| x.is_nan() || x.abs() > LONGEST) {
             None => Ok(()),
             Some(x) => Err(self.refused("the centre", format!("{x} m"), format!("-{LONGEST} to {LONGEST} m"))),
         }
@@ -124,8 +119,7 @@ mod tests {
     #[test]
     fn absurd_numbers_are_refused_by_name() {
         let teabag = MeshShape::Teabag { side: 0.5, elements: 4, gap: 0.01 };
-        let cylinder =
-            |around, along| MeshShape::Cylinder { radius: 1.0, height: 1.0, around, along, closed: true };
+        let cylinder = |around, along| MeshShape::Cylinder { radius: 1.0, height: 1.0, around, along, closed: true };
         let cases = [
             (MeshShape::Teabag { side: -0.5, elements: 4, gap: 0.01 }, "teabag: the side: found -0.5 m, expected"),
             (MeshShape::Teabag { side: f64::NAN, elements: 4, gap: 0.01 }, "the side: found NaN m"),

@@ -37,7 +37,9 @@ pub enum FrameNote {
 impl FrameNote {
     /// In words, in the units of a scene.
     pub fn told(&self, units: UnitSystem) -> String {
-        let of = |quantity: Dimension, value: f64| format!("{:.4e} {}", value / units.factor(quantity), units.symbol(quantity));
+        let of = |quantity: Dimension, value: f64| {
+            format!("{:.4e} {}", value / units.factor(quantity), units.symbol(quantity))
+        };
         let at = |spot: &Spot| {
             let place = Places::one(spot.place.into()).told_in(units);
             format!("frame {} (time {}), {place}", spot.frame, of(Dimension::Time, spot.time))
@@ -182,7 +184,10 @@ mod tests {
         let frames = NodeFrames::new(vec![0.0, 0.1, 0.2], vec![mesh().nodes, second, third], vec![]).unwrap();
         let [jump, turned, flat] = &told(&frames, 2.9)[..] else { panic!("{:?}", told(&frames, 2.9)) };
         assert!(jump.starts_with("1 times a node moves faster than 2.9000e0 m/s"), "{jump}");
-        assert!(jump.contains("fastest is node 7 with 3.0000e0 m/s, from frame 0 (time 0.0000e0 s), in m: ("), "{jump}");
+        assert!(
+            jump.contains("fastest is node 7 with 3.0000e0 m/s, from frame 0 (time 0.0000e0 s), in m: ("),
+            "{jump}"
+        );
         assert!(turned.contains("turns by more than a right angle") && turned.contains("from frame 0"), "{turned}");
         assert!(flat.starts_with("2 times a triangle has no area") && flat.contains("triangle 0 in frame 2"), "{flat}");
         let note = frames.notes(&mesh(), 2.9).unwrap()[0].told(UnitSystem::KgMmMs);

@@ -131,9 +131,7 @@ impl NodeFrames {
             Moment::Rest(_) => vec![[0.0; 3]; self.nodes],
             Moment::Between(frame, _) => {
                 let span = self.span(frame);
-                self.pairs(frame)
-                    .map(|(a, b)| std::array::from_fn(|axis| (b[axis] - a[axis]) / span))
-                    .collect()
+                self.pairs(frame).map(|(a, b)| std::array::from_fn(|axis| (b[axis] - a[axis]) / span)).collect()
             }
         }
     }

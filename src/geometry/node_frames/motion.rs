@@ -199,7 +199,8 @@ mod tests {
         assert!(refused(shake(-1.0, None), 10, 1.0).contains("shake: the speed: found -1 m/s"));
         assert!(refused(shake(1.0, None), 1, 1.0).contains("shake: frames: found 1, expected 2 to 100000"));
         assert!(refused(shake(1.0, None), 10, f64::NAN).contains("the end: found NaN s"));
-        let words = "the amplitude: found 2.000e-3 m, expected at least the way from frame to frame, 1.111e-2 m, or 51 frames";
+        let words =
+            "the amplitude: found 2.000e-3 m, expected at least the way from frame to frame, 1.111e-2 m, or 51 frames";
         assert!(refused(shake(10.0, None), 10, 1e-2).contains(words));
         assert!(shake(10.0, None).frames(&mesh, 52, 1e-2).is_ok());
         assert!(refused(shake(1.0, Some(f64::INFINITY)), 10, 1e-3).contains("found inf m"));

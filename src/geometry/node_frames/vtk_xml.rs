@@ -37,7 +37,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<VtkFrame, Misread> {
         Some(at) => file.integers(at).map(Some),
         None => Ok(None),
     };
-    let (connectivity, ends) = (integers("connectivity")?.unwrap_or_default(), integers("offsets")?.unwrap_or_default());
+    let (connectivity, ends) =
+        (integers("connectivity")?.unwrap_or_default(), integers("offsets")?.unwrap_or_default());
     let types = if section == "Cells" { integers("types")? } else { None };
     Ok(VtkFrame { nodes, triangles: Cells { connectivity, ends, types }.triangles()? })
 }
@@ -104,7 +105,8 @@ impl<'a> File<'a> {
     }
 
     fn raw(&self, tag: &Tag) -> Result<Vec<f64>, Misread> {
-        let cut = |what: &str| Misread::new(tag.place(), format!("no {what} in the appended bytes"), "one: it is cut off");
+        let cut =
+            |what: &str| Misread::new(tag.place(), format!("no {what} in the appended bytes"), "one: it is cut off");
         let bytes = self.appended.unwrap_or_default();
         let offset = tag.get("offset").and_then(|offset| offset.parse::<usize>().ok());
         let own = offset.and_then(|offset| bytes.get(offset..)).ok_or_else(|| cut("place of the array"))?;
@@ -186,7 +188,9 @@ mod tests {
         };
         assert_eq!(refused(b"solid"), ": found no element `VTKFile`, expected a VTK XML file");
         assert!(with("\"UnstructuredGrid\"", "\"ImageData\"").contains("found the type `ImageData`"));
-        assert!(with("NumberOfPoints=\"3\"", "NumberOfPoints=\"4\"").contains("found 3 points, expected 4, as it says"));
+        assert!(
+            with("NumberOfPoints=\"3\"", "NumberOfPoints=\"4\"").contains("found 3 points, expected 4, as it says")
+        );
         assert!(with("0 1 0 1 2<", "0 1 0 1 x<").contains("line 5, `DataArray`: found `x`, expected a number"));
         assert!(with("0 1 0 1 2<", "0 1 0 1 .5<").contains("found 0.5, expected whole numbers"));
         assert!(with("2 5<", "2 6<").contains("cell 1: found the end 6 of its points, expected one from 2 to 5"));

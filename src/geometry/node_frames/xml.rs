@@ -105,7 +105,8 @@ mod tests {
 
     #[test]
     fn tags_have_names_attributes_lines_and_text() {
-        let text = "<?xml version=\"1.0\"?>\n<!-- <a> -->\n<A b=\"1 > 0\" c='x'>\n 1 2<K n=\"u\"><V>9</V></K> 3\n</A><B/>";
+        let text =
+            "<?xml version=\"1.0\"?>\n<!-- <a> -->\n<A b=\"1 > 0\" c='x'>\n 1 2<K n=\"u\"><V>9</V></K> 3\n</A><B/>";
         let tags = tags(text);
         let names: Vec<&str> = tags.iter().map(|tag| tag.name).collect();
         assert_eq!(names, ["A", "K", "V", "/V", "/K", "/A", "B"]);
