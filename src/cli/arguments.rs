@@ -1,8 +1,8 @@
 //! The command line as typed. Help, completions and man pages all come from these types.
 
 mod counts;
-mod pictures;
 mod meshes;
+mod pictures;
 mod runs;
 mod studies;
 
@@ -12,8 +12,8 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use runs::EXIT_CODES;
 
-pub use pictures::RenderArguments;
 pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
+pub use pictures::RenderArguments;
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,
