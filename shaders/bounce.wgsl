@@ -6,7 +6,7 @@
 // vent. A wall that moves does so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions
-// `particles`), the walls, `surface_models` and `vents`; writes `particles` (NOBODY for one that has left), counts it in
+// `particles`), the walls, `surface_models`, `vents` and `zones`; writes `particles` (NOBODY for one that has left), counts it in
 // its cell as `advect` does, and writes the integer tallies `sums`: of the surfaces, the surface models, the vents and the
 // moving walls that the scene has. One thread per entry of `bouncing`, which writes its own particle; random numbers are
 // keyed on (step, hit, id), and sums of integers do not depend on order.
@@ -160,10 +160,12 @@ fn bounce(thread: Thread) {
         var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
         var kept = true;
         if (SURFACE_MODELS && triangle.surface_model != NOBODY) {
-            let surface_model = surface_models[triangle.surface_model];
+            let where_hit = shifted(particle.position, old, hit.time);
+            let model = surface_model_at(triangle.surface_model, where_hit, triangle.normal);
+            let surface_model = surface_models[model];
             let draw = wall_draw(particle.tag, bounces, 0u);
             if (VENTS) {
-                let v = vent_at(surface_model, shifted(particle.position, old, hit.time));
+                let v = vent_at(surface_model, where_hit);
                 if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
                     if (SURFACES && triangle.surface != NOBODY) {
                         tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
@@ -184,7 +186,7 @@ fn bounce(thread: Thread) {
                     spin = surface_model.thermal * gamma_variate(shape, particle.tag, bounces);
                 }
                 let kinetic = 0.5 * gas.mass * dot(relative - away, relative + away);
-                tally_energy(SURFACE_MODELS_AT + triangle.surface_model * SURFACE_MODEL_WORDS, kinetic + (particle.spin - spin));
+                tally_energy(SURFACE_MODELS_AT + model * SURFACE_MODEL_WORDS, kinetic + (particle.spin - spin));
                 particle.spin = spin;
             } else if (chance - surface_model.accommodation < surface_model.friction * (1.0 - surface_model.accommodation)) {
                 turned = scattered(triangle.normal, particle.tag, bounces, draw.z);

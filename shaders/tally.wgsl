@@ -1,4 +1,4 @@
-//! uses: step.wgsl grid.wgsl particle.wgsl add64.wgsl motions.wgsl
+//! uses: step.wgsl grid.wgsl particle.wgsl add64.wgsl motions.wgsl zones.wgsl
 //! binds: zone_sums as sums
 //! phase: tally
 // Sums particle number, velocity, kinetic and spin energy of each gas in each zone (all, chambers,
@@ -10,28 +10,6 @@
 // threads a stretch of workgroups.) Where chambers have all of the gas, the last has what the others leave of the whole: it is not
 // looked for in the space. Fixed-point integers with a carry: the sums do not depend on order. A value
 // out of range is counted, and the host stops the run.
-
-struct Zone {
-    // Box: corners. Sphere: low is the centre. Cylinder: low is the base.
-    low: vec3<u32>,
-    kind: u32,
-    high: vec3<u32>,
-    // Radius of a sphere or a cylinder, m.
-    radius: f32,
-    // Cylinder: unit axis and height, m.
-    axis: vec3<f32>,
-    height: f32,
-    // Box: the motions that its sides go along with, from 1, four bits for each: low x, y, z, high x, y, z.
-    carried: u32,
-    pad: u32,
-    pad2: u32,
-    pad3: u32,
-}
-
-const EVERYWHERE: u32 = 0;
-const BOX: u32 = 1;
-const SPHERE: u32 = 2;
-const CYLINDER: u32 = 3;
 
 override GASES: u32;
 // Zones 1 .. CHAMBERS are chambers: of several that hold a particle the first has it.
@@ -48,7 +26,6 @@ var<storage, read> stalled: array<u32>;
 var<storage, read> particles: array<Packed>;
 var<storage, read_write> counters: array<atomic<u32>>;
 var<storage, read_write> sums: array<atomic<u32>>;
-var<storage, read> zones: array<Zone>;
 
 // Of one gas, then of the other.
 var<workgroup> shared_sums: array<atomic<u32>, 2u * ZONE_WORDS>;
@@ -62,52 +39,12 @@ struct Sums {
     spin: vec2<u32>,
 }
 
-// How far three sides have moved by the end of the step, each along its axis, quanta.
-fn sides_moved(carried: u32) -> vec3<u32> {
-    var by = vec3<u32>(0u);
-    for (var axis = 0u; axis < 3u; axis++) {
-        let m = (carried >> (4u * axis)) & 15u;
-        if (m > 0u) {
-            let motion = motion_of(m - 1u);
-            by[axis] = shifted(bitcast<vec3<u32>>(motion.moved), motion.velocity, step.dt)[axis];
-        }
-    }
-    return by;
-}
-
-fn contains(zone: Zone, p: vec3<u32>) -> bool {
-    if (zone.kind == BOX) {
-        if (MOVING && zone.carried != 0u) {
-            let low = zone.low + sides_moved(zone.carried);
-            let high = zone.high + sides_moved(zone.carried >> 12u);
-            return all(p >= low) && all(p < high);
-        }
-        return all(p >= zone.low) && all(p < zone.high);
-    }
-    // bench: everywhere
-    if (zone.kind == EVERYWHERE) {
-        return true;
-    }
-    let d = between(zone.low, p);
-    if (zone.kind == SPHERE) {
-        return dot(d, d) < zone.radius * zone.radius;
-    }
-    let along = dot(d, zone.axis);
-    let away = d - along * zone.axis;
-    return along >= 0.0 && along < zone.height && dot(away, away) < zone.radius * zone.radius;
-}
-
 // Whether an earlier chamber has what lies in this zone too.
 fn taken(zone: u32, p: vec3<u32>) -> bool {
     if (zone > CHAMBERS) {
         return false;
     }
-    for (var earlier = 1u; earlier < zone; earlier++) {
-        if (contains(zones[earlier], p)) {
-            return true;
-        }
-    }
-    return false;
+    return earlier_has(zone, p);
 }
 
 fn share64(slot: u32, value: vec2<u32>) {

@@ -1,3 +1,4 @@
+//! uses: zones.wgsl
 // What walls that are no mirrors do: by wall and chamber, for the length of an interval.
 
 struct SurfaceModel {
@@ -10,6 +11,10 @@ struct SurfaceModel {
     // Its entries of `vents`.
     first_vent: u32,
     end_vent: u32,
+    // The zone of the chamber whose gas it meets, if the gas before its triangles is that of several; else 0.
+    zone: u32,
+    // What they are before the gas of another.
+    next: u32,
 }
 
 // A place of a wall that lets gas out.
@@ -38,6 +43,23 @@ const BLOCKS_PER_HIT: u32 = 32;
 fn wall_draw(tag: u32, hit: u32, block: u32) -> vec4<u32> {
     let counter = vec4<u32>(step.index, hit * BLOCKS_PER_HIT + block, id_of(tag), 0u);
     return philox(counter, vec2<u32>(SEED_LOW, WALL_SEED_HIGH));
+}
+
+// Off a wall, to the gas before a place on it, quanta.
+const BEFORE: f32 = 1024.0;
+
+// The surface model of a triangle at a place of it: where it borders on several chambers that of the one before the place.
+fn surface_model_at(first: u32, place: vec3<u32>, normal: vec3<f32>) -> u32 {
+    var model = first;
+    var zone = surface_models[model].zone;
+    if (zone != 0u) {
+        let p = shifted(place, normal, BEFORE * QUANTUM);
+        while (zone != 0u && (!contains(zones[zone], p) || earlier_has(zone, p))) {
+            model = surface_models[model].next;
+            zone = surface_models[model].zone;
+        }
+    }
+    return model;
 }
 
 // The vent of a surface model that a place lies in, or NOBODY; of several the first.

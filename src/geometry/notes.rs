@@ -4,13 +4,25 @@
 //! Where no walls overlap, each connected surface bounds its own places: a space of gas has one surface around it, with
 //! its normals (into the gas) inwards. So there are as many spaces as surfaces of negative volume that gas lies before.
 
-use super::Vessel;
 use super::closed::signed_volume;
+use super::vessel::bounds_of;
+use super::{Triangle, Vessel};
 use crate::scene::UnitSystem;
 use glam::DVec3;
 
 /// How far before a triangle the gas is looked for, over its longest edge.
 const BEFORE: f64 = 1e-4;
+/// Share of what a surface encloses from which on a body within it leaves a shell.
+const SHELL: f64 = 0.8;
+
+/// A space without gas within a shell of gas.
+pub struct Hollow {
+    pub wall: usize,
+    /// m3.
+    pub volume: f64,
+    low: DVec3,
+    high: DVec3,
+}
 
 impl Vessel {
     /// A sentence each; lengths in the scene's units.
@@ -50,12 +62,35 @@ impl Vessel {
             return None;
         }
         let vertices: Vec<DVec3> = self.vertices.iter().map(|&v| DVec3::from(v)).collect();
-        let surfaces = self.surfaces();
+        let surfaces = self.surfaces(|_| true);
         Some(surfaces.iter().filter(|own| signed_volume(&vertices, own) < 0.0 && self.faces_gas(own)).count())
     }
 
-    /// The triangles of each connected surface.
-    fn surfaces(&self) -> Vec<Vec<[u32; 3]>> {
+    /// The largest space without gas that the surface of a wall with the gas inside has within it, if nearly all of what it encloses is that:
+    /// its gas is a shell.
+    pub fn hollow(&self, wall: usize) -> Option<Hollow> {
+        if !self.walls[wall].cavity {
+            return None;
+        }
+        let vertices: Vec<DVec3> = self.vertices.iter().map(|&v| DVec3::from(v)).collect();
+        let surfaces = self.surfaces(|triangle| triangle.wall as usize == wall);
+        let measured = surfaces.iter().map(|own| (signed_volume(&vertices, own), own));
+        let (volume, own) = measured.clone().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let around = measured.map(|(volume, _)| -volume).fold(0.0, f64::max);
+        let (low, high) = bounds_of(&own.iter().flatten().map(|&v| vertices[v as usize]).collect::<Vec<_>>());
+        (volume > SHELL * around && around > 0.0).then_some(Hollow { wall, volume, low, high })
+    }
+
+    /// The hollow that holds a place, m.
+    pub fn hollow_at(&self, place: [f64; 3]) -> Option<Hollow> {
+        let hollows = (0..self.walls.len()).filter_map(|wall| self.hollow(wall));
+        let p = DVec3::from(place);
+        let mut around = hollows.filter(|own| own.low.cmple(p).all() && p.cmple(own.high).all());
+        around.find(|own| self.depth_of(own.wall, place) > 0)
+    }
+
+    /// The triangles of each connected surface of some triangles.
+    fn surfaces(&self, counts: impl Fn(&Triangle) -> bool) -> Vec<Vec<[u32; 3]>> {
         let mut root: Vec<u32> = (0..self.vertices.len() as u32).collect();
         fn find(root: &mut [u32], v: u32) -> u32 {
             let mut at = v;
@@ -65,14 +100,14 @@ impl Vessel {
             }
             at
         }
-        for triangle in &self.triangles {
+        for triangle in self.triangles.iter().filter(|triangle| counts(triangle)) {
             let [a, b, c] = triangle.vertices.map(|v| find(&mut root, v));
             let least = a.min(b).min(c);
             [a, b, c].iter().for_each(|&v| root[v as usize] = least);
         }
         let mut place = vec![None; self.vertices.len()];
         let mut surfaces: Vec<Vec<[u32; 3]>> = Vec::new();
-        for triangle in &self.triangles {
+        for triangle in self.triangles.iter().filter(|triangle| counts(triangle)) {
             let own = find(&mut root, triangle.vertices[0]) as usize;
             let surface = *place[own].get_or_insert_with(|| {
                 surfaces.push(Vec::new());

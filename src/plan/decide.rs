@@ -18,7 +18,7 @@ use super::{
     ChamberPlan, GasPlan, Inventory, Measured, OpeningPlan, Plan, PlanError, Reason, control_volume, facets, motion,
     notes, plausible, vents,
 };
-use crate::gas::{Species, jet_mach, kinetics};
+use crate::gas::{Species, jet_mach, jet_state, kinetics};
 use crate::geometry::Grid;
 use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
 
@@ -190,8 +190,10 @@ fn jets(scene: &Scene, species: &[Species]) -> Result<(), PlanError> {
         let temperature = orifice.temperature.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
         let mach = jet_mach(speed, temperature, &orifice.mixture, species);
         if mach > FASTEST_JET {
+            let largest = jet_state(JetSpeed::Mach(FASTEST_JET), temperature, &orifice.mixture, species);
+            let fastest = largest.map_or(0.0, |[drift, _]| drift);
             let (orifice, limit) = (orifice.name.clone(), FASTEST_JET);
-            return Err(PlanError::JetTooFast { orifice, velocity, temperature, mach, limit });
+            return Err(PlanError::JetTooFast { orifice, velocity, temperature, mach, limit, fastest });
         }
     }
     Ok(())

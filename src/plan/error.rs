@@ -11,6 +11,15 @@ pub const MOST_ROUNDS: u32 = 8;
 /// Cell numbers are 32-bit on the device, with a bit to spare.
 pub const MOST_CELLS: usize = 1 << 31;
 
+/// What a jet is that is beyond the largest Mach number, or faster than its enthalpy allows.
+fn too_fast(mach: f64) -> String {
+    if mach.is_finite() {
+        format!("would have Mach number {}", significant(mach))
+    } else {
+        "is faster than gas of that temperature can flow, sqrt(2 cp T0)".into()
+    }
+}
+
 #[derive(Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum PlanError {
     #[error("the scene holds no gas: no chamber has any, and no orifice delivers any before the end time")]
@@ -25,11 +34,11 @@ pub enum PlanError {
     ))]
     NoVolume { chamber: String, volume: f64 },
     #[error(
-        "orifice `{orifice}`: a jet of {} m/s at a stagnation temperature of {} K would have Mach number {}; {} is the largest",
-        significant(*velocity), significant(*temperature), significant(*mach), significant(*limit)
+        "orifice `{orifice}`: a jet of {} m/s at a stagnation temperature of {} K {}; Mach {}, {} m/s, is the largest",
+        significant(*velocity), significant(*temperature), too_fast(*mach), significant(*limit), significant(*fastest)
     )]
     #[diagnostic(help("give the jet a smaller `velocity`, or a `mach`, or the gas a higher `temperature`"))]
-    JetTooFast { orifice: String, velocity: f64, temperature: f64, mach: f64, limit: f64 },
+    JetTooFast { orifice: String, velocity: f64, temperature: f64, mach: f64, limit: f64, fastest: f64 },
     #[error("{volumes} volumes were measured for {chambers} chambers")]
     Volumes { volumes: usize, chambers: usize },
     #[error("{particles} particles are more than the {limit} that an id can name")]

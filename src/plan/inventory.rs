@@ -137,6 +137,7 @@ impl Inventory {
         let gases = plausible::notes_of_gases(scene).into_iter().chain(plausible::notes_of_flows(scene, amounts));
         let inflators = plausible::notes_of_inflators(scene, &measured.sources);
         let more = gases.chain(inflators).chain(vent_notes::of_vents(scene, measured, &end));
+        let more = more.chain(plausible::notes_of_places(scene, measured));
         notes.extend(more.map(|note| scene.lines.told(note)));
         Inventory {
             units: scene.units,

@@ -44,14 +44,20 @@ pub struct Measured {
     pub gaps_beside: Vec<GapBeside>,
     /// Of the walls that move.
     pub strokes: Vec<Stroke>,
-    /// Walls that move and have no gas before them at any time.
-    pub dry_motions: Vec<usize>,
+    /// Walls that move and have no gas before them at any time, or from some time on.
+    pub dry_motions: Vec<DryMotion>,
+    /// Spaces that open behind walls that move, and that no gas reaches.
+    pub pockets: Vec<Pocket>,
     /// Surfaces of the scene that have none.
     pub dry_surfaces: Vec<usize>,
     /// Vents with gas of the scene behind them, and its chamber.
     pub backed_vents: Vec<[usize; 2]>,
     /// The chamber that each orifice of the scene blows into, where there is one.
     pub sources: Vec<Option<usize>>,
+    /// How many spaces of gas no gas flows between, where that is more than one and walls overlap.
+    pub separate_spaces: Option<usize>,
+    /// Chambers whose gas is in several of such spaces.
+    pub split_chambers: Vec<SplitChamber>,
     /// Orifices with a wall right before them.
     pub facing_orifices: Vec<FacingOrifice>,
 }
@@ -102,6 +108,8 @@ pub struct MeasuredWall {
     pub cavity: bool,
     /// Of a solid: the share of its volume that lies outside of what encloses the gas.
     pub outside: f64,
+    /// m3 without gas within a shell of gas that the wall encloses; 0 where there is none.
+    pub hollow: f64,
 }
 
 /// Where two chambers meet and no wall lies between them.
@@ -150,6 +158,34 @@ pub struct Stroke {
     /// The chamber that is shortest along the motion, of those that the wall borders on, and its length, m.
     pub chamber: usize,
     pub length: f64,
+}
+
+/// A chamber whose gas is in several spaces that no gas flows between.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SplitChamber {
+    pub chamber: usize,
+    /// m3 in each, the largest first.
+    pub volumes: Vec<f64>,
+}
+
+/// A wall that moves without gas before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DryMotion {
+    pub wall: usize,
+    /// s; 0: at no time of the run.
+    pub since: f64,
+    /// Whether it would have gas before it if it moved the other way.
+    pub other_way: bool,
+}
+
+/// A space that opens behind a wall that moves, without gas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pocket {
+    pub wall: usize,
+    /// s, when it opens.
+    pub time: f64,
+    /// m that the wall goes on after that, to its farthest place.
+    pub further: f64,
 }
 
 /// An orifice whose jet meets a wall at once.

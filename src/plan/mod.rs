@@ -51,8 +51,8 @@ pub use forecast::{
 pub use inventory::Inventory;
 pub use limits::{Bound, FAST_TAIL, LIMITS, Limit, Quantity, Warning, limit, step_limit};
 pub use measured::{
-    FacingOrifice, GapBeside, Hindered, Hindrance, Measured, MeasuredMotion, MeasuredVent, MeasuredWall, OpenSection,
-    Stroke,
+    DryMotion, FacingOrifice, GapBeside, Hindered, Hindrance, Measured, MeasuredMotion, MeasuredVent, MeasuredWall,
+    OpenSection, Pocket, SplitChamber, Stroke,
 };
 pub use planned::{ChamberPlan, GasPlan, OpeningPlan, Plan, VentPlan};
 pub use plausible::{by_meshes as doubts_of_meshes, by_scene as doubts_of};

@@ -38,7 +38,12 @@ pub fn of_scene(scene: &Scene, measured: &Measured, shut: &Shut<'_>) -> Vec<Stri
         )
     });
     let vents = open.chain(unlike_outsides(scene, measured)).chain(shut);
-    holes.chain(vents).chain(facing(scene, measured)).map(|note| scene.lines.told(note)).collect()
+    holes
+        .chain(separate(scene, measured))
+        .chain(vents)
+        .chain(facing(scene, measured))
+        .map(|note| scene.lines.told(note))
+        .collect()
 }
 
 /// Of chambers that touch, in a run of particles: those of unlike gas, and all that no wall parts though none of its gaps is told.
@@ -64,6 +69,22 @@ fn untold_sections(measured: &Measured) -> impl Iterator<Item = &OpenSection> {
         gaps.any(|own| own == [a, b] || own == [b, a])
     };
     measured.open_sections.iter().filter(move |section| !is_told(section.between))
+}
+
+/// Spaces of gas that nothing joins, and chambers that are in several of them.
+fn separate(scene: &Scene, measured: &Measured) -> Vec<String> {
+    let spaces =
+        measured.separate_spaces.map(|count| format!("{count} separate gas spaces: no gas flows between them"));
+    let split = measured.split_chambers.iter().map(|split| {
+        let volumes: Vec<String> = split.volumes.iter().map(|volume| significant(1e3 * volume)).collect();
+        format!(
+            "chamber `{}`: its gas lies in {} spaces that no gas flows between, of {} L: give each a [[chamber]], or join them by a hole",
+            scene.chambers[split.chamber].name,
+            split.volumes.len(),
+            volumes.join(", ")
+        )
+    });
+    spaces.into_iter().chain(split).collect()
 }
 
 /// Orifices that blow at a wall right before them.

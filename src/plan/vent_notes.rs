@@ -1,11 +1,11 @@
-//! What vents do that was hardly meant: pressures of opening that look absolute, curves whose pressures no chamber has, more area
+//! What vents do that was hardly meant: chambers with less pressure than outside, pressures of opening that look absolute, curves whose pressures no chamber has, more area
 //! than wall, nothing at all, and gas of the scene behind them.
 
 use super::amounts::Contents;
 use super::plausible::pressure_unit;
 use super::text::{as_written, significant};
 use super::{Measured, MeasuredVent};
-use crate::scene::{Curve, Dimension, Scene, Vent, VentFlow};
+use crate::scene::{Chamber, Curve, Dimension, Scene, Vent, VentFlow};
 
 /// Share by which two pressures differ that were meant to be the same.
 pub const SAME: f64 = 1e-3;
@@ -17,6 +17,9 @@ const FAR_BELOW: f64 = 0.003;
 const FAR_BEYOND: f64 = 3.0;
 /// What another unit or the other column may make of the last point, over the same.
 const FITS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+/// Pressure of a chamber over that outside of its vent: between these two it may be gauge. With less it is near vacuum, or in another unit.
+const FAINT: f64 = 0.02;
+const LESS: f64 = 0.98;
 /// Coefficients below it are hardly those of a vent.
 const SMALL: f64 = 0.05;
 
@@ -29,9 +32,10 @@ pub fn of_vents(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<Strin
     let own = vents.flat_map(|(vent, place)| {
         let above = highest - vent.external_pressure;
         let curve = swapped(scene, vent, above).or_else(|| other_unit(scene, vent, above));
-        [looks_absolute(scene, vent), curve, wide(scene, vent, place), shut(vent)].into_iter().flatten()
+        let held = leaks_without_pressure(scene, vent);
+        [looks_absolute(scene, vent), curve, wide(scene, vent, place), shut(vent), held].into_iter().flatten()
     });
-    own.chain(backed(scene, measured)).collect()
+    own.chain(below_outside(scene, measured)).chain(backed(scene, measured)).collect()
 }
 
 /// A pressure of opening that no gas reaches but would as an absolute one: " Is ...?", or nothing.
@@ -134,6 +138,40 @@ fn other_unit(scene: &Scene, vent: &Vent, above: f64) -> Option<String> {
 fn significant_pressure(scene: &Scene, si: f64) -> String {
     let unit = scene.units.symbol(Dimension::Pressure);
     format!("{} {unit}", significant(si / scene.units.factor(Dimension::Pressure)))
+}
+
+/// Chambers with less pressure at the start than outside of a vent: the first vent of each.
+fn below_outside(scene: &Scene, measured: &Measured) -> Vec<String> {
+    let vents = || scene.vents.iter().zip(&measured.vents);
+    let of_chamber = |(index, chamber): (usize, &Chamber)| {
+        let share = |vent: &Vent| chamber.pressure / vent.external_pressure;
+        let (vent, _) = vents().find(|(vent, place)| place.chamber == index && (FAINT..LESS).contains(&share(vent)))?;
+        Some(format!(
+            "vent `{}`: chamber `{}` has {} at the start, less than the {} outside, and a vent lets nothing in: is the pressure of the \
+             chamber gauge? It is absolute, as `external_pressure` is",
+            vent.name,
+            chamber.name,
+            pressure(scene, chamber.pressure),
+            pressure(scene, vent.external_pressure)
+        ))
+    };
+    scene.chambers.iter().enumerate().filter_map(of_chamber).collect()
+}
+
+/// A fabric that is measured from some pressure on, and leaks as much without any.
+fn leaks_without_pressure(scene: &Scene, vent: &Vent) -> Option<String> {
+    let VentFlow::LeakVelocity(curve) = &vent.flow else { return None };
+    let [least, velocity] = *curve.points.first()?;
+    (least > 0.0 && velocity > 0.0).then(|| {
+        format!(
+            "vent `{}`: its leak_velocity begins with {} {} at {}, and holds that at all pressures below, down to 0: begin with [0, 0] if \
+             nothing leaks without pressure",
+            vent.name,
+            as_written(velocity / scene.units.factor(Dimension::Velocity)),
+            scene.units.symbol(Dimension::Velocity),
+            pressure(scene, least)
+        )
+    })
 }
 
 /// More area than wall. (A leaking fabric may be folded.)

@@ -35,6 +35,9 @@ pub fn lost_events(collisions_per_step: f64, rounds: u32) -> f64 {
     share * LOST[5][column]
 }
 
+/// Of a step that is asked for, so that its digits do not make it longer than what it is to be.
+const ROUNDED_DOWN: f64 = 0.99;
+
 /// Chambers with less than this share of the highest pressure have fronts run into them.
 const PRESSED: f64 = 0.5;
 
@@ -273,7 +276,10 @@ pub fn wall_hits(measured: &Measured, number_density: f64, resolution: &Resoluti
 fn busy_walls(measured: &Measured, decided: &Decided<'_>) -> Option<Warning> {
     let Decided { method, number_density, resolution, .. } = *decided;
     let hits = wall_hits(measured, number_density, resolution);
-    Warning::by_table(Quantity::WallHits, method, "the time step", hits, "a smaller `time_step`")
+    // Hits grow with the step.
+    let most = limit(Quantity::WallHits, method).map_or(f64::NAN, |l| l.bound.value());
+    let step = significant(1e6 * ROUNDED_DOWN * resolution.time_step * most / hits);
+    Warning::by_table(Quantity::WallHits, method, "the time step", hits, &format!("a `time_step` of {step} us"))
 }
 
 /// Free flight is right where molecules do not meet either: their mean free path over the smallest passage, or the size

@@ -28,6 +28,7 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
     }
     raw.probe.iter().for_each(|at| add("probe", &at.value.name, &at.span));
     raw.surface.iter().for_each(|at| add("surface", &at.value.name, &at.span));
+    raw.opening.iter().for_each(|at| add("opening", &at.value.name, &at.span));
     for vent in &raw.vent {
         add("vent", &vent.value.name, &vent.span);
         add("vents", &vent.value.name, &vent.span);

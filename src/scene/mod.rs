@@ -40,7 +40,7 @@ pub use flows::FASTEST_JET;
 pub use gases::shown_collision_number;
 pub use lines::Lines;
 pub use motions::MOST_MOTIONS;
-pub use settings::{LEAST_ACCURACY, MOST_ACCURACY};
+pub use settings::{LEAST_ACCURACY, MOST_ACCURACY, MOST_DEVICE_RATE};
 pub use surface_model::*;
 pub use types::*;
 pub use units::Quantity as Dimension;

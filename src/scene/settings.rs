@@ -16,6 +16,8 @@ const MOST_PARTICLES: i64 = (1 << 28) - 1;
 const COLLISION_NUMBER: f64 = 5.0;
 /// Range of a wished accuracy.
 pub const LEAST_ACCURACY: f64 = 1e-4;
+/// Million particle-steps per second: ten times what a GPU of 5 TB/s does in free flight. More are not millions.
+pub const MOST_DEVICE_RATE: f64 = 3e5;
 pub const MOST_ACCURACY: f64 = 0.5;
 const ROWS: u32 = 200;
 const SNAPSHOTS: u32 = 10;
@@ -137,6 +139,10 @@ fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
         let allowed = "a relative error from 0.0001 to 0.5";
         bounded(at, Quantity::Pure, units, allowed, |e| (LEAST_ACCURACY..=MOST_ACCURACY).contains(&e))
     };
+    let rate = |at: &At<f64>| {
+        let allowed = format!("above 0 and at most {MOST_DEVICE_RATE}: it is in million particle-steps per second");
+        bounded(at, Quantity::Pure, units, &allowed, |millions| millions > 0.0 && millions <= MOST_DEVICE_RATE)
+    };
     Ok(Wish {
         accuracy: raw.accuracy.as_ref().map(accuracy).transpose()?,
         time_budget: pure(&raw.time_budget)?,
@@ -145,7 +151,7 @@ fn wish(raw: &RawModel, units: UnitSystem) -> Result<Wish, Problem> {
             .as_ref()
             .map(|n| super::numbers::count(n, 1..=MOST_PARTICLES))
             .transpose()?,
-        device_rate: pure(&raw.device_rate)?.map(|millions| 1e6 * millions),
+        device_rate: raw.device_rate.as_ref().map(rate).transpose()?.map(|millions| 1e6 * millions),
     })
 }
 

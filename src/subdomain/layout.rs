@@ -163,6 +163,8 @@ pub struct GpuSurfaceModel {
     pub friction: f32,
     pub first_vent: u32,
     pub end_vent: u32,
+    pub zone: u32,
+    pub next: u32,
 }
 
 /// `Vent` of `shaders/shared/surface_models.wgsl`.
@@ -177,7 +179,7 @@ pub struct GpuVent {
     pub pad2: u32,
 }
 
-/// `Zone` of `shaders/tally.wgsl`.
+/// `Zone` of `shaders/shared/zones.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct GpuZone {

@@ -124,7 +124,7 @@ pub fn mode_table(plan: &Plan) -> Vec<[f32; 4]> {
     table
 }
 
-/// A region as `shaders/tally.wgsl` tests it; `None` is everywhere.
+/// A region as `shaders/shared/zones.wgsl` tests it; `None` is everywhere.
 pub fn zone_of(region: Option<&Region>, grid: &Grid) -> GpuZone {
     let quantum = grid.quantum();
     // A corner outside the grid is moved to its edge: there are no particles beyond.

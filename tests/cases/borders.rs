@@ -28,7 +28,7 @@ fn chambers_without_a_wall_between_are_told() {
     let [note] = &notes("", AIR)[..] else { panic!("{:?}", notes("", AIR)) };
     let words = "chambers `left` and `right`: no wall lies between them where they touch: they are one gas space.";
     assert!(note.starts_with(words) && note.ends_with("(line 17)"), "{note}");
-    assert_eq!(notes(plate, AIR), [""; 0]);
+    assert_eq!(notes(plate, AIR), ["2 separate gas spaces: no gas flows between them"]);
 }
 
 /// A panel that covers a part of the section is told with the part that it leaves, whether the gas on its sides is alike or not; its

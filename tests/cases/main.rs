@@ -3,6 +3,7 @@
 //! Inputs lie in `inputs/`, a folder for each fault; what is one line of a known scene is made where it is used.
 
 mod borders;
+mod first_scenes;
 mod folders;
 mod gas;
 mod inflators;

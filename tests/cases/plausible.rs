@@ -205,7 +205,7 @@ const SLIPS: &[Slip] = &[
     slip(
         TANK,
         ["temperature = 300.0\n[[ch", "temperature = 300.0\nheat_transfer = 5e-5\n[[ch"],
-        &["heat_transfer 5e-5 W/(m2 K)", "0.1 to 50000"],
+        &["heat_transfer 5e-5 W/(m2 K)", "0.1 to below 10000"],
     ),
     slip(TANK, ["max = [0.4, 0.3, 0.25]", "max = [400, 300, 250]"], &["longest side 400 m", "0.001 to 10 m", "in mm?"]),
     slip(TANK, ["discharge = 0.7", "discharge = 70"], &["vent `vent`: discharge 70", "at most 1", "per cent?"]),

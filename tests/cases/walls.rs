@@ -154,7 +154,10 @@ fn a_hole_that_a_moving_wall_uncovers_is_open() {
 fn heat_transfer_in_another_unit_is_told() {
     let heated = "gas = \"inside\"\ntemperature = 293\nheat_transfer = 100";
     let found = told(&changed(&[["gas = \"inside\"", heated]]));
-    let words = ["wall `duct`: heat_transfer 100 mJ/(s mm2 K), usual is 0.0001 to 50", "is it in W/(m2 K)?"];
+    let words = [
+        "wall `duct`: heat_transfer 100 mJ/(s mm2 K), usual is 0.0001 to below 10",
+        "is it in W/(m2 K)? 100 W/(m2 K) are 0.1 mJ/(s mm2 K)",
+    ];
     assert!(found.iter().any(|text| words.iter().all(|word| text.contains(word))), "{found:?}");
 }
 

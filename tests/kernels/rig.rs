@@ -136,6 +136,7 @@ impl Rig {
         rig.put("changed", &[0u32; 4]);
         rig.put("surface_models", &[0u32; 8]);
         rig.put("vents", &[0u32; 8]);
+        rig.put("zones", &[0u32; 16]);
         rig.put("on_demand", &[0u32; 4]);
         rig.put("on_demand_dispatches", &[0u32; 3 * LISTS]);
         rig.put("cross_section_shares", &[0u32; 4]);

@@ -79,7 +79,14 @@ fn bounce(
 }
 
 fn full() -> GpuSurfaceModel {
-    GpuSurfaceModel { thermal: THERMAL, accommodation: 1.0, friction: 0.0, first_vent: 0, end_vent: 1 }
+    GpuSurfaceModel {
+        thermal: THERMAL,
+        accommodation: 1.0,
+        friction: 0.0,
+        first_vent: 0,
+        end_vent: 1,
+        ..GpuSurfaceModel::default()
+    }
 }
 
 fn sum_at(words: &[u32], slot: usize) -> f64 {
@@ -190,7 +197,14 @@ fn a_vent_passes_in_proportion_to_mass_and_normal_speed() {
     let middle = 0.5 * (world.low[1] + world.high[1]);
     let center = [world.low[0], middle - 0.0175, 0.5 * (world.low[2] + world.high[2])];
     let vent = GpuVent { center: world.fixed(center), radius2: 0.02f32 * 0.02, beta, index: 0, ..GpuVent::default() };
-    let mirror = GpuSurfaceModel { thermal: 0.0, accommodation: 0.0, friction: 0.0, first_vent: 0, end_vent: 1 };
+    let mirror = GpuSurfaceModel {
+        thermal: 0.0,
+        accommodation: 0.0,
+        friction: 0.0,
+        first_vent: 0,
+        end_vent: 1,
+        ..GpuSurfaceModel::default()
+    };
     let rig = bounce(&world, &particles, mirror, &[vent], 2);
     let after: Vec<GpuParticle> = rig.get("particles", particles.len());
     let gone = |k: usize| after[k].tag == NOBODY;

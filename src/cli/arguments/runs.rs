@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueHint};
 
 use super::counts::count;
-use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY};
+use crate::plan::significant;
+use crate::scene::{LEAST_ACCURACY, MOST_ACCURACY, MOST_DEVICE_RATE};
 use crate::simulation::{CheckpointEvery, WallTime};
 
 pub(super) const EXIT_CODES: &str = "Exit codes: 0 done, or stopped as asked by an option, 2 bad input, 3 device trouble, \
@@ -52,7 +53,11 @@ fn accuracy(text: &str) -> Result<f64, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(millions) if millions > 0.0 && millions.is_finite() => Ok(millions),
+        Ok(millions) if millions > 0.0 && millions <= MOST_DEVICE_RATE => Ok(millions),
+        Ok(all) if all > 0.0 && all.is_finite() => Err(format!(
+            "it is in million particle-steps per second, at most {MOST_DEVICE_RATE}: is it without the million? {text} are {} million",
+            significant(1e-6 * all)
+        )),
         _ => Err("a number above 0 is possible".into()),
     }
 }

@@ -28,6 +28,7 @@ pub(super) fn percent(error: f64) -> String {
 /// A time for people.
 pub(super) fn duration(seconds: f64) -> String {
     match seconds {
+        s if s < 0.005 => "less than 0.01 s".to_string(),
         s if s < 120.0 => format!("{} s", significant((100.0 * s).round() / 100.0)),
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),

@@ -31,6 +31,7 @@ use shapes::longest;
 pub use flows::notes as notes_of_flows;
 pub use inflators::notes as notes_of_inflators;
 pub use known::notes as notes_of_gases;
+pub use places::notes as notes_of_places;
 pub use times::{long_run, many_steps, short_step};
 use units::likely;
 pub use units::pressure_unit;
@@ -78,7 +79,7 @@ pub fn doubts(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<String>
     found
 }
 
-/// Meshes that are too large or too small, as their walls were measured; with their lines.
+/// Meshes that are too large or too small, or the metal of a vessel, as their walls were measured; with their lines.
 pub fn by_meshes(scene: &Scene, walls: &[MeasuredWall]) -> Vec<String> {
     of_meshes(scene, walls).into_iter().map(|doubt| scene.lines.told(doubt)).collect()
 }
@@ -86,7 +87,8 @@ pub fn by_meshes(scene: &Scene, walls: &[MeasuredWall]) -> Vec<String> {
 fn of_meshes(scene: &Scene, walls: &[MeasuredWall]) -> Vec<String> {
     let meshes = scene.walls.iter().zip(walls).filter(|(wall, _)| is_mesh(wall));
     let sides = |own: &MeasuredWall| largest((0..3).map(|axis| own.max[axis] - own.min[axis]));
-    meshes.filter_map(|(wall, own)| extent(scene.units, wall, sides(own))).collect()
+    let large = meshes.filter_map(|(wall, own)| extent(scene.units, wall, sides(own)));
+    large.chain(scene.walls.iter().zip(walls).filter_map(|(wall, own)| places::shell(scene.units, wall, own))).collect()
 }
 
 /// Below the range degrees Celsius are likely.
@@ -120,8 +122,20 @@ fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {
     let given = coefficient(heat).filter(|&given| differs(own.and_then(coefficient), given));
     vec![
         kept.and_then(|kelvin| temperature(&named("temperature"), kelvin)),
-        given.filter(|given| *given > 0.0).and_then(|given| named("heat_transfer").check(Kind::HeatTransfer, given)),
+        given.filter(|given| *given > 0.0).and_then(|given| heat_transfer(&named("heat_transfer"), given)),
     ]
+}
+
+/// With what the number would be in the scene's units.
+fn heat_transfer(named: &Named<'_>, given: f64) -> Option<String> {
+    let range = range_of(Kind::HeatTransfer);
+    let (own, symbol) = (named.units.factor(Dimension::HeatTransfer), named.units.symbol(Dimension::HeatTransfer));
+    let question = likely(range, given, named.units).first().map_or(String::new(), |unit| {
+        let written = given / own;
+        let meant = written * units::factor_of(unit, Dimension::HeatTransfer) / own;
+        format!(": is it in {unit}? {} {unit} are {} {symbol}", as_written(written), as_written(meant))
+    });
+    (!range.holds(given)).then(|| named.beyond(range, given, &question))
 }
 
 fn is_mesh(wall: &Wall) -> bool {

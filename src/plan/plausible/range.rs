@@ -35,15 +35,17 @@ pub struct Range {
 
 impl Range {
     pub(super) fn holds(&self, value: f64) -> bool {
-        // Rounding is not beyond it.
-        value >= self.least * (1.0 - 1e-9) && value <= self.most * (1.0 + 1e-9)
+        // Rounding is not beyond it. A coefficient of just the most is: in t, mm, s a round number of W/(m2 K) is as large.
+        let rounding = if self.kind == Kind::HeatTransfer { -1e-9 } else { 1e-9 };
+        value >= self.least * (1.0 - 1e-9) && value <= self.most * (1.0 + rounding)
     }
 
     pub(super) fn words(&self, units: UnitSystem) -> String {
         let shown = |si: f64| as_written(si / units.factor(self.dimension));
         let unit = units.symbol(self.dimension);
         let bounds = if self.least > 0.0 {
-            format!("{} to {}", shown(self.least), shown(self.most))
+            let below = if self.kind == Kind::HeatTransfer { "below " } else { "" };
+            format!("{} to {below}{}", shown(self.least), shown(self.most))
         } else {
             format!("at most {}", shown(self.most))
         };
@@ -57,7 +59,7 @@ const fn range(kind: Kind, dimension: Dimension, [least, most]: [f64; 2], usual:
 
 /// All ranges. From a pressure cell to a gas gun in pressure, from cryogenic hydrogen's neighbours to propellant flames in
 /// temperature; 20 R is more than any gas of an inflator has (hexane: 17 R), an inflator gives a few kg/s, free convection and
-/// jets give 1 to 1e3 W/(m2 K), gas in guns and engines 1e4, and no gas here is faster than 1e4 m/s.
+/// jets give 1 to 1e3 W/(m2 K), gas in guns and engines less than 1e4, and no gas here is faster than 1e4 m/s.
 pub const RANGES: &[Range] = &[
     range(Kind::Extent, Dimension::Length, [1e-3, 10.0], 0.3),
     range(Kind::Pressure, Dimension::Pressure, [1e3, 1e8], 101_325.0),
@@ -65,7 +67,7 @@ pub const RANGES: &[Range] = &[
     range(Kind::MolarMass, Dimension::MolarMass, [1e-3, 0.5], 0.029),
     range(Kind::MolarHeat, Dimension::MolarHeat, [0.0, 20.0 * GAS_CONSTANT], 29.0),
     range(Kind::MassFlow, Dimension::MassFlow, [0.0, 100.0], 1.0),
-    range(Kind::HeatTransfer, Dimension::HeatTransfer, [0.1, 5e4], 50.0),
+    range(Kind::HeatTransfer, Dimension::HeatTransfer, [0.1, 1e4], 50.0),
     range(Kind::Speed, Dimension::Velocity, [0.0, 1e4], 300.0),
     range(Kind::Discharge, Dimension::Pure, [0.0, 1.0], 0.7),
     range(Kind::Area, Dimension::Area, [1e-8, 1.0], 5e-4),

@@ -285,6 +285,9 @@ impl<'a> SurfaceStates<'a> {
                 friction: surface.friction as f32,
                 first_vent,
                 end_vent: tables.vents.len() as u32,
+                // Of zones the first is everything.
+                zone: placed.next.map_or(0, |_| placed.chamber as u32 + 1),
+                next: placed.next.unwrap_or(0) as u32,
             });
         }
         tables

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::orifices::disc_of;
 use super::places::chamber_of;
-use super::surface_models::VentPlace;
+use super::vent_places::VentPlace;
 use crate::geometry::{Triangle, Vessel};
 use crate::plan::FacingOrifice;
 use crate::scene::{GasSide, Scene, Shape, Vent};

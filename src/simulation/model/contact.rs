@@ -5,22 +5,41 @@ use glam::DVec3;
 use super::facing::parts;
 use super::moving::Moving;
 use crate::geometry::{Triangle, Vessel};
-use crate::scene::Scene;
+use crate::plan::DryMotion;
+use crate::scene::{Motion, Scene};
 
 /// Of a run: moments at which walls are looked at.
 const MOMENTS: u32 = 8;
 /// How far before a triangle gas is looked for, over its longest edge.
 const BEFORE: f64 = 1e-4;
 
-/// The walls that move and have no gas before them at any time.
-pub fn dry_motions(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<usize> {
-    let is_dry = |&wall: &usize| {
-        never(scene, vessel, moving, |vessel| {
-            // A face that lies in that of the vessel has gas before it, but none that it moves: behind it are both solids.
-            meets_gas(vessel, |triangle| triangle.wall as usize == wall, |behind| vessel.solid_depth(behind) <= 1)
+/// The walls that move and have no gas before them at any time, or none from the first half of the run on.
+pub fn dry_motions(scene: &Scene, vessel: &Vessel, moving: &Moving) -> Vec<DryMotion> {
+    let time = |moment: u32| scene.end_time * f64::from(moment) / f64::from(MOMENTS);
+    let dry = |motion: &Motion| {
+        let met = (0..=MOMENTS).rev().find(|&moment| is_met(&moving.vessel_at(vessel, time(moment)), motion.wall));
+        let from = met.map_or(0, |last| last + 1);
+        (2 * from <= MOMENTS).then(|| DryMotion {
+            wall: motion.wall,
+            since: time(from),
+            other_way: meets_the_other_way(scene, vessel, moving, motion.wall),
         })
     };
-    scene.motions.iter().map(|motion| motion.wall).filter(is_dry).collect()
+    scene.motions.iter().filter_map(dry).collect()
+}
+
+/// A face that lies in that of the vessel has gas before it, but none that it moves: behind it are both solids.
+fn is_met(vessel: &Vessel, wall: usize) -> bool {
+    meets_gas(vessel, |triangle| triangle.wall as usize == wall, |behind| vessel.solid_depth(behind) <= 1)
+}
+
+/// Whether a wall would have gas before it at some moment if all moved in the opposite directions.
+fn meets_the_other_way(scene: &Scene, vessel: &Vessel, moving: &Moving, wall: usize) -> bool {
+    (1..=MOMENTS).any(|moment| {
+        let courses = moving.courses(scene.end_time * f64::from(moment) / f64::from(MOMENTS));
+        let turned: Vec<f64> = courses.into_iter().map(|[moved, _]| -moved).collect();
+        is_met(&moving.vessel_moved(vessel, &turned), wall)
+    })
 }
 
 /// The surfaces of the scene that have no gas before them at any time.
@@ -60,13 +79,20 @@ pub fn places_before(vessel: &Vessel, own: impl Fn(&Triangle) -> bool, most: usi
 
 /// Places just before and just behind them.
 fn lifted(vessel: &Vessel, own: impl Fn(&Triangle) -> bool) -> impl Iterator<Item = [[f64; 3]; 2]> {
-    vessel.triangles.iter().filter(move |triangle| own(triangle)).flat_map(|triangle| {
-        let [a, b, c] = triangle.vertices.map(|vertex| DVec3::from(vessel.vertices[vertex as usize]));
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        let lift = BEFORE * longest * (b - a).cross(c - a).normalize_or_zero();
-        parts().map(move |(u, v)| {
-            let place = a + u * (b - a) + v * (c - a);
-            [(place + lift).to_array(), (place - lift).to_array()]
-        })
+    vessel
+        .triangles
+        .iter()
+        .filter(move |triangle| own(triangle))
+        .flat_map(|triangle| before_and_behind(vessel, triangle))
+}
+
+/// Places just before and just behind a triangle.
+pub fn before_and_behind(vessel: &Vessel, triangle: &Triangle) -> impl Iterator<Item = [[f64; 3]; 2]> + use<> {
+    let [a, b, c] = triangle.vertices.map(|vertex| DVec3::from(vessel.vertices[vertex as usize]));
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let lift = BEFORE * longest * (b - a).cross(c - a).normalize_or_zero();
+    parts().map(move |(u, v)| {
+        let place = a + u * (b - a) + v * (c - a);
+        [(place + lift).to_array(), (place - lift).to_array()]
     })
 }

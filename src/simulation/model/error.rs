@@ -23,12 +23,12 @@ pub enum ModelError {
     #[error("orifice \"{orifice}\": its disc, {found} lies in or behind a wall")]
     #[diagnostic(help(
         "move `position` into the gas or onto a wall, let `direction` point into the gas, or make `area` smaller (it is in the \
-         unit of the scene, length times length); the side of a round wall is of facets, and a flat disc has its middle further in"
+         unit of the scene, length times length); the side of a round wall is of facets, and a flat disc has its middle further in{hint}"
     ))]
-    OrificeInWall { orifice: String, found: String },
+    OrificeInWall { orifice: String, found: String, hint: String },
     #[error("orifice \"{orifice}\": `direction` points into the wall: the gas lies behind its disc")]
-    #[diagnostic(help("turn `direction` round: it is that of the flow, into the gas"))]
-    OrificeIntoWall { orifice: String },
+    #[diagnostic(help("{hint}"))]
+    OrificeIntoWall { orifice: String, hint: String },
     #[error(
         "wall \"{wall}\" moves, and is the surface of a space of gas: only bodies with the gas outside of them move"
     )]

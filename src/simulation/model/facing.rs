@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::error::NoChamber;
+use super::fronts::shares;
 use super::places::chamber_of;
 use crate::geometry::{Vessel, region_bounds};
 use crate::scene::{Scene, Surface};
@@ -61,10 +62,14 @@ pub fn facing(scene: &Scene, vessel: &Vessel, surface: &Surface) -> Result<Vec<F
         let cross = (b - a).cross(c - a);
         let share = 1.0 / f64::from(PARTS * PARTS);
         let lift = 1e-4 * cross.length().sqrt() * cross.normalize();
-        for (u, v) in parts() {
-            let point = (a + u * (b - a) + v * (c - a) + lift).to_array();
-            // Where walls meet, a part may lie within another's solid: it is not pressed.
-            let Some(chamber) = chamber_of(scene, vessel, point) else { continue };
+        let at = |point: DVec3| chamber_of(scene, vessel, (point + lift).to_array());
+        // Where walls meet, a part may lie within another's solid: it is not pressed.
+        let mut found: Vec<(usize, f64)> =
+            parts().filter_map(|(u, v)| Some((at(a + u * (b - a) + v * (c - a))?, share))).collect();
+        if found.windows(2).any(|pair| pair[0].0 != pair[1].0) {
+            found = shares([a, b, c], scene.chambers.len(), &at);
+        }
+        for (chamber, share) in found {
             let (area, outward) = (0.5 * share * cross.length(), -0.5 * share * cross);
             match faces.iter_mut().find(|face| face.chamber == chamber) {
                 Some(face) => {
@@ -97,4 +102,34 @@ pub fn parts_of(count: u32) -> impl Iterator<Item = (f64, f64)> {
             upright.into_iter().chain(turned)
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A side of a box that two chambers share is pressed by each on its part, whatever its two triangles are.
+    #[test]
+    fn a_shared_face_has_its_areas() {
+        let text = "end_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+            [[wall]]\nname = \"bag\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [0.25, 0.12, 0.4]\ngas = \"inside\"\n\
+            [[wall]]\nname = \"divider\"\nshape = \"plane\"\ncenter = [0.125, 0.06, 0.16]\nnormal = [0, 0, 1]\nu = [1, 0, 0]\n\
+            size = [0.254, 0.124]\nthickness = 0.003\n\
+            [[chamber]]\nname = \"low\"\nregion = { box = { min = [0, 0, 0], max = [0.25, 0.12, 0.16] } }\n\
+            pressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+            [[chamber]]\nname = \"high\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+            [[surface]]\nname = \"side\"\nwall = \"bag\"\nface = \"+x\"\n";
+        let scene = crate::scene::parse(text, "test.toml", std::path::Path::new("")).unwrap();
+        let vessel = Vessel::build(&scene.walls).unwrap();
+        let faces = facing(&scene, &vessel, &scene.surfaces[0]).unwrap();
+        let share = |chamber: usize| {
+            faces.iter().filter(|face| face.chamber == chamber).map(|face| face.area).sum::<f64>() / 0.048
+        };
+        // The plate covers 3 of the 400 mm.
+        for (chamber, expected) in [(0, 158.5 / 400.0), (1, 238.5 / 400.0)] {
+            assert!((share(chamber) - expected).abs() < 1e-3, "{chamber}: {} {expected}", share(chamber));
+        }
+        let pressed: DVec3 = faces.iter().map(|face| face.outward).sum();
+        assert!((pressed - DVec3::new(0.048 * 397.0 / 400.0, 0.0, 0.0)).length() < 5e-5, "{pressed}");
+    }
 }

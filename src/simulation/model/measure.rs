@@ -7,6 +7,8 @@ use super::holes::{Sides, hindered};
 use super::moving::{Moving, extent};
 use super::open_sections::open_sections;
 use super::outlook::{borders, is_open_to_empty, source};
+use super::pockets::pockets;
+use super::separate::separate;
 use super::strokes::strokes;
 use super::surface_models::SurfaceModels;
 use crate::geometry::{Narrowest, Vessel, WallInfo};
@@ -24,6 +26,7 @@ pub fn measured(
     let (bounds_min, bounds_max) = moving.bounds(vessel);
     let chamber_volumes = vessel.chamber_volumes(&scene.chambers);
     let Narrowest { gap, body } = vessel.narrowest();
+    let (separate_spaces, split_chambers) = separate(scene, vessel, body, gap.as_ref());
     let openings = found_openings(scene, vessel);
     let empty = vessel.gas_volume() - chamber_volumes.iter().sum::<f64>();
     Measured {
@@ -39,6 +42,9 @@ pub fn measured(
         gaps_beside: gaps_beside(scene, vessel, moving),
         strokes: strokes(scene, vessel),
         dry_motions: dry_motions(scene, vessel, moving),
+        pockets: pockets(scene, vessel, moving),
+        separate_spaces,
+        split_chambers,
         dry_surfaces: dry_surfaces(scene, vessel, moving),
         backed_vents: backed_vents(scene, vessel, &surface_models.vents),
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
@@ -69,7 +75,8 @@ pub fn mesh_doubts(scene: &Scene) -> Vec<String> {
 pub fn measured_wall(vessel: &Vessel, index: usize, wall: &WallInfo) -> MeasuredWall {
     let (min, max) = extent(vessel, |of, _| of == index);
     let outside = vessel.outside_share(index);
-    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity, outside }
+    let hollow = vessel.hollow(index).map_or(0.0, |hollow| hollow.volume);
+    MeasuredWall { min, max, area: wall.area, volume: wall.volume, cavity: wall.cavity, outside, hollow }
 }
 
 /// Holes of walls that join two chambers.

@@ -25,7 +25,7 @@ pub struct Moving {
     bodies: Vec<Body>,
     /// Of the chambers, then the probes.
     pub swept: Vec<Swept>,
-    /// Of each chamber the motions that its sides go along with: `carried` of `shaders/tally.wgsl`.
+    /// Of each chamber the motions that its sides go along with: `carried` of `shaders/shared/zones.wgsl`.
     pub carried: Vec<u32>,
     /// The corners of all that the walls sweep, m.
     bounds: Option<([f64; 3], [f64; 3])>,
@@ -126,7 +126,8 @@ impl Moving {
         self.vessel_moved(vessel, &moved)
     }
 
-    fn vessel_moved(&self, vessel: &Vessel, moved: &[f64]) -> Vessel {
+    /// The walls with each of the moving ones so far along its direction, m; not measured.
+    pub fn vessel_moved(&self, vessel: &Vessel, moved: &[f64]) -> Vessel {
         let mut by = vec![[0.0; 3]; vessel.walls.len()];
         for (body, &moved) in self.bodies.iter().zip(moved) {
             by[body.motion.wall] = body.shift(moved);

@@ -7,12 +7,28 @@ use crate::geometry::Vessel;
 use crate::plan::significant;
 use crate::scene::{Dimension, Orifice, Scene};
 
-pub fn orifice_in_wall(scene: &Scene, orifice: &Orifice, point: DVec3) -> ModelError {
+/// `hint`: of the hollow that the disc lies in.
+pub fn orifice_in_wall(scene: &Scene, orifice: &Orifice, point: DVec3, hint: Option<String>) -> ModelError {
     let (factor, unit) = (scene.units.factor(Dimension::Length), scene.units.symbol(Dimension::Length));
     let [x, y, z] = point.to_array().map(|m| significant(m / factor));
     let radius = significant((orifice.area / std::f64::consts::PI).sqrt() / factor);
     let found = format!("of a radius of {radius} {unit}, is not in the gas: ({x}, {y}, {z}) {unit}");
-    ModelError::OrificeInWall { orifice: orifice.name.clone(), found }
+    ModelError::OrificeInWall {
+        orifice: orifice.name.clone(),
+        found,
+        hint: hint.map_or(String::new(), |hint| format!("; {hint}")),
+    }
+}
+
+/// What the help of a disc says that lies in the hollow of a vessel whose gas is in its metal.
+fn hint(scene: &Scene, vessel: &Vessel, point: DVec3) -> Option<String> {
+    let hollow = vessel.hollow_at(point.to_array())?;
+    Some(format!(
+        "the gas of wall `{}` is in the shell between its two surfaces, and the disc looks into the {} L within, which have none: leave only \
+         the inner surface in the mesh if it is the metal of a vessel",
+        scene.walls[hollow.wall].name,
+        significant(1e3 * hollow.volume)
+    ))
 }
 
 /// The middle of an orifice's disc, lifted a little off its wall, the disc's normal, and its radius, a little less, m.
@@ -45,10 +61,12 @@ pub fn check_orifices(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> 
     for orifice in &scene.orifices {
         for point in disc_points(orifice) {
             if !vessel.is_gas(point.into()) {
+                let hollow = hint(scene, vessel, point);
                 return Err(if points_into_wall(orifice, vessel) {
-                    ModelError::OrificeIntoWall { orifice: orifice.name.clone() }
+                    let turn = || "turn `direction` round: it is that of the flow, into the gas".to_string();
+                    ModelError::OrificeIntoWall { orifice: orifice.name.clone(), hint: hollow.unwrap_or_else(turn) }
                 } else {
-                    orifice_in_wall(scene, orifice, point)
+                    orifice_in_wall(scene, orifice, point, hollow)
                 });
             }
         }
@@ -63,7 +81,7 @@ pub fn check_discs(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
         let corners = vessel.triangles.iter().map(|triangle| triangle.vertices.map(|v| vessel.vertices[v as usize]));
         let crossed = corners.filter_map(|corners| nearest_crossing(corners.map(DVec3::from), center, normal));
         if let Some(point) = crossed.into_iter().find(|point| point.distance(center) < radius) {
-            return Err(orifice_in_wall(scene, orifice, point));
+            return Err(orifice_in_wall(scene, orifice, point, None));
         }
     }
     Ok(())

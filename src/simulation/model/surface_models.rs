@@ -1,24 +1,18 @@
 //! Which triangles of the walls are no mirrors, and what they are: a *placed model* is what a wall, or a part of it, has in one
 //! chamber with the same vents, so that one state of the gas and one table entry serve all of it.
 
-use glam::DVec3;
-
 use super::error::ModelError;
-use super::places::chamber_of;
-use crate::geometry::Vessel;
-use crate::scene::{Chamber, Disc, Scene, SurfaceId, Vent};
+use super::fronts::Front;
+use super::vent_places::{VentPlace, area, corners, on_face, places};
+use crate::geometry::{Triangle, Vessel};
+use crate::scene::{Disc, Scene, SurfaceId};
 
 const NOBODY: u32 = u32::MAX;
-/// Points of a triangle that are asked for the chamber on its gas side: a lattice of this many along each side.
-const LATTICE: u32 = 8;
-/// A triangle is split so often at most where the edge of a vent runs through it, and no further than this share of the
-/// vent's diameter.
-const MOST_SPLITS: u32 = 24;
-const FINEST: f64 = 1e-3;
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SurfaceModels {
-    /// The placed model of each triangle of the vessel, or `u32::MAX` for a mirror; empty if all are.
+    /// The placed model of each triangle of the vessel, the first of several where chambers share it, or `u32::MAX` for a mirror; empty
+    /// if all are.
     pub of_triangle: Vec<u32>,
     pub placed: Vec<PlacedModel>,
     /// Of the scene's vents.
@@ -33,13 +27,9 @@ pub struct PlacedModel {
     pub area: f64,
     /// Indices of the scene's vents that lie on it, at least in part.
     pub vents: Vec<usize>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VentPlace {
-    pub chamber: usize,
-    /// m2 of wall.
-    pub area: f64,
+    /// Of triangles that several chambers share: the model before the gas of the next of them.
+    pub next: Option<usize>,
+    shared: bool,
 }
 
 impl SurfaceModels {
@@ -49,44 +39,54 @@ impl SurfaceModels {
         if scene.has_mirrors_only() && scene.vents.is_empty() {
             return Ok(SurfaceModels::default());
         }
-        let mirrors = |id: SurfaceId| scene.surface_model(id).is_mirror();
-        let has_vents = |wall: usize| scene.vents.iter().any(|vent| vent.wall == wall);
-        let chambers: Vec<Option<usize>> = vessel
-            .triangles
-            .iter()
-            .map(|triangle| {
-                let wall = triangle.wall as usize;
-                let modelled = !mirrors(scene.surface_of(wall, triangle.face)) || has_vents(wall);
-                modelled.then(|| chamber_before(scene, vessel, corners(vessel, triangle.vertices)))
-            })
-            .collect();
-        let places = places(scene, vessel, &chambers)?;
-        let mut placed: Vec<PlacedModel> = Vec::new();
-        let mut of_triangle = Vec::with_capacity(vessel.triangles.len());
-        for (triangle, chamber) in vessel.triangles.iter().zip(&chambers) {
-            let Some(chamber) = *chamber else {
-                of_triangle.push(NOBODY);
-                continue;
+        let fronts = fronts(scene, vessel);
+        let places = places(scene, vessel, &fronts)?;
+        let mut models = SurfaceModels { of_triangle: Vec::new(), placed: Vec::new(), vents: places };
+        for (triangle, front) in vessel.triangles.iter().zip(&fronts) {
+            let index = match front {
+                None => NOBODY,
+                Some(front) => models.place(scene, vessel, triangle, front),
             };
-            let wall = triangle.wall as usize;
-            let surface = scene.surface_of(wall, triangle.face);
-            let vents: Vec<usize> = (0..scene.vents.len())
-                .filter(|&index| places[index].chamber == chamber && on_face(&scene.vents[index], wall, triangle.face))
-                .collect();
-            if mirrors(surface) && vents.is_empty() {
-                of_triangle.push(NOBODY);
-                continue;
-            }
-            let same =
-                |model: &PlacedModel| model.surface == surface && model.chamber == chamber && model.vents == vents;
-            let index = placed.iter().position(same).unwrap_or_else(|| {
-                placed.push(PlacedModel { surface, chamber, area: 0.0, vents: vents.clone() });
-                placed.len() - 1
-            });
-            placed[index].area += area(corners(vessel, triangle.vertices));
-            of_triangle.push(index as u32);
+            models.of_triangle.push(index);
         }
-        Ok(SurfaceModels { of_triangle, placed, vents: places })
+        Ok(models)
+    }
+
+    /// The placed model of a triangle, with what of its area is before each chamber.
+    fn place(&mut self, scene: &Scene, vessel: &Vessel, triangle: &Triangle, front: &Front) -> u32 {
+        let wall = triangle.wall as usize;
+        let surface = scene.surface_of(wall, triangle.face);
+        let vents_of = |chamber: usize| -> Vec<usize> {
+            let on_it = |index: &usize| on_face(&scene.vents[*index], wall, triangle.face);
+            (0..scene.vents.len()).filter(|&index| self.vents[index].chamber == chamber).filter(on_it).collect()
+        };
+        let parts: Vec<(usize, f64, Vec<usize>)> =
+            front.shares().into_iter().map(|(chamber, share)| (chamber, share, vents_of(chamber))).collect();
+        if scene.surface_model(surface).is_mirror() && parts.iter().all(|(.., vents)| vents.is_empty()) {
+            return NOBODY;
+        }
+        let shared = parts.len() > 1;
+        // All chambers of a chain stand one after the other.
+        let is_chain = |first: usize| {
+            let end = first + parts.len();
+            let own = self.placed.get(first..end).unwrap_or_default();
+            let same = |(model, (chamber, _, vents)): (&PlacedModel, &(usize, f64, Vec<usize>))| {
+                (model.surface, model.chamber, model.shared) == (surface, *chamber, shared) && model.vents == *vents
+            };
+            own.len() == parts.len() && own.iter().zip(&parts).all(same) && own[parts.len() - 1].next.is_none()
+        };
+        let known = (0..self.placed.len()).find(|&first| is_chain(first));
+        let first = known.unwrap_or(self.placed.len());
+        let whole = area(corners(vessel, triangle.vertices));
+        for (k, (chamber, share, vents)) in parts.iter().enumerate() {
+            if known.is_none() {
+                let next = (k + 1 < parts.len()).then_some(first + k + 1);
+                let vents = vents.clone();
+                self.placed.push(PlacedModel { surface, chamber: *chamber, area: 0.0, vents, next, shared });
+            }
+            self.placed[first + k].area += share * whole;
+        }
+        first as u32
     }
 
     /// Entries of the device's table of vents: a vent that lies on several placed models has several.
@@ -95,111 +95,20 @@ impl SurfaceModels {
     }
 }
 
-fn on_face(vent: &Vent, wall: usize, face: Option<crate::scene::Face>) -> bool {
-    vent.wall == wall && (vent.face.is_none() || vent.face == face)
-}
-
-fn corners(vessel: &Vessel, vertices: [u32; 3]) -> [DVec3; 3] {
-    vertices.map(|index| DVec3::from(vessel.vertices[index as usize]))
-}
-
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    0.5 * (b - a).cross(c - a).length()
-}
-
-/// The chamber that most of the triangle's gas side lies in; the last if it faces no gas.
-fn chamber_before(scene: &Scene, vessel: &Vessel, [a, b, c]: [DVec3; 3]) -> usize {
-    let normal = (b - a).cross(c - a).normalize();
-    let (min, max) = vessel.bounds;
-    let off = 1e-6 * (DVec3::from(max) - DVec3::from(min)).max_element() * normal;
-    let mut found = vec![0; scene.chambers.len()];
-    for i in 0..LATTICE {
-        for j in 0..LATTICE - i {
-            let share = |k: u32| (f64::from(k) + 1.0 / 3.0) / f64::from(LATTICE);
-            let point = a + (b - a) * share(i) + (c - a) * share(j) + off;
-            if let Some(chamber) = chamber_of(scene, vessel, point.to_array()) {
-                found[chamber] += 1;
-            }
+/// What lies before each triangle that is no mirror, or of whose wall a vent is.
+fn fronts(scene: &Scene, vessel: &Vessel) -> Vec<Option<Front>> {
+    let front = |triangle: &Triangle| {
+        let wall = triangle.wall as usize;
+        let vents = || scene.vents.iter().filter(|vent| vent.wall == wall);
+        let is_mirror = scene.surface_model(scene.surface_of(wall, triangle.face)).is_mirror();
+        if is_mirror && vents().next().is_none() {
+            return None;
         }
-    }
-    let last = found.len() - 1;
-    (0..last).fold(last, |best, chamber| if found[chamber] > found[best] { chamber } else { best })
-}
-
-/// The chamber and the area of each vent's place. Where places overlap the earlier vent has the wall.
-fn places(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>]) -> Result<Vec<VentPlace>, ModelError> {
-    // By vent and chamber.
-    let mut areas = vec![vec![0.0; scene.chambers.len()]; scene.vents.len()];
-    for (triangle, chamber) in vessel.triangles.iter().zip(chambers) {
-        let Some(chamber) = *chamber else { continue };
-        let here: Vec<usize> = (0..scene.vents.len())
-            .filter(|&index| {
-                let vent = &scene.vents[index];
-                on_face(vent, triangle.wall as usize, triangle.face) && vent.chamber.is_none_or(|own| own == chamber)
-            })
-            .collect();
-        add_areas(&scene.vents, &here, corners(vessel, triangle.vertices), MOST_SPLITS, &mut |vent, area| {
-            areas[vent][chamber] += area;
-        });
-    }
-    let place = |(vent, areas): (&Vent, &Vec<f64>)| -> Result<VentPlace, ModelError> {
-        let whole = areas.iter().sum::<f64>();
-        let touched: Vec<usize> = (0..areas.len()).filter(|&chamber| areas[chamber] > 1e-6 * whole).collect();
-        match touched[..] {
-            [chamber] => Ok(VentPlace { chamber, area: areas[chamber] }),
-            [] => Err(without_gas(scene, vessel, chambers, vent)),
-            _ => Err(ModelError::VentOfSeveral { vent: vent.name.clone(), chambers: names(&scene.chambers, &touched) }),
-        }
+        let on_it = vents().filter(|vent| on_face(vent, wall, triangle.face));
+        let discs: Vec<&Disc> = on_it.filter_map(|vent| vent.disc.as_ref()).collect();
+        Some(Front::of(scene, vessel, corners(vessel, triangle.vertices), &discs))
     };
-    scene.vents.iter().zip(&areas).map(place).collect()
-}
-
-fn names(chambers: &[Chamber], indices: &[usize]) -> String {
-    let names: Vec<String> = indices.iter().map(|&index| format!("\"{}\"", chambers[index].name)).collect();
-    names.join(", ")
-}
-
-/// Why a vent has no place: its place borders on other chambers than its own, or on none.
-fn without_gas(scene: &Scene, vessel: &Vessel, chambers: &[Option<usize>], vent: &Vent) -> ModelError {
-    let name = vent.name.clone();
-    let Some(own) = vent.chamber else { return ModelError::VentNowhere { vent: name } };
-    let mut areas = vec![0.0; scene.chambers.len()];
-    for (triangle, chamber) in vessel.triangles.iter().zip(chambers) {
-        let Some(chamber) = chamber.filter(|_| on_face(vent, triangle.wall as usize, triangle.face)) else { continue };
-        let corners = corners(vessel, triangle.vertices);
-        add_areas(std::slice::from_ref(vent), &[0], corners, MOST_SPLITS, &mut |_, area| areas[chamber] += area);
-    }
-    let others: Vec<usize> = (0..areas.len()).filter(|&chamber| chamber != own && areas[chamber] > 0.0).collect();
-    if others.is_empty() || areas[own] > 0.0 {
-        return ModelError::VentNowhere { vent: name };
-    }
-    let (others, own) = (names(&scene.chambers, &others), names(&scene.chambers, &[own]));
-    ModelError::VentElsewhere { vent: name, borders: format!("{others}, not on its `chamber`, {own}") }
-}
-
-/// Adds the parts of a triangle to the first vent that holds them.
-fn add_areas(vents: &[Vent], here: &[usize], triangle: [DVec3; 3], splits: u32, add: &mut dyn FnMut(usize, f64)) {
-    if here.is_empty() {
-        return;
-    }
-    let [a, b, c] = triangle;
-    let middle = (a + b + c) / 3.0;
-    let reach = triangle.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-    let holds = |disc: &Disc| middle.distance(DVec3::from(disc.center)) <= 0.5 * disc.diameter;
-    // Whether the edge of a disc may run through the triangle.
-    let cut = |disc: &Disc| {
-        let away = middle.distance(DVec3::from(disc.center)) - 0.5 * disc.diameter;
-        away.abs() < reach && reach > FINEST * disc.diameter
-    };
-    let discs = || here.iter().filter_map(|&index| vents[index].disc.as_ref());
-    if splits > 0 && discs().any(cut) {
-        let [ab, bc, ca] = [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0];
-        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            add_areas(vents, here, part, splits - 1, add);
-        }
-    } else if let Some(&first) = here.iter().find(|&&index| vents[index].disc.as_ref().is_none_or(holds)) {
-        add(first, area(triangle));
-    }
+    vessel.triangles.iter().map(front).collect()
 }
 
 #[cfg(test)]
@@ -272,6 +181,60 @@ mod tests {
             heated.placed.iter().map(|placed| (placed.surface.wall, placed.chamber)).collect::<Vec<_>>(),
             [(0, 1), (1, 0)]
         );
+    }
+
+    /// In a box of two chambers that border in the middle of its faces, a disc is of the chamber that it is before, whatever the triangles of
+    /// its face; a face that both share has a model for each, with its share of the area.
+    #[test]
+    fn a_place_is_of_the_gas_before_it() {
+        let two = |vents: &str, wall: &str| {
+            let text = format!(
+                "end_time = 1e-3\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+                 [[wall]]\nname = \"outer\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.25, 0.12, 0.4]\ngas = \"inside\"\n{wall}\
+                 [[chamber]]\nname = \"low\"\nregion = {{ box = {{ min = [0, 0, 0], max = [0.25, 0.12, 0.16] }} }}\n\
+                 pressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+                 [[chamber]]\nname = \"high\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+                 {vents}[model]\nparticles = 2000\n"
+            );
+            Model::new(crate::scene::parse(&text, "test.toml", std::path::Path::new("")).unwrap())
+        };
+        let disc = |z: f64, more: &str| {
+            let keys =
+                format!("wall = \"outer\"\nface = \"+x\"\nposition = [0.25, 0.06, {z}]\ndiameter = 0.08\n{more}");
+            two(&vent("v", &keys), "")
+        };
+        let full = std::f64::consts::PI * 0.04 * 0.04;
+        for (z, chamber) in [(0.06, 0), (0.09, 0), (0.11, 0), (0.21, 1), (0.26, 1), (0.3, 1), (0.34, 1)] {
+            let found = disc(z, "").unwrap().surface_models;
+            let place = found.vents[0];
+            assert!(place.chamber == chamber && (place.area / full - 1.0).abs() < 2e-3, "{z}: {place:?}");
+            // What the other chamber has of the face is a mirror.
+            let with_vents: Vec<usize> =
+                found.placed.iter().filter(|placed| !placed.vents.is_empty()).map(|placed| placed.chamber).collect();
+            assert!(with_vents.iter().all(|&own| own == chamber) && !with_vents.is_empty(), "{z}: {:?}", found.placed);
+            let other = disc(z, &format!("chamber = \"{}\"", ["high", "low"][chamber]));
+            assert!(matches!(other, Err(ModelError::VentElsewhere { .. })), "{z}");
+        }
+        let error = disc(0.16, "").err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains("borders on the chambers \"low\", \"high\""), "{error}");
+        let half = disc(0.16, "chamber = \"low\"").unwrap().surface_models.vents[0];
+        assert!(half.chamber == 0 && (half.area / full - 0.5).abs() < 2e-3, "{half:?}");
+
+        let face = |chamber: &str| vent(chamber, &format!("wall = \"outer\"\nface = \"+x\"\nchamber = \"{chamber}\""));
+        let found = two(&(face("low") + &face("high")), "temperature = 300.0\nheat_transfer = 50.0\n").unwrap();
+        let areas = found.surface_models.vents.iter().map(|place| place.area / 0.048);
+        for (share, expected) in areas.zip([0.4, 0.6]) {
+            assert!((share - expected).abs() < 2e-3, "{share} {expected}");
+        }
+        let of = |chamber: usize| {
+            let own = found.surface_models.placed.iter().filter(|placed| placed.chamber == chamber);
+            own.map(|placed| placed.area).sum::<f64>()
+        };
+        let sides = 2.0 * (0.25 + 0.12);
+        let expected = [0.16 * sides + 0.03, 0.24 * sides + 0.03];
+        for chamber in 0..2 {
+            assert!((of(chamber) / expected[chamber] - 1.0).abs() < 2e-3, "{chamber}: {} {expected:?}", of(chamber));
+        }
     }
 
     /// A part has a placed model of its own, the rest of the wall another, whatever a vent on it does; a mirror has none.
