@@ -232,8 +232,8 @@ mod tests {
         };
         let sides = 2.0 * (0.25 + 0.12);
         let expected = [0.16 * sides + 0.03, 0.24 * sides + 0.03];
-        for chamber in 0..2 {
-            assert!((of(chamber) / expected[chamber] - 1.0).abs() < 2e-3, "{chamber}: {} {expected:?}", of(chamber));
+        for (chamber, expected) in expected.into_iter().enumerate() {
+            assert!((of(chamber) / expected - 1.0).abs() < 2e-3, "{chamber}: {} {expected}", of(chamber));
         }
     }
 
