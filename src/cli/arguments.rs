@@ -3,6 +3,7 @@
 mod counts;
 mod meshes;
 mod pictures;
+mod looks;
 mod runs;
 mod studies;
 
@@ -14,6 +15,7 @@ use runs::EXIT_CODES;
 
 pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
 pub use pictures::RenderArguments;
+pub use looks::{ReportArguments, WatchArguments};
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,
@@ -88,6 +90,10 @@ pub enum Verb {
     Resume(ResumeArguments),
     /// Run a scene on several counts of devices, or emulate them, and compare
     Sweep(SweepArguments),
+    /// Write the page of a run, of several runs side by side, or of a study: one HTML file; opens no device
+    Report(ReportArguments),
+    /// Watch a run that goes on elsewhere, by its files
+    Watch(WatchArguments),
     /// Run reference cases and compare with closed forms and published figures
     Verify(VerifyArguments),
     /// Chart error against device time over methods and settings, for a case with a known answer
@@ -121,6 +127,7 @@ impl Verb {
     pub fn of_one_process(&self) -> Option<&'static str> {
         match self {
             Verb::Refine(_) => Some("refine"),
+            Verb::Report(_) => Some("report"),
             Verb::Sweep(_) => Some("sweep"),
             Verb::Verify(_) => Some("verify"),
             Verb::Pareto(_) => Some("pareto"),
@@ -132,6 +139,7 @@ impl Verb {
             | Verb::Resume(_)
             | Verb::Plan(_)
             | Verb::Check(_)
+            | Verb::Watch(_)
             | Verb::Schema
             | Verb::Adapters
             | Verb::Completions(_)

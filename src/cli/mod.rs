@@ -18,6 +18,7 @@ mod plan;
 mod reference;
 mod refine;
 mod render;
+mod report;
 mod resume;
 mod run;
 mod schema;
@@ -27,6 +28,7 @@ mod sweep;
 mod terminal;
 mod usage;
 mod verify;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -74,6 +76,8 @@ fn perform(arguments: Arguments) -> Result<u8, CliError> {
         Verb::Run(raw) => return Ok(run::run(raw, quiet)?.exit_code()),
         Verb::Resume(raw) => return Ok(resume::resume(raw, quiet)?.exit_code()),
         Verb::Refine(raw) => refine::refine(raw),
+        Verb::Report(raw) => report::report(raw),
+        Verb::Watch(raw) => watch::watch(raw),
         Verb::Sweep(raw) => sweep::sweep(raw),
         Verb::Bench(raw) => bench::bench(raw),
         Verb::Render(raw) => render::render(raw),

@@ -80,15 +80,18 @@ pub struct Execution {
     pub stop_after_steps: Option<u64>,
     /// Warnings are errors.
     pub strict: bool,
+    /// A page at the end, whatever the scene says.
+    pub report: bool,
     pub sharing: Sharing,
     pub checkpoints: CheckpointWish,
 }
 
 impl Execution {
     pub fn new(raw: ExecutionArguments) -> Result<Execution, CliError> {
-        let ExecutionArguments { gpu, batch, steps, strict, checkpoint_every, stop_after, sharing } = raw;
+        let ExecutionArguments { gpu, batch, steps, strict, report, checkpoint_every, stop_after, sharing } = raw;
         let checkpoints = CheckpointWish { every: checkpoint_every, stop_after };
-        Ok(Execution { gpu, batch, stop_after_steps: steps, strict, sharing: Sharing::new(&sharing)?, checkpoints })
+        let sharing = Sharing::new(&sharing)?;
+        Ok(Execution { gpu, batch, stop_after_steps: steps, strict, report, sharing, checkpoints })
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::OutputError;
 use super::error::write_atomically;
-use super::history::number;
+use super::history::{History, number};
 use super::names::BALANCE_FILE;
 
 /// An interval among ranks. An imbalance is that of the fullest rank over the mean.
@@ -70,6 +70,36 @@ impl BalanceWriter {
         // One unbuffered write per row: the row is the system's as soon as this returns.
         self.file.write_all(line(row).as_bytes()).map_err(OutputError::io("write", &self.path))
     }
+}
+
+/// What a run has written into the file so far; what is blank there is no number.
+///
+/// # Errors
+/// If it is no such table.
+pub(super) fn read(path: &Path) -> Result<History, OutputError> {
+    let text = fs::read_to_string(path).map_err(OutputError::io("read", path))?;
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    let mut lines = whole.lines();
+    let heads: Vec<String> = lines.next().unwrap_or("").split(',').map(str::to_owned).collect();
+    let mut history = History::with_headers(heads)?;
+    for (index, line) in lines.enumerate() {
+        let value = |(cell, head): (&str, &String)| match cell {
+            "" => Ok(f64::NAN),
+            cell => cell.parse().map_err(|_| OutputError::BadValue {
+                path: path.to_path_buf(),
+                line: index as u64 + 2,
+                header: head.clone(),
+                found: cell.to_owned(),
+            }),
+        };
+        let row = line.split(',').zip(history.headers()).map(value).collect::<Result<Vec<f64>, _>>()?;
+        history.push(&row).map_err(|error| OutputError::BadRow {
+            path: path.to_path_buf(),
+            line: index as u64 + 2,
+            problem: error.to_string(),
+        })?;
+    }
+    Ok(history)
 }
 
 fn line(row: &BalanceRow) -> String {

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::OutputError;
 use super::error::write_atomically;
 use super::names::ENVIRONMENT_FILE;
+use crate::scene::UnitSystem;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Environment {
@@ -23,6 +24,9 @@ pub struct Environment {
     pub architecture: String,
     /// Threads that the host offers to this process.
     pub cpu_count: usize,
+    /// That of the scene file, as it names it: a recorded scene is in SI. Empty in the record of an older version.
+    #[serde(default)]
+    pub units: String,
     pub adapter: AdapterRecord,
 }
 
@@ -49,8 +53,14 @@ impl Environment {
             os: os_name(std::fs::read_to_string("/etc/os-release").ok().as_deref()),
             architecture: std::env::consts::ARCH.to_owned(),
             cpu_count: std::thread::available_parallelism().map_or(1, usize::from),
+            units: String::new(),
             adapter,
         }
+    }
+
+    /// Of a run whose scene file has these units.
+    pub fn in_units(self, system: UnitSystem) -> Environment {
+        Environment { units: system.name().to_owned(), ..self }
     }
 
     /// Writes `environment.json` into the existing folder `dir`; returns its path.

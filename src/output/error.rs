@@ -87,6 +87,17 @@ pub enum OutputError {
     BadRow { path: PathBuf, line: u64, problem: String },
     #[error("{path}:{line}: column {header:?} holds {found:?}, which is not a number", path = path.display())]
     BadValue { path: PathBuf, line: u64, header: String, found: String },
+    #[error("{path} is no snapshot as a run writes it: {problem}", path = path.display())]
+    BadSnapshot { path: PathBuf, problem: String },
+    #[error("{path} is not as a run writes it: {problem}", path = path.display())]
+    BadFile { path: PathBuf, problem: String },
+    #[error(
+        "{path} has nothing to report: no {expected}; name the folder that the run or the study was given as --out",
+        path = path.display()
+    )]
+    NothingToReport { path: PathBuf, expected: String },
+    #[error("{path} is there and no report; name another file with --out, or remove it", path = path.display())]
+    OverForeign { path: PathBuf },
     #[error("triangle {triangle} of the walls names vertex {vertex}, but there are {vertices}")]
     BadTriangle { triangle: usize, vertex: u32, vertices: usize },
     #[error("{triangles} wall triangles came with {indices} wall indices")]

@@ -102,6 +102,14 @@ impl History {
         History::from_csv(path, File::open(path).map_err(OutputError::io("open", path))?)
     }
 
+    /// As [`History::read`], of a file that is being written or whose writer was killed: a last line without an end does
+    /// not count. Also returns whether there was one.
+    pub fn read_so_far(path: &Path) -> Result<(History, bool), OutputError> {
+        let bytes = std::fs::read(path).map_err(OutputError::io("open", path))?;
+        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        Ok((History::from_csv(path, &bytes[..whole])?, whole < bytes.len()))
+    }
+
     /// `path` stands in messages.
     fn from_csv(path: &Path, text: impl Read) -> Result<History, OutputError> {
         let bad_row = |line: u64, problem: String| OutputError::BadRow { path: path.to_path_buf(), line, problem };

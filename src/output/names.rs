@@ -31,11 +31,16 @@ pub const SNAPSHOT_FOLDER: &str = "snapshots";
 pub const MESH_FOLDER: &str = "meshes";
 pub const CHECKPOINT_FOLDER: &str = "checkpoints";
 
+/// The page of a run or of a study.
+pub const REPORT_FILE: &str = "report.html";
+
+/// Held by who writes into the folder; says who that is.
+pub(super) const LOCK_FILE: &str = ".corpuscle-lock";
 /// Says that the folder is a run's.
 pub(super) const MARKER_FILE: &str = ".corpuscle-run";
 
 /// Everything a run or a study writes at the top of its folder, apart from the snapshots and checkpoints.
-pub(super) const RESULT_FILES: [&str; 22] = [
+pub(super) const RESULT_FILES: [&str; 23] = [
     MARKER_FILE,
     HISTORY_FILE,
     PLAN_FILE,
@@ -58,6 +63,7 @@ pub(super) const RESULT_FILES: [&str; 22] = [
     STABILITY_FILE,
     STABILITY_TABLE_FILE,
     STABILITY_CHART_FILE,
+    REPORT_FILE,
 ];
 
 pub(super) const SEED_PREFIX: &str = "seed-";

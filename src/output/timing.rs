@@ -18,6 +18,18 @@ pub struct Timing {
     pub particle_steps: u64,
     /// By rank.
     pub ranks: Vec<RankTiming>,
+    /// In the order of the step; empty of a device without timestamps.
+    #[serde(default)]
+    pub phases: Vec<PhaseTiming>,
+}
+
+/// A phase of the step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct PhaseTiming {
+    pub name: String,
+    /// Of the device, in the steps that were timed, each for as many as it stands for.
+    pub device_seconds: f64,
+    pub dispatches: u64,
 }
 
 /// What a rank did in the run; all zero on a rank alone, which waits for nobody.

@@ -54,7 +54,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
             particles: Some(1_000_000),
             ..ModelRequest::default()
         },
-        output: OutputRequest { rows: 200, snapshots: 10 },
+        output: OutputRequest { rows: 200, snapshots: 10, report: None },
         lines: Lines::default(),
     };
     let hole = Opening { name: "vent".into(), between: [0, 1], area: 1.6e-3, length: 0.04 };

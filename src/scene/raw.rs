@@ -474,4 +474,6 @@ pub struct RawOutput {
     pub rows: Option<At<i64>>,
     /// Snapshots after the initial one, 0 to 100000; 10 unless given, 0 writes none.
     pub snapshots: Option<At<i64>>,
+    /// Whether a run writes report.html at its end; unless given, one that is started in a terminal does.
+    pub report: Option<At<bool>>,
 }

@@ -220,5 +220,6 @@ pub(super) fn output(raw: &RawOutput) -> Result<OutputRequest, Problem> {
     Ok(OutputRequest {
         rows: raw.rows.as_ref().map_or(Ok(ROWS), |n| small_count(n, 1..=1_000_000))?,
         snapshots: raw.snapshots.as_ref().map_or(Ok(SNAPSHOTS), |n| small_count(n, 0..=100_000))?,
+        report: raw.report.as_ref().map(|report| report.value),
     })
 }

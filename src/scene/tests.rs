@@ -322,7 +322,7 @@ fn what_is_left_out_gets_its_default() {
     )
     .unwrap();
     assert_eq!((scene.title.as_str(), scene.units, scene.seed), ("helium", UnitSystem::Si, 1));
-    assert_eq!(scene.output, OutputRequest { rows: 200, snapshots: 10 });
+    assert_eq!(scene.output, OutputRequest { rows: 200, snapshots: 10, report: None });
     assert_eq!(scene.model, ModelRequest::default());
     // A rounded 5/3 is a gas without internal energy.
     assert_eq!(scene.gases[0].heat, HeatCapacity::Constant(1.5 * GAS_CONSTANT));

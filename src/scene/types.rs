@@ -494,4 +494,6 @@ pub struct OutputRequest {
     pub rows: u32,
     /// Snapshots after the initial one. Default 10; 0 writes none.
     pub snapshots: u32,
+    /// Whether a run writes its page; `None`: if somebody sees it.
+    pub report: Option<bool>,
 }

@@ -252,6 +252,9 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     out.header("[output]");
     out.count("rows", u64::from(scene.output.rows));
     out.count("snapshots", u64::from(scene.output.snapshots));
+    if let Some(report) = scene.output.report {
+        out.flag("report", report);
+    }
 }
 
 struct Lines(String);

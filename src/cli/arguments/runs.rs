@@ -109,6 +109,9 @@ pub struct ExecutionArguments {
     /// Stop at the first warning, of the plan or of the run, as an error
     #[arg(long)]
     pub strict: bool,
+    /// Write report.html at the end, whatever the scene says [default: of a run in a terminal]
+    #[arg(long)]
+    pub report: bool,
     /// Write a checkpoint every so many steps (5000), or so often (90s, 10m, 2h, 1:30:00)
     #[arg(long, allow_negative_numbers = true, value_name = "STEPS|WALLTIME")]
     pub checkpoint_every: Option<CheckpointEvery>,

@@ -11,12 +11,13 @@ use super::reference::Reference;
 use super::summary::{continued, summary, totals, warned};
 use super::{chart, timing};
 use crate::cli::CliError;
+use crate::cli::report::report_of_run;
 use crate::cli::settings::RunSettings;
 use crate::cli::terminal::{self, LOG_ONLY, tell};
 use crate::gpu::Device;
 use crate::output::{
-    Adapter, AdapterRecord, CHECKPOINT_FOLDER, Environment, LOG_FILE, Origin, OutputFolder, PLAN_FILE,
-    PRESSURE_CHART_FILE, SCENE_FILE, Shown, forget_after,
+    Adapter, AdapterRecord, AuditLimits, CHECKPOINT_FOLDER, Environment, LOG_FILE, Origin, OutputFolder, PLAN_FILE,
+    PRESSURE_CHART_FILE, SCENE_FILE, Shown, audit_verdict, forget_after,
 };
 use crate::ranks::Communicator;
 use crate::simulation::{Interrupt, Options, Outcome, Setup, Simulation, SimulationError, audit_limits, signal_name};
@@ -86,7 +87,9 @@ impl Job<'_> {
         if outcome.continued.is_some() || outcome.time >= model.plan.end_time {
             let account = [outcome.audit.render(), continued(model, &outcome)].concat();
             let vents = recorder.of_vents();
-            folder.end(&format!("{account}\n{}{vents}{}", totals(&outcome), warned(&outcome)))?;
+            let limits = audit_limits(&model.plan);
+            let verdict = audit_verdict(&failures(&outcome, &limits), &outcome.audit.warnings(&limits));
+            folder.end(&format!("{account}\n{}{vents}{}{verdict}", totals(&outcome), warned(&outcome)))?;
         }
         let vents = recorder.of_vents();
         let stopped = recorder.stopped_at().is_some();
@@ -120,7 +123,7 @@ impl Job<'_> {
             for mesh in &origin.meshes {
                 mesh.keep(&mesh.path, folder.path())?;
             }
-            Environment::of_this_host(command(), adapter).write(folder.path())?;
+            Environment::of_this_host(command(), adapter).in_units(model.scene.units).write(folder.path())?;
             return Ok(Recorder::new(model, reference, folder.path(), shown)?);
         };
         folder.go_on()?;
@@ -157,9 +160,9 @@ impl Job<'_> {
                 tell(&(text + "\n"));
             }
         }
+        report_of_run(self.settings, folder, self.quiet);
         tell(&format!("{}\n", folder.path().display()));
-        let mut failures = outcome.audit.verdict(&limits);
-        failures.extend(outcome.continued.iter().flat_map(|continued| continued.audit.verdict(&limits)));
+        let failures = failures(outcome, &limits);
         if !failures.is_empty() {
             return Err(CliError::Audit { failures });
         }
@@ -168,6 +171,12 @@ impl Job<'_> {
         }
         Ok(())
     }
+}
+
+/// Why the run cannot be trusted.
+fn failures(outcome: &Outcome, limits: &AuditLimits) -> Vec<String> {
+    let continued = outcome.continued.iter().flat_map(|continued| continued.audit.verdict(limits));
+    outcome.audit.verdict(limits).into_iter().chain(continued).collect()
 }
 
 /// How a run ended.

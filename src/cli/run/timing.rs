@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::output::{RankTiming, Timing};
+use crate::output::{PhaseTiming, RankTiming, Timing};
 use crate::ranks::{Communicator, RankError};
 use crate::simulation::Outcome;
 
@@ -14,6 +14,16 @@ pub fn of(comm: &dyn Communicator, outcome: &Outcome, set_up: Duration) -> Resul
         steps: outcome.steps,
         particle_steps: outcome.particle_steps,
         ranks: of_ranks(comm, outcome)?,
+        phases: outcome
+            .phases
+            .rows
+            .iter()
+            .map(|(name, device_seconds, dispatches)| PhaseTiming {
+                name: name.clone(),
+                device_seconds: *device_seconds,
+                dispatches: *dispatches,
+            })
+            .collect(),
     })
 }
 

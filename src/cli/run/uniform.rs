@@ -7,10 +7,12 @@ use super::environment::command;
 use super::recorder::Recorder;
 use super::reference::Reference;
 use crate::cli::CliError;
+use crate::cli::report::report_of_run;
 use crate::cli::settings::RunSettings;
 use crate::cli::terminal::{self, tell};
 use crate::output::{
-    AdapterRecord, Environment, LOG_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, Timing, meshes_of,
+    AdapterRecord, Environment, LOG_FILE, OutputFolder, PLAN_FILE, PRESSURE_CHART_FILE, SCENE_FILE, Timing,
+    audit_verdict, meshes_of,
 };
 use crate::scene::to_toml;
 use crate::simulation::{audit_limits, run_uniform};
@@ -34,7 +36,7 @@ pub fn run(settings: &RunSettings, folder: &OutputFolder, quiet: bool, started: 
     folder.write_text(SCENE_FILE, &to_toml(&model.scene))?;
     folder.write_text(PLAN_FILE, &model.explained().to_toml()?)?;
     let none = AdapterRecord { name: "none: a control volume".to_owned(), ..AdapterRecord::default() };
-    Environment::of_this_host(command(), none).write(folder.path())?;
+    Environment::of_this_host(command(), none).in_units(model.scene.units).write(folder.path())?;
     let mut recorder = Recorder::without_particles(model, Reference::new(model), folder.path())?;
     let set_up = started.elapsed();
     let begun = Instant::now();
@@ -47,12 +49,16 @@ pub fn run(settings: &RunSettings, folder: &OutputFolder, quiet: bool, started: 
     };
     timing.write(folder.path())?;
     let vents = recorder.of_vents();
-    folder.end(&format!("{}\n{:.4} ms as a control volume\n{vents}", audit.render(), 1e3 * model.plan.end_time))?;
+    let limits = audit_limits(&model.plan);
+    let failures = audit.verdict(&limits);
+    let verdict = audit_verdict(&failures, &audit.warnings(&limits));
+    let end = 1e3 * model.plan.end_time;
+    folder.end(&format!("{}\n{end:.4} ms as a control volume\n{vents}{verdict}", audit.render()))?;
     if !quiet {
         tell(&format!("{}: control volume\n\n{}\n{vents}", model.scene.title, audit.render()));
         tell(&format!("wall time {:.3} s\n", started.elapsed().as_secs_f64()));
     }
+    report_of_run(settings, folder, quiet);
     tell(&format!("{}\n", folder.path().display()));
-    let failures = audit.verdict(&audit_limits(&model.plan));
     if failures.is_empty() { Ok(()) } else { Err(CliError::Audit { failures }) }
 }

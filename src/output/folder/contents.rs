@@ -7,10 +7,9 @@ use super::super::OutputError;
 use super::super::checkpoint::{is_checkpoint_file, is_checkpoint_folder};
 use super::super::error::PARTIAL_SUFFIX;
 use super::super::names::{
-    CHECKPOINT_FOLDER, MARKER_FILE, MESH_FOLDER, RESULT_FILES, SNAPSHOT_FOLDER, is_mesh_copy, is_seed_folder,
-    is_snapshot_file,
+    CHECKPOINT_FOLDER, LOCK_FILE, MARKER_FILE, MESH_FOLDER, RESULT_FILES, SNAPSHOT_FOLDER, is_mesh_copy,
+    is_seed_folder, is_snapshot_file,
 };
-use super::lock::LOCK_FILE;
 
 /// What a folder holds before a run.
 #[derive(Debug, Default)]

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use super::super::OutputError;
 use super::super::environment::host_name;
+use super::super::names::LOCK_FILE;
 
-pub(super) const LOCK_FILE: &str = ".corpuscle-lock";
 /// How often a lock may be found to be of a removed file: each time another process has just ended.
 const ATTEMPTS: usize = 100;
 /// Bytes that are read of a lock file: more than any command line of ours has.

@@ -31,6 +31,7 @@ prop_compose! {
         model in (prop::option::of(1u64..1 << 28), prop::option::of(1e-9..1.0f64), prop::option::of(1u32..9)),
         cap in prop::option::of(prop::option::of(1e-3..10.0f64)),
         output in (1u32..1_000_000, 0u32..100_000),
+        report in prop::option::of(prop::bool::ANY),
     ) -> String {
         let mut text = format!(
             "title = {}\nend_time = {end_time:?}\nseed = {seed}\n",
@@ -87,7 +88,9 @@ prop_compose! {
             None => {}
         }
         if let Some(r) = model.2 { text += &format!("rounds = {r}\n"); }
-        text + &format!("[output]\nrows = {}\nsnapshots = {}\n", output.0, output.1)
+        text += &format!("[output]\nrows = {}\nsnapshots = {}\n", output.0, output.1);
+        if let Some(report) = report { text += &format!("report = {report}\n"); }
+        text
     }
 }
 
