@@ -4,6 +4,7 @@ mod counts;
 mod meshes;
 mod pictures;
 mod looks;
+mod pictures;
 mod runs;
 mod studies;
 
@@ -16,6 +17,7 @@ use runs::EXIT_CODES;
 pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
 pub use pictures::RenderArguments;
 pub use looks::{ReportArguments, WatchArguments};
+pub use pictures::RenderArguments;
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
     RefineArguments, ResumeArguments, RunArguments, SceneArguments, SharingArguments, TuningArguments, WishArguments,

@@ -78,7 +78,7 @@ pub enum OutputError {
     )]
     SnapshotLength { path: PathBuf, found: u64, expected: u64 },
     #[error("{path} is not as a run writes it: {problem}", path = path.display())]
-    Vtk { path: PathBuf, problem: String },
+    BadFile { path: PathBuf, problem: String },
     #[error("the history has two columns called {header:?}")]
     DuplicateColumn { header: String },
     #[error("a history row has {found} values, the table has {expected} columns")]
@@ -87,10 +87,6 @@ pub enum OutputError {
     BadRow { path: PathBuf, line: u64, problem: String },
     #[error("{path}:{line}: column {header:?} holds {found:?}, which is not a number", path = path.display())]
     BadValue { path: PathBuf, line: u64, header: String, found: String },
-    #[error("{path} is no snapshot as a run writes it: {problem}", path = path.display())]
-    BadSnapshot { path: PathBuf, problem: String },
-    #[error("{path} is not as a run writes it: {problem}", path = path.display())]
-    BadFile { path: PathBuf, problem: String },
     #[error(
         "{path} has nothing to report: no {expected}; name the folder that the run or the study was given as --out",
         path = path.display()

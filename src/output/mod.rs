@@ -15,6 +15,7 @@ mod environment;
 mod error;
 mod folder;
 mod history;
+mod local_temperature;
 mod map;
 mod marker;
 mod meshes;
@@ -33,7 +34,6 @@ mod ticks;
 mod timing;
 mod vtk;
 mod vtk_read;
-mod vtk_reader;
 
 pub use appended::{AppendedFile, AppendedState};
 pub use audit::{Audit, AuditLimits, CollisionCells};

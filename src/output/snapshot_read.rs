@@ -22,6 +22,7 @@ pub struct Snapshot {
     pub time: f64,
     /// By index.
     pub gas_names: Vec<String>,
+    pub ids: Vec<u32>,
     /// m.
     pub positions: Vec<[f64; 3]>,
     /// m/s.
@@ -58,7 +59,7 @@ pub fn snapshots_of(dir: &Path) -> Result<Vec<SnapshotEntry>, OutputError> {
         let attribute = |name: &str| line.split_once(&format!("{name}=\""))?.1.split('"').next();
         let time = attribute("timestep").and_then(|time| time.parse::<f64>().ok()).filter(|time| time.is_finite());
         let (Some(time), Some(file)) = (time, attribute("file")) else {
-            return Err(OutputError::Vtk { path: list, problem: format!("it has the line {:?}", line.trim()) });
+            return Err(OutputError::BadFile { path: list, problem: format!("it has the line {:?}", line.trim()) });
         };
         entries.push(SnapshotEntry { time, path: folder.join(file) });
     }
@@ -74,6 +75,7 @@ impl Snapshot {
         let snapshot = Snapshot {
             time: file.time().unwrap_or(entry.time),
             gas_names: file.names("gas_names"),
+            ids: file.array::<u32, 1>("id")?.into_flattened(),
             positions: file.array("position")?,
             velocities: file.array("velocity")?,
             gases: file.array::<u8, 1>("gas")?.into_flattened(),
@@ -84,9 +86,9 @@ impl Snapshot {
         };
         let count = snapshot.positions.len();
         let subdomains = snapshot.subdomains.as_ref().map_or(count, Vec::len);
-        if [snapshot.velocities.len(), snapshot.gases.len(), subdomains] != [count; 3] {
+        if [snapshot.ids.len(), snapshot.velocities.len(), snapshot.gases.len(), subdomains] != [count; 4] {
             let problem = "its arrays are of different lengths".to_owned();
-            return Err(OutputError::Vtk { path: entry.path.clone(), problem });
+            return Err(OutputError::BadFile { path: entry.path.clone(), problem });
         }
         Ok(snapshot)
     }
@@ -115,7 +117,7 @@ impl SnapshotSurfaces {
             return Ok(None);
         }
         let file = VtkFile::read(path)?;
-        let broken = |problem: &str| OutputError::Vtk { path: path.to_path_buf(), problem: problem.to_owned() };
+        let broken = |problem: &str| OutputError::BadFile { path: path.to_path_buf(), problem: problem.to_owned() };
         let vertices: Vec<[f64; 3]> = file.array("position")?;
         let corners = file.array::<i64, 1>("connectivity")?.into_flattened();
         let corner = |&corner: &i64| u32::try_from(corner).ok().filter(|&corner| (corner as usize) < vertices.len());
@@ -167,7 +169,7 @@ mod tests {
         assert_eq!((read.time, &read.gas_names[..]), (2.5e-3, &names[..]));
         assert_eq!(read.positions, rows.iter().map(|row| row.position).collect::<Vec<_>>());
         assert_eq!(read.velocities, rows.iter().map(|row| row.velocity).collect::<Vec<_>>());
-        assert_eq!(read.gases, [0, 1, 0, 1, 0]);
+        assert_eq!((read.gases, read.ids), (vec![0, 1, 0, 1, 0], vec![0, 1, 2, 3, 4]));
         assert_eq!(read.subdomains, Some(vec![0, 1, 1, 0, 2]));
         let walls = SnapshotSurfaces::walls(dir.path()).unwrap().unwrap();
         let expected = SnapshotSurfaces {

@@ -44,7 +44,7 @@ impl VtkFile {
     /// If the file cannot be read or is none of a run's.
     pub fn read(path: &Path) -> Result<VtkFile, OutputError> {
         let mut bytes = std::fs::read(path).map_err(OutputError::io("read", path))?;
-        let broken = |problem: &str| OutputError::Vtk { path: path.to_path_buf(), problem: problem.to_owned() };
+        let broken = |problem: &str| OutputError::BadFile { path: path.to_path_buf(), problem: problem.to_owned() };
         let at = bytes.windows(MARK.len()).position(|window| window == MARK);
         let at = at.ok_or_else(|| broken("it has no block of raw arrays"))?;
         let block = bytes.split_off(at + MARK.len());
@@ -90,7 +90,7 @@ impl VtkFile {
     where
         [T; C]: bytemuck::Pod,
     {
-        let broken = |problem: String| OutputError::Vtk { path: self.path.clone(), problem };
+        let broken = |problem: String| OutputError::BadFile { path: self.path.clone(), problem };
         let head = self.head(name).ok_or_else(|| broken(format!("it has no array `{name}`")))?;
         let found = ["type", "NumberOfComponents"].map(|key| attribute(head, key).unwrap_or_default());
         if found != [T::KIND, &C.to_string()] {

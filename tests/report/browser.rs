@@ -26,7 +26,8 @@ fn readout(browser: &Browser) -> String {
 /// Of `0.002 s: inner 101325; ...`, with what stands for the first curve.
 fn read_of(text: &str, label: &str) -> (f64, f64) {
     let (time, rest) = text.split_once(" s: ").unwrap_or_else(|| panic!("{text}"));
-    let value = rest.split("; ").find_map(|part| part.strip_prefix(&format!("{label} "))).unwrap_or_else(|| panic!("{text}"));
+    let value =
+        rest.split("; ").find_map(|part| part.strip_prefix(&format!("{label} "))).unwrap_or_else(|| panic!("{text}"));
     (time.parse().unwrap(), value.trim().parse().unwrap())
 }
 

@@ -10,7 +10,6 @@ mod error;
 mod image;
 mod ink;
 mod lettering;
-mod local_temperature;
 mod model;
 mod run_pictures;
 mod studio;

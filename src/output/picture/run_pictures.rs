@@ -5,10 +5,10 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::super::local_temperature::local_temperatures;
 use super::annotation::round_below;
 use super::colours::{Colour, FABRIC, WALL, of_kind, viridis};
 use super::error::PictureError;
-use super::local_temperature::local_temperatures;
 use super::model::{Key, LengthUnit, Pane, Picture, Scale};
 use super::surface::Surface;
 use crate::gas::displacement;

@@ -7,8 +7,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::super::OutputError;
-use super::super::names::SNAPSHOT_FOLDER;
-use super::super::vtk_reader::VtkFile;
+use super::super::snapshot_read::SnapshotSurfaces;
 
 /// Of all walls together.
 const MOST_TRIANGLES: usize = 120_000;
@@ -34,25 +33,9 @@ impl Walls {
     /// # Errors
     /// If the file is broken.
     pub fn read(run: &Path) -> Result<Walls, OutputError> {
-        let path = run.join(SNAPSHOT_FOLDER).join("walls.vtp");
-        if !path.exists() {
-            return Ok(Walls::default());
-        }
-        let mut file = VtkFile::open(&path)?;
-        let names = file.names("wall_names");
-        let wall = file.values("wall", "UInt32", 1, u32::from_le_bytes)?;
-        let flat = file.values("position", "Float64", 3, f64::from_le_bytes)?;
-        let vertices = flat.as_chunks::<3>().0;
-        let corners = file.values("connectivity", "Int64", 1, i64::from_le_bytes)?;
-        let corners = corners.as_chunks::<3>().0;
-        let known = |corner: &i64| usize::try_from(*corner).is_ok_and(|corner| corner < vertices.len());
-        if corners.len() != wall.len() || !corners.iter().flatten().all(known) {
-            return Err(file.bad("its triangles do not fit its vertices and walls".to_owned()));
-        }
-        let mut triangles: Vec<[u32; 3]> = corners.iter().map(|corners| corners.map(|corner| corner as u32)).collect();
-        let mut vertices = vertices.to_vec();
+        let Some(read) = SnapshotSurfaces::walls(run)? else { return Ok(Walls::default()) };
+        let SnapshotSurfaces { mut vertices, mut triangles, owners: mut walls, names } = read;
         let before = triangles.len();
-        let mut walls = wall;
         while triangles.len() > MOST_TRIANGLES {
             (vertices, triangles, walls) = coarser(&vertices, &triangles, &walls);
         }

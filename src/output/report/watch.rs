@@ -8,8 +8,8 @@ use super::super::error::OutputError;
 use super::super::history::History;
 use super::super::marker::check_marker;
 use super::super::names::HISTORY_FILE;
+use super::super::snapshot_read::snapshots_of;
 use super::super::table::{figure, grouped};
-use super::cloud::listed;
 use super::columns::{Meaning, Role, Unit};
 use super::record::Record;
 use super::state::Progressing;
@@ -69,7 +69,7 @@ pub fn seen(folder: &Path) -> Result<Option<Seen>, OutputError> {
         time: time.symbol,
         told: last_told(&record.log),
         rows: [record.history.rows().len() as u64, u64::from(record.scene.output.rows)],
-        snapshots: [listed(folder)?.len() as u64, u64::from(record.scene.output.snapshots) + 1],
+        snapshots: [snapshots_of(folder)?.len() as u64, u64::from(record.scene.output.snapshots) + 1],
         lines: lines(&record.history, &record.meanings),
         warned,
         state: record.state,

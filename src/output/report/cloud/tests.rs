@@ -1,5 +1,6 @@
 use super::*;
 use crate::output::{ParticleRow, SnapshotWriter};
+use crate::scene::GAS_CONSTANT;
 
 /// Numbers between 0 and 1 without an order.
 fn scattered(id: u32) -> f64 {

@@ -73,7 +73,7 @@ function startView(space) {
   const axis = name => ({ title: { text: `${name}, ${space.length}` }, gridcolor: style("--line"), backgroundcolor: style("--back"), color: style("--ink") });
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "keep", paper_bgcolor: style("--back"), font: { color: style("--ink") },
-    legend: { bgcolor: style("--back"), itemsizing: "constant" },
+    legend: { x: 0, y: 1, bgcolor: style("--back"), itemsizing: "constant" },
     scene: { aspectmode: "data", uirevision: "keep", xaxis: axis("x"), yaxis: axis("y"), zaxis: axis("z"), camera: { eye } },
   });
   const draw = () => {
