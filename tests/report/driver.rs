@@ -153,9 +153,9 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        if !self.session.is_empty() && !std::thread::panicking() {
-            self.call("DELETE", &self.session.clone(), &Value::Null);
-        }
+        // Also after a failure: a browser that is not told to end goes on without its driver.
+        let session = self.session.clone();
+        let _ = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.call("DELETE", &session, &Value::Null)));
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }

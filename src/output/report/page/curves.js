@@ -33,7 +33,7 @@ function drawChart(element) {
     marker: { symbol: SHAPES[curve.shape % SHAPES.length], size: 7, maxdisplayed: 12, color: colour(curve.colour) },
   }));
   const layout = () => ({
-    margin: { l: 76, r: 16, t: 8, b: 44 }, showlegend: false, hovermode: "x unified", uirevision: "keep",
+    margin: { l: 76, r: 16, t: 8, b: 44 }, showlegend: false, hovermode: "x unified", hoverdistance: -1, uirevision: "keep",
     paper_bgcolor: style("--back"), plot_bgcolor: style("--back"), font: { color: style("--ink") },
     hoverlabel: { bgcolor: style("--box"), font: { color: style("--ink") } },
     xaxis: { title: { text: `time, ${held.time}` }, gridcolor: style("--line"), zerolinecolor: style("--line") },
