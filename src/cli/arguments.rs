@@ -1,9 +1,8 @@
 //! The command line as typed. Help, completions and man pages all come from these types.
 
 mod counts;
-mod meshes;
-mod pictures;
 mod looks;
+mod meshes;
 mod pictures;
 mod runs;
 mod studies;
@@ -14,9 +13,8 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use runs::EXIT_CODES;
 
-pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
-pub use pictures::RenderArguments;
 pub use looks::{ReportArguments, WatchArguments};
+pub use meshes::{MeshArguments, MotionArguments, ShapeArguments};
 pub use pictures::RenderArguments;
 pub use runs::{
     Balance, BalanceBy, CheckArguments, ExecutionArguments, GhostsThatChoose, MethodName, PlanArguments,
