@@ -55,6 +55,8 @@ impl Browser {
             "browserName": "chrome",
             "goog:chromeOptions": { "binary": browser, "args": arguments },
             "goog:loggingPrefs": { "browser": "ALL" },
+            // Software draws the view: on a machine that has other work that takes a while.
+            "timeouts": { "script": 300_000, "pageLoad": 300_000 },
         } } });
         let mut browser =
             Browser { driver, port: port.expect("a port of chromedriver"), session: String::new(), _profile: profile };
@@ -66,7 +68,7 @@ impl Browser {
     fn call(&self, method: &str, path: &str, body: &Value) -> Value {
         let body = if method == "POST" { body.to_string() } else { String::new() };
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(300))).unwrap();
         let head = format!(
             "{method} {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n\
              Content-Length: {}\r\n\r\n",
@@ -111,7 +113,7 @@ impl Browser {
     pub fn wait_until(&self, script: &str) {
         let since = Instant::now();
         while self.evaluate(script) != json!(true) {
-            assert!(since.elapsed() < Duration::from_secs(60), "not within a minute: {script}");
+            assert!(since.elapsed() < Duration::from_secs(300), "not within five minutes: {script}");
             std::thread::sleep(Duration::from_millis(100));
         }
     }
