@@ -96,6 +96,19 @@ fn cells_and_rigid_spheres_go_on_from_any_step() {
     }
 }
 
+/// Half-turn at rest, in a box within a box, and where gas enters and leaves.
+#[test]
+fn half_turns_go_on_from_any_step_in_every_scene() {
+    let mut vent = published("vent.toml", 1000, 0.004);
+    vent.vents[0].opening_pressure = 5e3;
+    let scenes = [published("box.toml", 1000, 1e-3), published("effusion.toml", 2000, 2e-3), vent];
+    for (seed, mut scene) in (14..).zip(scenes) {
+        (scene.model.method, scene.model.occupancy) = (Some(Method::HalfTurn), None);
+        scene.model.time_step = Some(scene.end_time / 200.0);
+        restarts(&scene, seed, [2, 1, 3, 1]);
+    }
+}
+
 /// Without collisions particles are dealt out by their ids.
 #[test]
 fn free_flight_goes_on_from_any_step() {

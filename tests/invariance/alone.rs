@@ -10,7 +10,7 @@ use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
-    burst, by, cold_walls, crowding, dense, effusion, gas_box, pistons, plate, tank, venting, venting_freely,
+    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, pistons, plate, tank, venting, venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
 
@@ -181,9 +181,11 @@ fn collisions_within_cells_have_the_same_bits_in_every_way() {
     every_way(&by(Method::Cell, plate()));
 }
 
-/// Inflow, two gases, walls that move, vents, and a wall with a hole through collision cells.
+/// Gas at rest and a box within a box; inflow, two gases, walls that move, vents, and a wall with a hole through collision cells.
 #[test]
 fn half_turns_have_the_same_bits_in_every_way() {
+    every_way(&by(Method::HalfTurn, gas_box()));
+    every_way(&by(Method::HalfTurn, first(0.25, effusion())));
     every_way(&by(Method::HalfTurn, tank(0)));
     every_way(&by(Method::HalfTurn, plate()));
     every_way(&by(Method::HalfTurn, pistons()));

@@ -10,6 +10,7 @@ mod alone;
 mod among;
 mod bits;
 mod faults;
+mod half_turn;
 mod hashes;
 mod orders;
 mod ranks;

@@ -17,7 +17,7 @@ use crate::scenes::{
 use crate::whole_run::{Run, run};
 
 /// The scene by one rank and by others in these ways; returns all the runs, the first alone.
-fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
+pub fn same(model: &Model, ways: &[Way]) -> Vec<Run> {
     let first = run(model, Options::default());
     assert!(first.rows.len() > 3, "a history to compare");
     let bits = Bits::of(&first);
@@ -67,7 +67,7 @@ fn all_ways() -> Vec<Way> {
     ways
 }
 
-fn rebalanced(run: &Run) -> usize {
+pub fn rebalanced(run: &Run) -> usize {
     run.outcome.rebalances
 }
 
@@ -226,28 +226,6 @@ fn collisions_within_cells_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 8 }, 2)];
     same(&by(Method::Cell, plate()), &ways);
     same(&by(Method::Cell, burst()), &ways);
-}
-
-/// Boxes of whole tiles, which begin a cell farther in every other step.
-#[test]
-fn half_turns_have_the_same_bits_on_any_number_of_ranks() {
-    let ways = [
-        Way::new(2, Dynamic, 1),
-        Way { order: Some(&shuffled::<6>), ..Way::new(4, Initial, None) },
-        Way { batch: Some(3), ..Way::new(7, Forced { seed: 7 }, 2) }.over_places(),
-    ];
-    let runs = same(&by(Method::HalfTurn, tank(0)), &ways);
-    assert!(rebalanced(&runs[3]) > 1);
-    let particles = runs[0].outcome.particles.len() as u64;
-    for run in &runs[1..] {
-        let traffic = &run.outcome.traffic;
-        assert!(traffic.present <= traffic.steps * particles, "there are no ghosts");
-        assert!(traffic.arrived > 0);
-    }
-    let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 8 }, 2)];
-    same(&by(Method::HalfTurn, plate()), &ways);
-    same(&by(Method::HalfTurn, pistons()), &ways[1..]);
-    same(&by(Method::HalfTurn, curves()), &[Way::new(3, Forced { seed: 1 }, None).over_places()]);
 }
 
 #[test]

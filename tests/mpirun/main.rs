@@ -24,20 +24,33 @@ use std::time::{Duration, Instant};
 use bits::Bits;
 use corpuscle::partition::By;
 use corpuscle::ranks::{Communicator, from_environment};
+use corpuscle::scene::Method;
 use corpuscle::simulation::{BalanceMode, BalanceOptions, Model, Options, Setup, Simulation, SimulationError};
 use whole_run::{Run, Witness, device, run};
 
 const MIDWAY: &str = "-midway";
+const HALF_TURN: &str = "-half-turn";
 /// Says what a rank runs.
 const CASE: &str = "CORPUSCLE_TEST_CASE";
 /// Far beyond what a slow machine needs.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// `midway`: from a state in the middle of the run.
-const SCENES: [&str; 5] = ["tank", "box", "effusion", "tank-midway", "effusion-midway"];
+/// `half-turn`: by that method; `midway`: from a state in the middle of the run.
+const SCENES: [&str; 10] = [
+    "tank",
+    "box",
+    "effusion",
+    "tank-midway",
+    "effusion-midway",
+    "box-half-turn",
+    "effusion-half-turn",
+    "vent-half-turn",
+    "tank-half-turn-midway",
+    "tank-half-turn",
+];
 const MODES: [&str; 4] = ["off", "initial", "dynamic", "forced"];
 /// Scene, mode, ranks: each of them once at least.
-const SOME: [(&str, &str, usize); 10] = [
+const SOME: [(&str, &str, usize); 15] = [
     ("tank", "dynamic", 2),
     ("tank", "initial", 4),
     ("tank", "forced", 3),
@@ -48,6 +61,11 @@ const SOME: [(&str, &str, usize); 10] = [
     ("tank-midway", "initial", 2),
     ("tank-midway", "off", 2),
     ("effusion-midway", "off", 2),
+    ("box-half-turn", "dynamic", 2),
+    ("effusion-half-turn", "initial", 2),
+    ("vent-half-turn", "forced", 2),
+    ("tank-half-turn", "forced", 2),
+    ("tank-half-turn-midway", "dynamic", 2),
 ];
 
 fn main() -> ExitCode {
@@ -86,10 +104,14 @@ fn main() -> ExitCode {
 }
 
 fn model(scene: &str) -> Model {
+    if let Some(scene) = scene.strip_suffix(HALF_TURN) {
+        return scenes::by(Method::HalfTurn, model(scene));
+    }
     match scene {
         "tank" => scenes::tank(3),
         "box" => scenes::gas_box(),
         "effusion" => scenes::effusion(),
+        "vent" => scenes::venting(),
         "other" => {
             let mut scene = scenes::gas_box().scene;
             scene.seed += 1;
