@@ -48,6 +48,7 @@ fn collision_cells_of(thread: Thread) {
     var bins = TILE_CELLS;
     var begin = cell_start[first];
     var end = cell_start[first + bins];
+    // bench: halved
     while (bins > 1u && end - begin > MOST_MEMBERS) {
         bins /= 2u;
         let middle = cell_start[first + bins];

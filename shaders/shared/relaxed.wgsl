@@ -326,6 +326,7 @@ fn relax(begin: u32, count: u32, group: u32) {
     let third = (places.diagonal.x + places.diagonal.y + places.diagonal.z) / 3.0;
     let fitted = number >= LEAST_FITTED && determinant > LEAST_DETERMINANT * third * third * third;
     var fit = Fit(origin, middle, reference, mean, vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
+    // bench: fitted
     if (fitted) {
         fit.x = times(adjoint, flow_x - momentum.x * middle) / determinant;
         fit.y = times(adjoint, flow_y - momentum.y * middle) / determinant;
@@ -363,16 +364,19 @@ fn relax(begin: u32, count: u32, group: u32) {
     let few = number < LEAST_FITTED;
     var rotation: vec4<f32>;
     let draw = drawn(key, TURN);
-    if (number == 2u || (few && unit_interval(draw.w) < TURNED_AT_RANDOM)) {
-        rotation = any_rotation(draw);
-    } else {
+    let at_random = number == 2u || (few && unit_interval(draw.w) < TURNED_AT_RANDOM);
+    // bench: turned
+    if (!at_random) {
         rotation = half_turn_of(Symmetric(stress.diagonal / twice, stress.off / twice), flux);
+    } else {
+        rotation = any_rotation(draw);
     }
     var stretch = 1.0;
     var spun = 1.0;
     // Where no particle has spin yet: of each half degree of freedom.
     var given = 0.0;
     let has_spin = SPIN && freedom > 0.0;
+    // bench: spin
     if (has_spin) {
         let translation = 0.5 * twice;
         let all = translation + spin;
@@ -439,7 +443,6 @@ fn correct(begin: u32, count: u32, one: u32, excess: f32) {
     let v = sorted[one].motion.xyz;
     var other = NOBODY;
     var most = 0.0;
-    // bench: member
     for (var k = 0u; k < count; k++) {
         let s = member(begin, k);
         if (is_newborn(id_of(sorted[s].position_tag.w))) {

@@ -9,7 +9,7 @@ use crate::scene::{GAS_CONSTANT, Method};
 use super::nearness;
 use super::registry::{SURFACE_MODEL_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
-use super::sizes::{CHUNK, FEW_STRETCHES, SURFACE_COPIES, TILE_BITS, WORKGROUP};
+use super::sizes::{CHUNK, FEW_STRETCHES, MOST_MEMBERS, SURFACE_COPIES, TILE_BITS, WORKGROUP};
 use super::walls::Walls;
 
 const MOST_TALLY_LOOPS: u32 = 32;
@@ -24,8 +24,6 @@ const PURPOSE_WALL: u64 = crate::gas::Purpose::Wall as u64;
 /// Bounces of a flight in a step before it is cut short: there are many in narrow gaps, between walls that close in on each
 /// other, and in steps that are too long.
 const MOST_BOUNCES: f64 = 1024.0;
-/// Collision cells of the method `half-turn` with more particles are halved.
-const MOST_MEMBERS: f64 = 21.0;
 
 /// What the scene has, and so what is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -239,7 +237,7 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("TILED", flag(features.half_turn)),
         ("BORDER", flag(!features.half_turn)),
         ("BOX_BITS", f64::from(box_bits(plan.method))),
-        ("MOST_MEMBERS", MOST_MEMBERS),
+        ("MOST_MEMBERS", f64::from(MOST_MEMBERS)),
         ("CELLS_FLOWN", f64::from(1u32 << box_bits(plan.method))),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),

@@ -50,7 +50,7 @@ pub use memory::Memory;
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
-pub use sizes::{CHUNK, CROWD, MEMBERS, MOTION_ENTRIES, STRETCH, WORKGROUP};
+pub use sizes::{CHUNK, CROWD, MEMBERS, MOST_MEMBERS, MOTION_ENTRIES, STRETCH, TILE_BITS, WORKGROUP};
 pub use state::{StateError, share_table, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use subdomain_box::{Cells, Ghosts, GridCells, SubdomainBox};

@@ -10,6 +10,8 @@ pub const CROWD: u32 = 64;
 
 /// Cells per edge, log2, of a tile of the method `half-turn`: as `shaders/shared/local.wgsl` has it.
 pub const TILE_BITS: u32 = 2;
+/// Collision cells of the method `half-turn` with more particles are halved.
+pub const MOST_MEMBERS: u32 = 21;
 
 /// Cells per thread of the scan.
 pub const CHUNK: u64 = 64;

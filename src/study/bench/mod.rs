@@ -5,6 +5,7 @@
 //! counted from the buffers ([`traffic`]), operations from the kernels ([`operations`]), both by what the run did ([`Work`]).
 
 mod ceilings;
+mod collision_cells;
 mod host;
 pub mod operations;
 pub mod report;
@@ -22,6 +23,7 @@ use crate::study::pareto::{Setting, model_with};
 use crate::study::verify::scene_of;
 
 pub use ceilings::Ceilings;
+pub use collision_cells::CollisionCells;
 use host::{CpuTime, HostLoad, threads};
 use operations::Counted;
 pub use work::{BenchedRun, Work};
@@ -175,7 +177,7 @@ pub fn measure(
         host: HostLoad::new(cpu, seconds, device.adapter().is_cpu()),
         work,
         buffers,
-        cells: if collides { model.plan.grid.cell_count() as u64 } else { 0 },
+        cells: if method == Method::None { 0 } else { model.plan.grid.cell_count() as u64 },
         present: outcome.particles.len() as u64,
     })
 }

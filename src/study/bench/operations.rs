@@ -10,6 +10,7 @@
 //! | pairs found | half of the entries of the lists |
 //! | entries of the list of one that chooses | as many as the mean list has: all up to the test of the time (of rigid spheres of the distance), the rest for those that collide |
 //! | walls, for a flight near them and at each hit | one cell, one triangle up to the side it shows |
+//! | members of a collision cell, three times; halvings of a tile | all; for each cell of the grid |
 //! | members of a crowded cell, twice, and what puts a cell in order; candidates in it | all; those that collided |
 //! | ids of a crowded cell, where a thread for each particle puts it in order | all of a mean cell, by fours |
 //! | particles in the tally | all up to the test of the zone for each zone and two gases, once the rest |
@@ -22,14 +23,19 @@ use crate::scene::Method;
 use crate::subdomain::registry::LISTS;
 use crate::subdomain::{CROWD, KERNELS, STRETCH};
 
+use super::collision_cells::CollisionCells;
 use super::work::{CHUNK, Work};
 
 /// The kernels of a step of a device alone, but for those of rare work; of `complete_lists` only the flights that may meet a wall count, and
 /// `arrange_crowded` where it has all of the crowded cells.
-const COUNTED: [&str; 21] = [
+const COUNTED: [&str; 25] = [
     "bin",
     "arrange",
     "arrange_crowded",
+    "list_ids",
+    "arrange_by_id",
+    "collision_cells",
+    "half_turn",
     "scan_sums",
     "scan_stretches",
     "scan_cells",
@@ -100,6 +106,18 @@ impl Counted {
         Some(self.straight("choose")? * choosers + self.entry()?[0] * (choosers * entries))
     }
 
+    /// The collisions of all particles of a cell: cells of the grid find theirs, and each of its particles counts in three loops.
+    fn half_turns(&self, cells: f64, divided: &CollisionCells) -> Option<Operations> {
+        let found =
+            self.straight("collision_cells")? * cells + self.turn("collision_cells", "halved")? * divided.halvings;
+        let relaxed = self.of("half_turn")?;
+        // (Gas without spin has none of it.)
+        let spin = relaxed.inner("spin").map(Stretch::straight).unwrap_or_default();
+        let each = relaxed.straight() + relaxed.inner("turned")?.straight() + spin;
+        let fitted = relaxed.inner("fitted")?.straight();
+        Some(found + each * divided.number + fitted * divided.fitted + relaxed.every("member") * divided.members)
+    }
+
     /// Of particles that may meet a wall: but for those near walls, who are few, all up to the class of their cell.
     fn away_from_walls(&self, kernel: &str) -> Option<Operations> {
         let kernel = self.of(kernel)?;
@@ -113,10 +131,6 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
     let rounds = method.has_rounds();
     let present = n / work.steps.max(1.0);
     let entries = candidates / n.max(1.0);
-    // (Whose loops over collision cells are not counted.)
-    if method == Method::HalfTurn && ["sort", "collide"].contains(&phase) {
-        return None;
-    }
     Some(match phase {
         "scan" => {
             let (chunks, fours) = (cells / CHUNK as f64, cells / 4.0);
@@ -136,6 +150,13 @@ pub fn operations(phase: &str, method: Method, work: &Work, counted: &Counted) -
                 + counted.turn("scan_cells", "started")? * (0.25 * filled)
                 + counted.turn("scan_cells", "empty")? * (fours - filled).max(0.0)
         }
+        "sort" if method == Method::HalfTurn => {
+            // Each looks at all of its cell, by fours that begin anywhere.
+            let fours = 1.0 + 0.25 * (n / work.filled.max(1.0) - 1.0).max(0.0);
+            let placed = counted.straight("arrange_by_id")? + counted.turn("arrange_by_id", "lower ids")? * fours;
+            (counted.straight("list_ids")? + placed) * n
+        }
+        "collide" if method == Method::HalfTurn => counted.half_turns(cells, &work.collision_cells)?,
         "sort" if rounds => {
             let order = counted.away_from_walls("order")?;
             (if work.capped { order + counted.straight("start_flights")? } else { order }) * n
@@ -216,7 +237,18 @@ mod tests {
     /// As a scene of one gas between mirrors at rest has it.
     fn lean(method: Method) -> Counted {
         let on = |yes: bool| f64::from(u8::from(yes));
-        let lacks = ["HALO", "MOVING", "SURFACE_MODELS", "VENTS", "SURFACES", "ORIFICES", "SPIN", "CURVES", "CAPPED"];
+        let lacks = [
+            "DIVIDED_GAS",
+            "HALO",
+            "MOVING",
+            "SURFACE_MODELS",
+            "VENTS",
+            "SURFACES",
+            "ORIFICES",
+            "SPIN",
+            "CURVES",
+            "CAPPED",
+        ];
         let mut constants: Vec<(&str, f64)> = lacks.iter().map(|&name| (name, 0.0)).collect();
         constants.extend([
             ("GASES", 1.0),
@@ -231,12 +263,13 @@ mod tests {
     fn phases(method: Method) -> &'static [&'static str] {
         match method {
             Method::None => &["advect", "tally", "blocks"],
-            Method::Cell => &["scan", "sort", "collide", "advect", "tally", "blocks"],
+            Method::Cell | Method::HalfTurn => &["scan", "sort", "collide", "advect", "tally", "blocks"],
             _ => &["scan", "sort", "neighbours", "choose", "settle", "lost", "advect", "tally", "blocks"],
         }
     }
 
-    const METHODS: [Method; 4] = [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::None];
+    const METHODS: [Method; 5] =
+        [Method::ClosestApproach, Method::HardSphere, Method::Cell, Method::HalfTurn, Method::None];
 
     /// Every branch and loop that is asked for by its name is there, and every phase of a step is counted.
     #[test]
@@ -315,6 +348,25 @@ mod tests {
                 assert_eq!(with > without, dear.contains(phase), "{name}: {phase}");
             }
         }
+    }
+
+    /// A collision cell costs by its members, and its axes for itself; cells of the grid find it by halves.
+    #[test]
+    fn collision_cells_cost_by_their_members() {
+        let counted = lean(Method::HalfTurn);
+        let of = |number: f64, fitted: f64, members: f64, halvings: f64| {
+            let collision_cells = CollisionCells { number, fitted, members, halvings };
+            let work = Work { steps: 1.0, particle_steps: 14.0, collision_cells, ..Work::default() };
+            operations("collide", Method::HalfTurn, &work, &counted).unwrap()
+        };
+        let [none, alone, fitted] = [of(0.0, 0.0, 0.0, 0.0), of(1.0, 0.0, 0.0, 0.0), of(1.0, 1.0, 0.0, 0.0)];
+        assert_eq!(none, Operations::default());
+        // Twelve rotations of Jacobi's, of two square roots each; a gradient is three rows of nine products.
+        assert!(alone.floating > 12.0 * 40.0 && fitted.floating > alone.floating + 27.0, "{alone:?} {fitted:?}");
+        // Of each member the squares of places and velocities, the flow thrice, the stress and the turn.
+        let member = of(0.0, 0.0, 1.0, 0.0);
+        assert!((150.0..400.0).contains(&member.floating), "{member:?}");
+        assert!(of(0.0, 0.0, 0.0, 1.0).integer >= 3.0 && of(0.0, 0.0, 0.0, 1.0).floating == 0.0);
     }
 
     /// A collision of rigid spheres or of `cell` draws random numbers: hundreds of operations of integers; a flight needs none.

@@ -10,6 +10,7 @@ use crate::scene::Method;
 use crate::subdomain::registry::LISTS;
 use crate::subdomain::{GpuFlight, GpuNewborn, GpuParticle, STRETCH};
 
+use super::collision_cells::CollisionCells;
 use super::work::{CHUNK, Work};
 
 const PARTICLE: f64 = size_of::<GpuParticle>() as f64;
@@ -33,10 +34,13 @@ pub fn bytes(phase: &str, method: Method, work: &Work) -> Option<f64> {
     let entered = work.newborns * NEWBORN;
     if method == Method::HalfTurn {
         match phase {
-            // Cell and place in it twice, the id, and where the cell starts in; the id out; state in and out, and the ids of the cell in.
-            "sort" => return Some(n * (2.0 * PARTICLE + 7.0 * WORD) + filled * WORD),
-            // Where the cells start; the states in, and velocities and spins out.
-            "collide" => return Some(cells * WORD + 1.5 * n * PARTICLE),
+            // State, cell and place in it, and where the cell starts in; state out; the ids of a cell out, and in.
+            "sort" => return Some(n * (2.0 * PARTICLE + 4.0 * WORD) + filled * WORD),
+            // Where the cells start; the first and the end of a collision cell out, and in; its states in and out.
+            "collide" => {
+                let CollisionCells { number, members, .. } = work.collision_cells;
+                return Some(cells * WORD + number * 4.0 * WORD + members * 2.0 * PARTICLE);
+            }
             _ => {}
         }
     }
@@ -172,6 +176,11 @@ mod tests {
         let crowded = Work { crowded: 1.0, ..Work::default() };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &crowded)), [4.0, 8.0].map(Some));
         assert_eq!(bytes("sort", rounds, &crowded), Some(0.0));
+        let half_turn = Method::HalfTurn;
+        assert_eq!(["sort", "advect"].map(|phase| floor(phase, half_turn)), [80.0, 72.0]);
+        let divided = CollisionCells { number: 1.0, members: 14.0, ..CollisionCells::default() };
+        let divided = Work { cell_steps: 8.0, collision_cells: divided, ..Work::default() };
+        assert_eq!(bytes("collide", half_turn, &divided), Some(32.0 + 16.0 + 14.0 * 64.0));
         let by_threads = Work { by_threads: true, ..crowded };
         assert_eq!(["sort", "collide"].map(|phase| bytes(phase, cell, &by_threads)), [8.0, 0.0].map(Some));
     }

@@ -2,8 +2,11 @@
 
 use crate::geometry::Grid;
 use crate::gpu::KernelVariant;
+use crate::scene::Method;
 use crate::simulation::{Done, Model, Outcome};
 use crate::subdomain::{GpuParticle, MEMBERS, few_stretches};
+
+use super::collision_cells::CollisionCells;
 
 /// Cells that the scan takes together.
 pub const CHUNK: usize = 64;
@@ -25,6 +28,8 @@ pub struct Work {
     pub chunks: f64,
     /// Cells with two or more that are put in order where they collide.
     pub few: f64,
+    /// Of the method `half-turn`.
+    pub collision_cells: CollisionCells,
     /// Particles in cells of more; whether a thread for each puts them in order (`shaders/shared/crowds.gpu.wgsl`).
     pub crowded: f64,
     pub by_threads: bool,
@@ -69,7 +74,7 @@ impl Work {
         let intervals = after.lists.intervals - before.lists.intervals;
         let mean = |sum: u64| sum as f64 / intervals.max(1) as f64;
         let chosen = |round: usize| mean(after.lists.choosers[round] - before.lists.choosers[round]);
-        let (rounds, collides) = (plan.rounds as usize, plan.method != crate::scene::Method::None);
+        let (rounds, collides) = (plan.rounds as usize, plan.method != Method::None);
         let has_rounds = plan.method.has_rounds();
         let cells = if collides { plan.grid.cell_count() as f64 } else { 0.0 };
         let [filled, shared, gathered, chunks, few, crowded] =
@@ -84,6 +89,11 @@ impl Work {
             gathered: gathered * steps,
             few: few * steps,
             crowded: crowded * steps,
+            collision_cells: if plan.method == Method::HalfTurn {
+                CollisionCells::of(&outcome.particles, &plan.grid).times(steps)
+            } else {
+                CollisionCells::default()
+            },
             by_threads: variant == KernelVariant::Gpu,
             chunks: chunks * steps,
             candidates: lists[0] * particle_steps,
