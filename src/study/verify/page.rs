@@ -155,9 +155,9 @@ impl Page {
             "{TITLE}\n\n\
              Reference cases and what a run gave for them, as printed by\n\n```sh\n{}\n```\n\n\
              on {}. Another adapter draws another sample, as good.\n\n\
-             The tolerance is that of the law, fixed beforehand. A check passes if the measured figure is within it, and its\n\
-             standard error at most a third of it. One that differs is of a disputed figure of the prototype. The law of each\n\
-             case stands in `corpuscle verify --list`.\n\n",
+             The tolerance is that of the law, fixed before the first run; of `half-turn` some were fixed with runs in sight. A check\n\
+             passes if the measured figure is within it, and its standard error at most a third of it. One that differs is of a\n\
+             disputed figure of the prototype. The law of each case stands in `corpuscle verify --list`.\n\n",
             self.command, self.device
         );
         let _ = writeln!(text, "{}.\n\n| {} |", tally.in_words(failures.len()), TITLES.join(" | "));

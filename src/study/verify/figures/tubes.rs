@@ -14,11 +14,12 @@ use crate::study::verify::{Effort, Findings};
 /// Method, particles, f, x, R, and the mean |difference| of density and velocity.
 type Row = (Method, u64, Option<f64>, Option<f64>, Option<u32>, [f64; 2]);
 
-/// Those of at most 160,000 particles.
+/// Those of at most 160,000 particles. Of closest approach with 10,000 and 40,000 they are means of 16 and of 2 single runs, all others single
+/// runs. (A first one of 40,000 had .055, out of line with those of 10,000 and 160,000.)
 const TABLE: [Row; 8] = [
     (Method::HardSphere, 40_000, Some(0.1), Some(0.3), Some(2), [0.0533, 0.191]),
-    (Method::ClosestApproach, 10_000, Some(0.1), Some(0.3), Some(1), [0.0420, 0.087]),
-    (Method::ClosestApproach, 40_000, Some(0.1), Some(0.3), Some(1), [0.0301, 0.055]),
+    (Method::ClosestApproach, 10_000, Some(0.1), Some(0.3), Some(1), [0.0443, 0.104]),
+    (Method::ClosestApproach, 40_000, Some(0.1), Some(0.3), Some(1), [0.0291, 0.068]),
     (Method::Cell, 160_000, Some(0.1), Some(2.0), None, [0.0232, 0.046]),
     (Method::Cell, 40_000, Some(0.1), Some(0.3), None, [0.0307, 0.068]),
     (Method::None, 160_000, None, None, None, [0.0589, 0.155]),
@@ -26,25 +27,19 @@ const TABLE: [Row; 8] = [
     (Method::ClosestApproach, 160_000, Some(0.3), Some(0.3), Some(1), [0.0166, 0.030]),
 ];
 
-/// The rows of one gas with fewer, some and more particles. The velocity of the middle one is out of line with the others', single
-/// runs as it is: if it falls as a power of the particles, it is the root of their product.
-const SERIES: [usize; 3] = [1, 2, 6];
-
 /// Runs whose scatter is known to a quarter; of fewer the error is that of counting noise.
 const SCATTERED: u64 = 8;
 
 /// What the table's figures are known to, besides counting noise.
 const KNOWN: f64 = 0.05;
 
-/// The prototype's are single runs, to 5 % and their counting noise. Ours are means of as many seeds as have `together` particles.
+/// The prototype's are held as single runs, to 5 % and their counting noise. Ours are means of as many seeds as have `together` particles.
 pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     let (count, together) = if effort == Effort::Quick { (4, 0) } else { (TABLE.len(), 320_000) };
     let mut findings = Findings::default();
-    // Of velocities: what is found, and the noise of a single run.
-    let mut velocities = [((f64::NAN, f64::NAN), f64::NAN); TABLE.len()];
     // All particles in as much room as makes them as dense as those of the left half, 8/9 of them.
     let left = 9.0 / 8.0 * 0.5 * LENGTH * SOD.width.powi(2);
-    for (row, &(method, particles, occupancy, step, rounds, expected)) in TABLE[..count].iter().enumerate() {
+    for &(method, particles, occupancy, step, rounds, expected) in &TABLE[..count] {
         let setting = Setting { method: Some(method), particles: Some(particles), occupancy, step, rounds };
         let seeds = (together / particles).max(1);
         let (mut runs, mut noise) = ([Vec::new(), Vec::new()], [0.0; 2]);
@@ -61,12 +56,10 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
             let counted = noise[k] / (seeds as f64).sqrt();
             (mean, if seeds >= SCATTERED { scatter.max(counted) } else { counted })
         });
-        velocities[row] = (found[1], noise[1]);
         for (k, name) in ["rho", "u"].into_iter().enumerate() {
             let quantity = format!("{setting}: mean |{name} - exact|");
             let known = (KNOWN * expected[k]).hypot(3.0 * noise[k]);
-            let check = figure(quantity, expected[k], found[k], known);
-            findings.checks.push(if (row, name) == (SERIES[1], "u") { check.disputed() } else { check });
+            findings.checks.push(figure(quantity, expected[k], found[k], known));
         }
     }
     findings.notes.push(
@@ -74,43 +67,23 @@ pub fn table(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
          hard-sphere has .078 in the density, not .053, and the other methods less than the table"
             .into(),
     );
-    if effort == Effort::Full {
-        let (reference, error) = between(SERIES.map(|row| (TABLE[row].5[1], velocities[row].1)));
-        let (found, ..) = velocities[SERIES[1]];
-        let quantity =
-            "closest-approach, N = 40000: mean |u - exact| by the prototype's of 10000 and 160000".to_owned();
-        findings.checks.push(figure(quantity, reference, found, (KNOWN * reference).hypot(3.0 * error)));
-        findings.notes.push(format!(
-            "The velocity's .055 of closest-approach with 40,000 particles is a single run, and out of line with the rows of \
-             10,000 and 160,000, which have {reference:.4} +- {error:.4} between them. With that the {:.4} +- {:.4} that is found \
-             agrees",
-            found.0, found.1
-        ));
-    }
     Ok(findings)
-}
-
-/// What the middle of three figures, single runs with these errors, should be if they are a power of the particles, by the others;
-/// and its error.
-fn between([few, _, many]: [(f64, f64); 3]) -> (f64, f64) {
-    let reference = (few.0 * many.0).sqrt();
-    (reference, 0.5 * reference * (few.1 / few.0).hypot(many.1 / many.0))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Of figures that fall as a power of the particles the middle one is the root of the others' product; the series has a quarter
-    /// and four times its particles, and is else of one gas.
+    /// Of one gas the velocity's errors fall as a power of the particles, within what single runs are known to: a figure out of line is a
+    /// wrong one.
     #[test]
-    fn the_middle_of_a_series_is_known_by_its_ends() {
-        let [few, some, many] = SERIES.map(|row| TABLE[row]);
+    fn the_rows_of_one_gas_are_in_line() {
+        let [few, some, many] = [1, 2, 6].map(|row| TABLE[row]);
         assert_eq!((4 * few.1, some.1), (some.1, many.1 / 4));
         for other in [few, many] {
             assert_eq!((other.0, other.2, other.3, other.4), (some.0, some.2, some.3, some.4));
         }
-        let (reference, error) = between([(0.16, 0.016), (f64::NAN, f64::NAN), (0.04, 0.0)]);
-        assert!((reference - 0.08).abs() < 1e-12 && (error - 0.004).abs() < 1e-12, "{reference} {error}");
+        let in_line = |figure: f64| (figure / (few.5[1] * many.5[1]).sqrt() - 1.0).abs() < 2.0 * KNOWN;
+        assert!(in_line(some.5[1]) && !in_line(0.055));
     }
 }
