@@ -9,12 +9,12 @@
 
 use std::f64::consts::PI;
 
-use corpuscle::study::verify::holes::{self, CLAUSING, DIAMETER, staying};
+use corpuscle::study::verify::effusion::{self, CLAUSING, DIAMETER, staying};
 
 use crate::whole_run::device;
 
 fn flow_ratio(diameter: f64) -> (f64, f64) {
-    holes::flow_ratio(&device(), 100_000, diameter).expect("a run")
+    effusion::flow_ratio(&device(), 100_000, diameter).expect("a run")
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn the_share_that_stays() {
 #[test]
 #[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify rough-tube` runs the case too"]
 fn a_rough_tube_passes_what_clausing_says() {
-    let transmission = |friction| holes::transmission(&device(), 100_000, friction).expect("a run");
+    let transmission = |friction| effusion::transmission(&device(), 100_000, friction).expect("a run");
     let [rough, half, smooth] = [1.0, 0.5, 0.0].map(transmission);
     println!("rough {rough:.4?}, half {half:.4?}, smooth {smooth:.4?}");
     assert!(rough.1 <= 0.03 * CLAUSING / 2.0);

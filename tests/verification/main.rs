@@ -12,6 +12,7 @@ mod equilibrium_box;
 mod equipartition;
 mod filling;
 mod half_turn;
+mod half_turn_rows;
 mod hard_sphere;
 mod heat_curve;
 mod long_steps;

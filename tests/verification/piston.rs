@@ -12,7 +12,7 @@ use crate::whole_run::{device, model, run};
 #[test]
 #[ignore = "a minute or two: scripts/test.sh --long; `corpuscle verify piston` runs the case too"]
 fn slow_compression_is_adiabatic() {
-    for method in [Method::ClosestApproach, Method::Cell] {
+    for method in [Method::ClosestApproach, Method::Cell, Method::HalfTurn] {
         let (ratio, error) = compressions(&device(), method, 800, 3).expect("runs");
         println!("{}: T V^(gamma-1): {ratio:.5} +- {error:.5}", method.name());
         assert!(error < 0.005 / 3.0, "{error}");
@@ -24,7 +24,7 @@ fn slow_compression_is_adiabatic() {
 
 #[test]
 fn a_fast_piston_drives_a_shock() {
-    for method in [Method::ClosestApproach, Method::Cell] {
+    for method in [Method::ClosestApproach, Method::Cell, Method::HalfTurn] {
         let piston = Piston::shock(16_000, 0.5).by(method);
         let run = piston.run(&device()).expect("a run");
         assert_eq!(run.outcome.audit.verdict(&AuditLimits::default()), Vec::<String>::new());

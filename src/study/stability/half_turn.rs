@@ -6,12 +6,11 @@ use crate::gas::kinetics::HALF_TURN_VISCOSITY;
 use crate::gpu::Device;
 use crate::plan::{COLLISION_CELL, SPACINGS_FLOWN, TILE_EDGE};
 use crate::scene::Method;
-use crate::simulation::Options;
 use crate::study::StudyError;
+use crate::study::verify::Check;
 use crate::study::verify::gas_box::EquilibriumBox;
 use crate::study::verify::half_turn::{Sheared, viscosity};
-use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of};
-use crate::study::verify::{Check, run};
+use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of_seeds};
 
 use super::Effort;
 use super::at_rest::{at_rest, lasting, of_any};
@@ -63,16 +62,9 @@ pub(super) fn across(device: &Device, method: Method, spacings: f64, effort: Eff
     // As many runs as make the error of their mean a third of what is allowed.
     let seeds = if effort == Effort::Quick { 1 } else { (32_000.0 / resolving).ceil().clamp(1.0, 8.0) as u64 };
     let mut model = hole(method, resolving as u64, None)?;
-    let (mut sum, mut square, mut checks) = (0.0, 0.0, Vec::new());
-    for seed in 1..=seeds {
-        model.plan.seed = seed;
-        let run = run(device, &model, Options::default())?;
-        let (found, error) = discharge_of(&run.rows);
-        sum += found / seeds as f64;
-        square += (error / seeds as f64).powi(2);
-        checks = of_any(&model, &run);
-    }
-    let found = (sum / CONTINUUM_COEFFICIENT, square.sqrt() / CONTINUUM_COEFFICIENT);
+    let mut checks = Vec::new();
+    let (found, error) = discharge_of_seeds(device, &mut model, seeds, |model, run| checks = of_any(model, run))?;
+    let found = (found / CONTINUUM_COEFFICIENT, error / CONTINUUM_COEFFICIENT);
     checks.push(Check::of("flow, Cd over that of a continuum", 1.0, found, FLOW));
     Ok(checks)
 }

@@ -4,14 +4,14 @@ use crate::gas::kinetics::HALF_TURN_VISCOSITY;
 use crate::gpu::Device;
 use crate::plan::{COLLISION_CELL, SPACINGS_FLOWN};
 use crate::scene::Method;
-use crate::simulation::{Model, Options};
+use crate::simulation::Model;
 use crate::study::StudyError;
 
 use super::gas_box::EquilibriumBox;
-use super::holes::{discharge_of, emptying_scene};
+use super::holes::{discharge_of_seeds, emptying_scene};
 use super::shear::viscosity_in;
 use super::witness::model_from;
-use super::{Check, Effort, Findings, run};
+use super::{Check, Effort, Findings};
 
 /// To which the viscosity is known.
 const KNOWN_TO: f64 = 0.03;
@@ -75,16 +75,11 @@ pub(super) fn discharges(device: &Device, effort: Effort) -> Result<Findings, St
     };
     let check = |&(particles, seeds): &(u64, u64)| {
         let mut model = emptying(particles)?;
-        let (mut sum, mut square, mut before) = (0.0, 0.0f64, 0.0);
-        for seed in 1..=seeds {
-            model.plan.seed = seed;
-            let rows = run(device, &model, Options::default())?.rows;
-            let (found, error) = discharge_of(&rows);
-            sum += found / seeds as f64;
-            square += (error / seeds as f64).powi(2);
-            before = rows[rows.len() / 2].chambers[0].particles[0] / model.plan.chambers[0].volume;
-        }
-        let found = (sum, square.sqrt());
+        let mut before = 0.0;
+        let found = discharge_of_seeds(device, &mut model, seeds, |model, run| {
+            let middle = &run.rows[run.rows.len() / 2];
+            before = middle.chambers[0].particles[0] / model.plan.chambers[0].volume;
+        })?;
         let opening = &model.plan.openings[0];
         let diameter = 2.0 * (opening.area / std::f64::consts::PI).sqrt();
         let spacings = diameter * before.cbrt();

@@ -80,28 +80,19 @@ fn moles() -> f64 {
 /// # Errors
 /// If the run fails.
 pub fn heat_loss(device: &Device, particles: u64) -> Result<((f64, f64), Run), StudyError> {
-    heat_loss_in(particles, |wall| within_walls(device, particles, TAU, WARM, wall))
+    heat_loss_in(particles, 1.0, |wall| within_walls(device, particles, TAU, WARM, wall))
 }
 
-/// By half-turn.
-///
-/// # Errors
-/// If the run fails.
-pub fn heat_loss_of_half_turn(device: &Device, particles: u64) -> Result<((f64, f64), Run), StudyError> {
-    heat_loss_in(particles, |wall| {
-        let model = model_from("heat-loss", scene_by(Method::HalfTurn, particles, WARM, wall)?)?;
-        run(device, &model, Options::default())
-    })
-}
-
+/// With walls that exchange so many times as much as the law is told.
 fn heat_loss_in(
     particles: u64,
+    times: f64,
     cooled_by: impl Fn(&str) -> Result<Run, StudyError>,
 ) -> Result<((f64, f64), Run), StudyError> {
     let heat_capacity = moles() * 2.5 * GAS_CONSTANT;
     let area = 6.0 * EDGE * EDGE;
     let coefficient = heat_capacity / (area * TAU);
-    let run = cooled_by(&format!("heat_transfer = {coefficient:e}"))?;
+    let run = cooled_by(&format!("heat_transfer = {:e}", times * coefficient))?;
     let heat = run.rows.last().map_or(f64::NAN, |row| row.walls[0].heat);
     let mean = 0.5 * (WARM + COLD);
     let speed = (8.0 * GAS_CONSTANT * mean / (PI * MOLAR_MASS)).sqrt();
@@ -113,9 +104,16 @@ fn heat_loss_in(
 }
 
 /// What half-turn keeps, of which the gas at the walls is colder, since it conducts less: between the law's and that of a solid of
-/// its conductivity, whose fall is slower by the factor zeta^2/Bi, zeta tan zeta = Bi, the Biot number of half an edge.
-fn by_half_turn(device: &Device, particles: u64) -> Result<Check, StudyError> {
-    let ((end, error), _) = heat_loss_of_half_turn(device, particles)?;
+/// its conductivity, whose fall is slower by the factor zeta^2/Bi, zeta tan zeta = Bi, the Biot number of half an edge. `times`: by how much the
+/// coefficient of the walls is larger than that of the law.
+///
+/// # Errors
+/// If the run fails.
+pub fn by_half_turn(device: &Device, particles: u64, times: f64) -> Result<Check, StudyError> {
+    let ((end, error), _) = heat_loss_in(particles, times, |wall| {
+        let model = model_from("heat-loss", scene_by(Method::HalfTurn, particles, WARM, wall)?)?;
+        run(device, &model, Options::default())
+    })?;
     let fall = WARM - COLD;
     let spacing = EDGE / (particles as f64).cbrt();
     let thermal = (GAS_CONSTANT * 0.5 * (WARM + COLD) / MOLAR_MASS).sqrt();
@@ -153,7 +151,7 @@ pub(super) fn heat(device: &Device, effort: Effort) -> Result<Findings, StudyErr
             ((end - COLD) / fall, error / fall),
             tolerance,
         ),
-        by_half_turn(device, particles)?,
+        by_half_turn(device, particles, 1.0)?,
     ];
     let found = run.rows.iter().map(|row| [1e3 * row.time, WARM - row.walls[0].heat / (moles() * 2.5 * GAS_CONSTANT)]);
     let exact = run.rows.iter().map(|row| [1e3 * row.time, cooled(row.time)]);

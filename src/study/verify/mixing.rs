@@ -13,7 +13,7 @@ use super::witness::{model_from, scene_of};
 use super::{Check, Curves, Effort, Findings, Run, run};
 
 /// s.
-const END: f64 = 6e-3;
+pub const END: f64 = 6e-3;
 /// m.
 const EDGE: f64 = 0.1;
 /// kg/mol, of nitrogen and argon.
@@ -81,7 +81,8 @@ pub fn common_temperature() -> f64 {
     (2.0 * 2.5 * 300.0 + 1.5 * 600.0) / (2.0 * 2.5 + 1.5)
 }
 
-fn of(moments: &[Moment], method: &str, tolerance: f64) -> Vec<Check> {
+/// Shares and temperature of the second half of a run; `method`: what the rows begin with.
+pub fn of_late(moments: &[Moment], method: &str, tolerance: f64) -> Vec<Check> {
     let (found, error) = late(moments, |m| m.temperature[1]);
     let temperature = (found / common_temperature(), error / common_temperature());
     vec![
@@ -95,11 +96,11 @@ pub(super) fn mixing(device: &Device, effort: Effort) -> Result<Findings, StudyE
     // What so few particles can tell: .5/sqrt(N) at a moment, in some ten independent ones.
     let (particles, tolerance) = if effort == Effort::Quick { (1500, 0.05) } else { (12_000, 0.02) };
     let (moments, _) = mixed(device, particles)?;
-    let mut checks = of(&moments, "", tolerance);
+    let mut checks = of_late(&moments, "", tolerance);
     // It diffuses more slowly, D .39 d c0 at 300 K and 14 particles a cell: exp(-D (pi/L)^2 t) is e^-2 at half of 6 ms with 1500 particles.
     let (slower, _) =
         mixed_by(device, Method::HalfTurn, particles, if effort == Effort::Quick { 2.0 } else { 4.0 } * END)?;
-    checks.extend(of(&slower, "half-turn: ", tolerance));
+    checks.extend(of_late(&slower, "half-turn: ", tolerance));
     let line = |of: &dyn Fn(&Moment) -> f64| moments.iter().map(|m| [1e3 * m.time, of(m)]).collect();
     let title = format!("Nitrogen at 300 K and argon at 600 K, {particles} particles");
     let chart = Curves::new("mixing", title, "ms", "K")

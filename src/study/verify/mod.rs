@@ -2,7 +2,7 @@
 //!
 //! A [`Case`] runs scenes and says of each quantity what it should be, what it was, by how much it may be off and how
 //! well the run knows it ([`Check`]). The tolerance is that of the law (how far a method of this kind may be from the
-//! reference), fixed before any run; a run must know its quantity three times better than that, or it says nothing and
+//! reference), fixed before any run (of some rows of `half-turn` with runs in sight); a run must know its quantity three times better than that, or it says nothing and
 //! counts as a failure. Seeds are fixed, so an outcome is the same every time on one adapter.
 //!
 //! The same functions serve the tests (`tests/verification/`), which also show of the cases that they run that the check can
@@ -14,6 +14,7 @@ mod check;
 pub mod collisions;
 pub mod curve;
 mod damped_wave;
+pub mod effusion;
 pub mod equilibrium;
 pub mod figures;
 pub mod filling;
@@ -94,7 +95,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "rough-tube",
         law: "free flight through a tube of rough walls over n cbar A/4 (Clausing 1932)",
-        run: holes::rough_tube,
+        run: effusion::rough_tube,
     },
     Case {
         name: "orifice",

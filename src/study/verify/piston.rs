@@ -131,6 +131,25 @@ pub fn compressions(device: &Device, method: Method, particles: u64, seeds: u64)
     Ok((mean, (square / count).sqrt()))
 }
 
+/// [`compressions`] as a row.
+///
+/// # Errors
+/// If a run fails.
+pub fn compressed(device: &Device, method: Method, particles: u64, seeds: u64) -> Result<Check, StudyError> {
+    let what = format!("{}: T V^(gamma-1) at 2:1, {SLOW} c0, N = {particles}", method.name());
+    Ok(Check::of(what, 1.0, compressions(device, method, particles, seeds)?, 0.005))
+}
+
+/// [`on_piston`] as a row, against the pressure behind the shock of a piston of this speed, c0.
+///
+/// # Errors
+/// If the run fails.
+pub fn pressed(device: &Device, piston: &Piston, speed: f64, tolerance: f64) -> Result<Check, StudyError> {
+    let pressure = on_piston(piston, &piston.run(device)?);
+    let what = format!("{}: p on a piston of {speed} c0 over p1, N = {}", piston.method.name(), piston.particles);
+    Ok(Check::of(what, shock_pressure(speed), pressure, tolerance))
+}
+
 pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
     // As many particles of each fast piston as make the noise of the hits a third of the tolerance.
     let (slow, fast, seeds) = match effort {
@@ -139,9 +158,7 @@ pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Findings, Study
     };
     let mut checks = Vec::new();
     for method in [Method::ClosestApproach, Method::Cell, Method::HalfTurn] {
-        let (name, compressed) = (method.name(), compressions(device, method, slow, seeds)?);
-        let what = format!("{name}: T V^(gamma-1) at 2:1, {SLOW} c0, N = {slow}");
-        checks.push(Check::of(what, 1.0, compressed, 0.005));
+        checks.push(compressed(device, method, slow, seeds)?);
         // Two speeds are enough where the method is old, one to see the shock of `cell`.
         let speeds = match method {
             Method::Cell => &fast[1..2],
@@ -149,10 +166,7 @@ pub(super) fn pistons(device: &Device, effort: Effort) -> Result<Findings, Study
             _ => &fast[..],
         };
         for &(speed, particles, tolerance) in speeds {
-            let piston = Piston::shock(particles, speed).by(method);
-            let pressure = on_piston(&piston, &piston.run(device)?);
-            let what = format!("{name}: p on a piston of {speed} c0 over p1, N = {particles}");
-            checks.push(Check::of(what, shock_pressure(speed), pressure, tolerance));
+            checks.push(pressed(device, &Piston::shock(particles, speed).by(method), speed, tolerance)?);
         }
     }
     Ok(checks.into())

@@ -6,28 +6,30 @@ use crate::scene::Method;
 use crate::simulation::Options;
 use crate::study::StudyError;
 
-use super::holes::{self, DIAMETER, RADIUS, VOLUME, emptying_scene, flow_ratio_by};
+use super::effusion::{self, DIAMETER, flow_ratio_by};
+use super::holes::{self, RADIUS, VOLUME, emptying_scene};
 use super::witness::model_from;
 use super::{Check, Effort, Findings, run};
 
 /// Free flight: n cbar A/4. With half-turn no less may leave than that, and no more than a continuum lets choke, .84/.58 of it.
 pub(super) fn effusion(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
-    let Findings { mut checks, .. } = holes::effusion(device, effort)?;
+    let Findings { mut checks, .. } = effusion::effusion(device, effort)?;
     let numbers: &[u64] = if effort == Effort::Quick { &[50_000] } else { &[5_000, 50_000, 400_000] };
     for &particles in numbers {
-        checks.push(bounded(device, Method::HalfTurn, particles)?);
+        checks.push(bounded(device, Method::HalfTurn, particles, DIAMETER)?);
     }
     Ok(checks.into())
 }
 
-/// The flow between both bounds; a method that lets more or less through is no gas.
+/// The flow between both bounds; a method that lets more or less through is no gas. (They are of a hole of [`DIAMETER`], whatever the one of the
+/// run is.)
 ///
 /// # Errors
 /// If the run fails.
-pub fn bounded(device: &Device, method: Method, particles: u64) -> Result<Check, StudyError> {
+pub fn bounded(device: &Device, method: Method, particles: u64, diameter: f64) -> Result<Check, StudyError> {
     let [free, continuum] = gas::COEFFICIENT_LIMITS;
     let most = continuum / free;
-    let found = flow_ratio_by(device, method, particles, DIAMETER)?;
+    let found = flow_ratio_by(device, method, particles, diameter)?;
     let quantity = format!("{}: flow over n cbar A/4, from 1 to {most:.2}, N = {particles}", method.name());
     Ok(Check::of(quantity, 0.5 * (1.0 + most), found, 0.5 * (most - 1.0) + 3.0 * found.1))
 }

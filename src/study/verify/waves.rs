@@ -187,14 +187,21 @@ pub(super) const NOTE: &str = "The prototype has .33 to .35 d c0 for the damping
 
 /// What the case `sound` has of half-turn.
 pub(super) fn sounds(device: &Device, effort: Effort) -> Result<Vec<Check>, StudyError> {
-    let waves = of(effort, true);
+    sounds_of(device, &of(effort, true), if effort == Effort::Quick { 0.03 } else { 0.01 })
+}
+
+/// Frequency, which may be off by so much, and damping of these waves against those of half-turn.
+///
+/// # Errors
+/// If a run fails.
+pub fn sounds_of(device: &Device, waves: &Waves, of_frequency: f64) -> Result<Vec<Check>, StudyError> {
     let [frequency, damping] = waves.sound(device)?;
-    let of_frequency = if effort == Effort::Quick { 0.03 } else { 0.01 };
     let what = format!("kd = {:.2}, N = {}", waves.spacing(), waves.particles);
+    let method = waves.method;
     Ok(vec![
-        Check::of(format!("half-turn: frequency, {what}"), 1.0, frequency, of_frequency),
+        Check::of(format!("{method}: frequency, {what}"), 1.0, frequency, of_frequency),
         Check::of(
-            format!("half-turn: damping / (d c0 k^2), {what} (prototype .34)"),
+            format!("{method}: damping / (d c0 k^2), {what} (prototype .34)"),
             DAMPING,
             damping,
             DAMPING_KNOWN_TO,
