@@ -127,13 +127,13 @@ fn bounce(thread: Thread) {
     let gas = gases[kind_of(particle.tag)];
     var bounces = 0u;
     var end = step.dt;
-    // Velocity of the wall that was hit last.
+    // Velocity of the surface that was hit last.
     var carried = vec3<f32>(0.0);
     var overshoot = 0.0;
     var ended = false;
     // bench: hit
     loop {
-        let hit = first_hit(particle.position, particle.velocity, time, step.dt);
+        let hit = first_hit(particle.position, particle.velocity, time, step.dt, is_inside(particle.tag));
         overshoot = max(overshoot, hit.overshoot);
         // bench: last
         if (hit.triangle == NOBODY) {
@@ -147,28 +147,23 @@ fn bounce(thread: Thread) {
             break;
         }
         bounces++;
-        let triangle = triangles[hit.triangle];
         let old = particle.velocity;
-        if (MOVING) {
-            carried = vec3<f32>(0.0);
-            if (triangle.motion != NOBODY) {
-                carried = motion_of(triangle.motion).velocity;
-            }
-        }
+        let wall = struck(hit, particle.position, old, time, is_inside(particle.tag));
+        carried = wall.velocity;
         // In the frame of the wall.
         let relative = old - carried;
-        var turned = relative - 2.0 * dot(relative, triangle.normal) * triangle.normal;
+        var turned = relative - 2.0 * dot(relative, wall.normal) * wall.normal;
         var kept = true;
-        if (SURFACE_MODELS && triangle.surface_model != NOBODY) {
+        if (SURFACE_MODELS && wall.surface_model != NOBODY) {
             let where_hit = shifted(particle.position, old, hit.time);
-            let model = surface_model_at(triangle.surface_model, where_hit, triangle.normal);
+            let model = surface_model_at(wall.surface_model, where_hit, wall.normal, is_inside(particle.tag));
             let surface_model = surface_models[model];
             let draw = wall_draw(particle.tag, bounces, 0u);
             if (VENTS) {
                 let v = vent_at(surface_model, where_hit);
-                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, triangle.normal), draw.x)) {
-                    if (SURFACES && triangle.surface != NOBODY) {
-                        tally_impulse(triangle.surface, triangle.normal, gas.mass * old);
+                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, wall.normal), draw.x)) {
+                    if (SURFACES && wall.surface != NOBODY) {
+                        tally_impulse(wall.surface, wall.normal, gas.mass * old);
                     }
                     particle.tag = NOBODY;
                     ended = true;
@@ -178,7 +173,7 @@ fn bounce(thread: Thread) {
             let chance = unit_interval(draw.y);
             if (chance < surface_model.accommodation) {
                 kept = false;
-                let away = emitted(triangle.normal, surface_model.thermal / gas.mass, particle.tag, bounces, draw.z);
+                let away = emitted(wall.normal, surface_model.thermal / gas.mass, particle.tag, bounces, draw.z);
                 turned = away;
                 var spin = 0.0;
                 if (SPIN && gas.exchange > 0.0) {
@@ -189,7 +184,7 @@ fn bounce(thread: Thread) {
                 tally_energy(SURFACE_MODELS_AT + model * SURFACE_MODEL_WORDS, kinetic + (particle.spin - spin));
                 particle.spin = spin;
             } else if (chance - surface_model.accommodation < surface_model.friction * (1.0 - surface_model.accommodation)) {
-                turned = scattered(triangle.normal, particle.tag, bounces, draw.z);
+                turned = scattered(wall.normal, particle.tag, bounces, draw.z);
             }
         }
         if (kept) {
@@ -198,18 +193,21 @@ fn bounce(thread: Thread) {
         }
         turned += carried;
         var work = 0.0;
-        if (MOVING && triangle.motion != NOBODY) {
+        if ((MOVING || FABRIC) && wall.work != NOBODY) {
             work = gas.mass * dot(carried, turned - old);
-            tally_energy(WORKS_AT + triangle.motion * SURFACE_MODEL_WORDS, -work);
+            tally_energy(WORKS_AT + wall.work * SURFACE_MODEL_WORDS, -work);
         }
         if (SPIN && kept && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
             particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);
         }
-        if (SURFACES && triangle.surface != NOBODY) {
-            tally_impulse(triangle.surface, triangle.normal, gas.mass * (old - turned));
+        if (SURFACES && wall.surface != NOBODY) {
+            tally_impulse(wall.surface, wall.normal, gas.mass * (old - turned));
         }
-        let place = shifted(particle.position, old, hit.time);
+        var place = shifted(particle.position, old, hit.time);
+        if (FABRIC && wall.lift > 0.0) {
+            place = shifted(place, wall.normal, wall.lift);
+        }
         particle.position = shifted(place, -turned, hit.time);
         particle.velocity = turned;
         time = hit.time;
@@ -228,7 +226,7 @@ fn bounce(thread: Thread) {
         return;
     }
     particle.position = shifted(particle.position, particle.velocity, end);
-    if (MOVING && end < step.dt) {
+    if ((MOVING || FABRIC) && end < step.dt) {
         // A flight that was cut short ends at its wall, which goes on.
         particle.position = shifted(particle.position, carried, step.dt - end);
     }

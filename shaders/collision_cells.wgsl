@@ -64,7 +64,7 @@ fn collision_cells_of(thread: Thread) {
     }
     if (end - begin == 1u) {
         atomicAdd(&counters[FREE_FLIGHTS], 1u);
-    } else if ((DIVIDED_GAS || MOVING) && may_be_cut(first, bins)) {
+    } else if ((DIVIDED_GAS || MOVING || FABRIC) && may_be_cut(first, bins)) {
         cut_cells[append(LIST_CUT_CELLS)] = vec2<u32>(begin, end);
     } else {
         collision_cells[append(LIST_COLLISION_CELLS)] = vec2<u32>(begin, end);

@@ -101,7 +101,7 @@ fn complete_lists(thread: Thread) {
     if (step.ghosts != GHOSTS_ON_DEMAND && (marks[s] & NEAR) != 0u) {
         atomicAdd(&counters[LIST_NEAR_WALLS], 1u);
         let start = bitcast<f32>(neighbours[2u * s].x);
-        let hit = first_hit(sorted[s].position, sorted[s].velocity, start, step.dt);
+        let hit = first_hit(sorted[s].position, sorted[s].velocity, start, step.dt, is_inside(sorted[s].tag));
         neighbours[2u * s].y = bitcast<u32>(hit.time);
     }
     // A pass over those that were asked later finds it done.

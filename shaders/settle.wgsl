@@ -156,8 +156,8 @@ fn settle(thread: Thread) {
     j.position = shifted(j.position, old_j - j.velocity, time);
     sorted[pair.x] = packed_of(i);
     sorted[pair.y] = packed_of(j);
-    let wall_i = wall_time(i.position, i.velocity, time, step.dt);
-    let wall_j = wall_time(j.position, j.velocity, time, step.dt);
+    let wall_i = wall_time(i, time, step.dt);
+    let wall_j = wall_time(j, time, step.dt);
     flights[2u * pair.x] = packed_flight(Flight(time, wall_i, j.tag, flight_i.collisions + 1u));
     flights[2u * pair.y] = packed_flight(Flight(time, wall_j, i.tag, flight_j.collisions + 1u));
     if (wall_i < step.dt) {

@@ -40,11 +40,11 @@ struct Sums {
 }
 
 // Whether an earlier chamber has what lies in this zone too.
-fn taken(zone: u32, p: vec3<u32>) -> bool {
+fn taken(zone: u32, place: vec4<u32>) -> bool {
     if (zone > CHAMBERS) {
         return false;
     }
-    return earlier_has(zone, p);
+    return earlier_has(zone, place.xyz, is_inside(place.w));
 }
 
 fn share64(slot: u32, value: vec2<u32>) {
@@ -118,9 +118,8 @@ fn tally(
         if (gas >= 2u) {
             continue;
         }
-        let position = place.xyz;
         // bench: inside
-        if (!contains(here, position) || taken(zone, position)) {
+        if (!contains(here, place.xyz, is_inside(place.w)) || taken(zone, place)) {
             continue;
         }
         let motion = particles[i].motion;

@@ -7,8 +7,8 @@ use std::mem::offset_of;
 use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
-    CROWD, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
-    GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
+    CROWD, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuSheet, GpuStep,
+    GpuStillGas, GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -76,6 +76,7 @@ fn twins() -> Vec<Twin> {
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
+        twin!("Sheet", GpuSheet, a, b, c, closed, surface, surface_model, work, pad),
         twin!("Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, body_low, pad3, body_size, pad4),
         twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent, zone, next),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),

@@ -2,7 +2,7 @@
 
 struct Particle {
     position: vec3<u32>,
-    // Gas in the top 4 bits, id below.
+    // Gas in the top 4 bits, below it a bit that is set inside of closed fabric, the id below.
     tag: u32,
     velocity: vec3<f32>,
     // Internal energy over the reference mass, (m/s)^2.
@@ -46,10 +46,16 @@ fn packed_flight(flight: Flight) -> vec4<u32> {
 
 const NOBODY: u32 = 0xffffffff;
 const NEVER: f32 = 1e30;
-const ID_MASK: u32 = 0x0fffffff;
+const ID_MASK: u32 = 0x07ffffff;
+const INSIDE: u32 = 0x08000000;
 
 fn id_of(tag: u32) -> u32 {
     return tag & ID_MASK;
+}
+
+// Whether it is inside of closed fabric.
+fn is_inside(tag: u32) -> bool {
+    return (tag & INSIDE) != 0u;
 }
 
 fn gas_of(tag: u32) -> u32 {

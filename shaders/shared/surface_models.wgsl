@@ -49,12 +49,12 @@ fn wall_draw(tag: u32, hit: u32, block: u32) -> vec4<u32> {
 const BEFORE: f32 = 1024.0;
 
 // The surface model of a triangle at a place of it: where it borders on several chambers that of the one before the place.
-fn surface_model_at(first: u32, place: vec3<u32>, normal: vec3<f32>) -> u32 {
+fn surface_model_at(first: u32, place: vec3<u32>, normal: vec3<f32>, inside: bool) -> u32 {
     var model = first;
     var zone = surface_models[model].zone;
     if (zone != 0u) {
         let p = shifted(place, normal, BEFORE * QUANTUM);
-        while (zone != 0u && (!contains(zones[zone], p) || earlier_has(zone, p))) {
+        while (zone != 0u && (!contains(zones[zone], p, inside) || earlier_has(zone, p, inside))) {
             model = surface_models[model].next;
             zone = surface_models[model].zone;
         }

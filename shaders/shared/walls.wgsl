@@ -1,4 +1,4 @@
-//! uses: motions.wgsl body_frame.wgsl turns.wgsl
+//! uses: motions.wgsl body_frame.wgsl turns.wgsl sheets.wgsl particle.wgsl
 // Swept tests of a straight flight against the triangles of the walls.
 //
 // A wall that moves does so along a straight line at one velocity in a step, so in its own frame it is at rest: the
@@ -53,6 +53,7 @@ fn touches(cells: Cells, motion: Motion) -> bool {
 
 struct Hit {
     time: f32,
+    // Of a wall, or of fabric (OF_FABRIC); or NOBODY.
     triangle: u32,
     // How far behind a wall the flight was found to start, m.
     overshoot: f32,
@@ -74,6 +75,9 @@ var<storage, read> parting: array<u32>;
 fn may_part(c: vec3<u32>) -> bool {
     let cell = cell_index(c);
     if (((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u) {
+        return true;
+    }
+    if (FABRIC && near_fabric(c)) {
         return true;
     }
     if (MOVING) {
@@ -199,8 +203,8 @@ fn meet(hit: ptr<function, Hit>, index: u32, from_point: vec3<u32>, v: vec3<f32>
     }
 }
 
-// The first wall that the flight x0 + v t meets in start <= t < end.
-fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
+// The first wall or sheet that the flight x0 + v t meets in start <= t < end; `inside` tells the side of closed fabric.
+fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32, inside: bool) -> Hit {
     var hit = Hit(NEVER, NOBODY, 0.0);
     let from_point = shifted(x0, v, start);
     let to_point = shifted(x0, v, end);
@@ -217,6 +221,9 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
             }
             through(k, list.y);
         }
+    }
+    if (FABRIC) {
+        first_sheet(&hit, cells, from_point, v, vec2<f32>(start, end), inside);
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {
@@ -243,6 +250,83 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Hit {
     return hit;
 }
 
+// Takes the fabric in some cells into account; the flight is at `from_point` at the first of two times, and ends at the second.
+fn first_sheet(hit: ptr<function, Hit>, cells: Cells, from_point: vec3<u32>, v: vec3<f32>, times: vec2<f32>, inside: bool) {
+    // bench: plane of cells
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        // bench: row of cells
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            for (var x = cells.low.x; x <= cells.high.x; x++) {
+                var next = first_of_cell(vec3<u32>(x, y, z));
+                // bench: triangle
+                while (next != 0u) {
+                    let entry = fabric_entry(next);
+                    let sheet = fabric[entry.x];
+                    let met = meeting(sheet, corners_of(sheet, from_point, v, times.x, times.y), inside);
+                    if (met <= 1.0) {
+                        let time = times.x + met * (times.y - times.x);
+                        let index = OF_FABRIC | entry.x;
+                        if (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle)) {
+                            (*hit).time = time;
+                            (*hit).triangle = index;
+                        }
+                    }
+                    next = entry.y;
+                }
+                through(0u, next);
+            }
+        }
+    }
+}
+
+// Whether a way passes a cell with fabric.
+fn passes_fabric(p: vec3<u32>, q: vec3<u32>) -> bool {
+    let cells = cells_of(p, q);
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            for (var x = cells.low.x; x <= cells.high.x; x++) {
+                if (first_of_cell(vec3<u32>(x, y, z)) != 0u) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+// Whether fabric lies between two points at a time of the step.
+fn blocked_by_fabric(cells: Cells, p: vec3<u32>, along: vec3<f32>, time: f32) -> bool {
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            for (var x = cells.low.x; x <= cells.high.x; x++) {
+                var next = first_of_cell(vec3<u32>(x, y, z));
+                while (next != 0u) {
+                    let entry = fabric_entry(next);
+                    if (sheet_between(entry.x, p, along, time)) {
+                        return true;
+                    }
+                    next = entry.y;
+                }
+                through(0u, next);
+            }
+        }
+    }
+    return false;
+}
+
+// What a flight hits that starts at the time `start`.
+fn struck(hit: Hit, x0: vec3<u32>, v: vec3<f32>, start: f32, inside: bool) -> Struck {
+    if (FABRIC && (hit.triangle & OF_FABRIC) != 0u) {
+        return struck_sheet(hit.triangle & ~OF_FABRIC, x0, v, start, hit.time, inside);
+    }
+    let triangle = triangles[hit.triangle];
+    var velocity = vec3<f32>(0.0);
+    if (MOVING && triangle.motion != NOBODY) {
+        velocity = motion_of(triangle.motion).velocity;
+    }
+    return Struck(triangle.normal, triangle.surface, velocity, triangle.surface_model, triangle.motion, 0.0);
+}
+
 // Whether a flight may meet a wall. One that does not leave its cell's neighbours meets none if the cell is clear, or if it stays
 // before all walls of these.
 fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
@@ -259,6 +343,9 @@ fn may_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> bool {
     // bench: around
     if (around == CLASS_SOLID
         || (around != CLASS_CLEAR && !before_walls(c, near_among(classes, cell), from_point, shifted(x0, v, dt)))) {
+        return true;
+    }
+    if (FABRIC && near_fabric(c) && passes_fabric(from_point, shifted(x0, v, dt))) {
         return true;
     }
     if (MOVING) {
@@ -279,11 +366,11 @@ fn passes_moving(p: vec3<u32>, start: f32, q: vec3<u32>, end: f32) -> bool {
 }
 
 // The time of a flight's next wall hit in this step, or NEVER.
-fn wall_time(x0: vec3<u32>, v: vec3<f32>, start: f32, dt: f32) -> f32 {
-    if (!may_hit(x0, v, start, dt)) {
+fn wall_time(particle: Particle, start: f32, dt: f32) -> f32 {
+    if (!may_hit(particle.position, particle.velocity, start, dt)) {
         return NEVER;
     }
-    return first_hit(x0, v, start, dt).time;
+    return first_hit(particle.position, particle.velocity, start, dt, is_inside(particle.tag)).time;
 }
 
 // Whether the triangle, from either side, lies between two points.
@@ -343,6 +430,9 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
             }
             through(k, list.y);
         }
+    }
+    if (FABRIC && blocked_by_fabric(cells, p, along, time)) {
+        return true;
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {

@@ -1,4 +1,4 @@
-//! uses: motions.wgsl
+//! uses: motions.wgsl has_fabric.wgsl
 // Zones of a scene: everything, the chambers, the probes.
 
 struct Zone {
@@ -22,6 +22,8 @@ const EVERYWHERE: u32 = 0;
 const BOX: u32 = 1;
 const SPHERE: u32 = 2;
 const CYLINDER: u32 = 3;
+// What is inside of closed fabric, and in the box of corners.
+const INSIDE_FABRIC: u32 = 4;
 
 var<storage, read> zones: array<Zone>;
 
@@ -38,7 +40,11 @@ fn sides_moved(carried: u32) -> vec3<u32> {
     return by;
 }
 
-fn contains(zone: Zone, p: vec3<u32>) -> bool {
+// Whether a place, inside of closed fabric or not, is in a zone.
+fn contains(zone: Zone, p: vec3<u32>, inside: bool) -> bool {
+    if (FABRIC && zone.kind == INSIDE_FABRIC) {
+        return inside && all(p >= zone.low) && all(p < zone.high);
+    }
     if (zone.kind == BOX) {
         if (MOVING && zone.carried != 0u) {
             let low = zone.low + sides_moved(zone.carried);
@@ -61,9 +67,9 @@ fn contains(zone: Zone, p: vec3<u32>) -> bool {
 }
 
 // Whether a chamber before this zone has a place.
-fn earlier_has(zone: u32, p: vec3<u32>) -> bool {
+fn earlier_has(zone: u32, p: vec3<u32>, inside: bool) -> bool {
     for (var earlier = 1u; earlier < zone; earlier++) {
-        if (contains(zones[earlier], p)) {
+        if (contains(zones[earlier], p, inside)) {
             return true;
         }
     }

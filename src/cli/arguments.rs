@@ -190,8 +190,8 @@ mod tests {
     #[test]
     fn negative_numbers_are_refused_as_values() {
         for (option, value, words) in [
-            ("--particles", "-3", "a whole number from 1 to 268435455, such as 2000, 2_000 or 2e3, is possible"),
-            ("--particles", "2.5", "a whole number from 1 to 268435455"),
+            ("--particles", "-3", "a whole number from 1 to 134217727, such as 2000, 2_000 or 2e3, is possible"),
+            ("--particles", "2.5", "a whole number from 1 to 134217727"),
             ("--seed", "-1", "a whole number from 0 to 72057594037927935"),
             ("--steps", "0", "a whole number from 1 on is possible"),
             ("--accuracy", "-0.1", "a relative error from 0.0001 to 0.5"),
@@ -208,7 +208,7 @@ mod tests {
             |option: &str, value: &str| Arguments::try_parse_from(["corpuscle", "run", "s.toml", option, value]);
         for (option, value) in [
             ("--particles", "0"),
-            ("--particles", "268435456"),
+            ("--particles", "134217728"),
             ("--seed", "72057594037927936"),
             ("--batch", "0"),
             ("--steps", "-1"),
@@ -221,7 +221,7 @@ mod tests {
             assert!(parse(option, value).is_err(), "{option} {value}");
         }
         for (option, value) in [
-            ("--particles", "268435455"),
+            ("--particles", "134217727"),
             ("--particles", "2e3"),
             ("--steps", "1_000"),
             ("--checkpoint-every", "5e3"),

@@ -48,6 +48,8 @@ const SPEED_PAYMENT: f64 = 4.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newborn {
     pub time: f64,
+    /// Index of its orifice.
+    pub orifice: usize,
     pub particle: Particle,
 }
 
@@ -295,10 +297,10 @@ impl Inflow {
     }
 
     fn emit(&mut self, stream: usize, time: f64) -> Newborn {
-        let Stream { source, gas, .. } = self.streams[stream];
+        let Stream { source: orifice, gas, .. } = self.streams[stream];
         let id = self.first_id.wrapping_add(self.entered as u32);
         self.entered += 1;
-        let source = &mut self.sources[source];
+        let source = &mut self.sources[orifice];
         source.left = source.left.saturating_sub(1);
         let species = &self.gases[gas];
         let temperature = value_held(&source.orifice.temperature, time);
@@ -333,7 +335,7 @@ impl Inflow {
         }
         source.debt += enthalpy - (factor * translational + spin_energy);
         let velocity = source.to_global(local.map(|v| v * factor.sqrt()));
-        Newborn { time, particle: Particle { id, gas: gas as u8, position, velocity, spin_energy } }
+        Newborn { time, orifice, particle: Particle { id, gas: gas as u8, position, velocity, spin_energy } }
     }
 }
 

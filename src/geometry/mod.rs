@@ -7,6 +7,7 @@
 //! that part the gas near them from them. `meshes` makes meshes of fabric, reads, writes and measures them, and
 //! `node_frames` has the motion of their nodes.
 
+mod bag;
 mod blocks;
 mod build;
 mod cell_gas;
@@ -37,6 +38,7 @@ mod triangle_grid;
 mod vessel;
 mod wall_mesh;
 
+pub use bag::Bag;
 pub use blocks::block_volumes;
 pub use cell_gas::{CELL_GENERATOR, CELL_POINTS, CellGas, CellPart, cell_gas, still_points};
 pub use clearance::{CLEARANCE_UNIT, Clearance, NO_PLANE, clearances};

@@ -5,6 +5,7 @@
 //! has a share of exactly one; of one that walls cut, the share errs by 1e-5 to 1e-4.
 
 use super::Vessel;
+use super::bag::Bag;
 use super::sampling::{Line, r2, sum};
 use super::vessel::VOLUME_LINES;
 use crate::scene::{Chamber, Region};
@@ -103,12 +104,27 @@ impl Vessel {
         let mut earlier: Vec<&Region> = Vec::new();
         for chamber in chambers {
             volumes.push(match &chamber.region {
+                None if chamber.inside.is_some() => self.bag_of(chamber).map_or(0.0, |bag| bag.volume),
                 Some(region) => self.gas_volume_apart(region, &earlier),
                 None => (self.gas_volume() - volumes.iter().sum::<f64>()).max(0.0),
             });
             earlier.extend(&chamber.region);
         }
         volumes
+    }
+
+    /// The closed fabric that a chamber is the inside of.
+    pub fn bag_of(&self, chamber: &Chamber) -> Option<&Bag> {
+        self.bags.get(chamber.inside?)?.as_ref()
+    }
+
+    /// Whether a point of the gas is of a chamber, if of no earlier one.
+    pub fn is_of(&self, chamber: &Chamber, point: [f64; 3]) -> bool {
+        match &chamber.region {
+            Some(region) => region_contains(region, point),
+            None if chamber.inside.is_some() => self.bag_of(chamber).is_some_and(|bag| bag.contains(point)),
+            None => true,
+        }
     }
 
     /// Gas in `region` and in none of `others`.

@@ -14,6 +14,7 @@
 //! bounded and its volume positive.
 
 use super::GeometryError;
+use super::bag::Bag;
 use super::error::Places;
 use super::lines::{Crossing, LineIndex, intervals};
 use super::sampling::{Line, r2, sum};
@@ -46,6 +47,8 @@ pub struct Vessel {
     pub walls: Vec<WallInfo>,
     /// Smallest and largest coordinates of all vertices, m.
     pub bounds: ([f64; 3], [f64; 3]),
+    /// By fabric, the closed ones at the start of the run.
+    pub bags: Vec<Option<Bag>>,
     lines: LineIndex,
     cavities: i32,
     gas_volume: f64,
@@ -103,6 +106,7 @@ impl Vessel {
             cavities: walls.iter().filter(|w| w.cavity).count() as i32,
             walls,
             bounds: (min.to_array(), max.to_array()),
+            bags: Vec::new(),
             gas_volume: 0.0,
             overlap: 0.0,
         }

@@ -26,6 +26,8 @@ pub struct Audit {
     pub particles_inside: u64,
     /// At the end, outside the vessel: each one has passed a closed wall.
     pub particles_outside: u64,
+    /// At the end, on the wrong side of closed fabric: each one has passed it. `None` in a scene without.
+    pub particles_passed: Option<u64>,
     /// kg.
     pub mass_start: f64,
     pub mass_injected: f64,
@@ -155,6 +157,9 @@ impl Audit {
         if self.particles_outside > 0 {
             failures.push(format!("{} particles are outside the vessel", grouped(self.particles_outside)));
         }
+        if let Some(passed) = self.particles_passed.filter(|&passed| passed > 0) {
+            failures.push(format!("{} particles are on the wrong side of closed fabric", grouped(passed)));
+        }
         // A run without any gas has nothing to balance. (A control volume has gas without particles.)
         if entered > 0 || self.mass_start + self.mass_injected > 0.0 {
             for (what, error, limit) in
@@ -265,8 +270,10 @@ impl Audit {
             _ if entered == 0 => ("none: there are no particles".to_owned(), "unknown".to_owned()),
             _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
         };
-        let mut facts = vec![
-            ("outside the vessel", grouped(self.particles_outside)),
+        let passed = self.particles_passed.map(|passed| ("on the wrong side of fabric", grouped(passed)));
+        let mut facts = vec![("outside the vessel", grouped(self.particles_outside))];
+        facts.extend(passed);
+        facts.extend([
             ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
             ("truncated flights", grouped(self.truncated_flights)),
             ("overflows", overflows),
@@ -275,7 +282,7 @@ impl Audit {
             ("  to the walls", to_walls),
             ("  end", vector(self.momentum_end)),
             ("  error", momentum_error),
-        ];
+        ]);
         facts.splice(1..1, collisions);
         if let Some(work) = self.work_by_walls {
             facts.insert(0, ("in energy: work of moving walls, J", format!("{work:.6e}")));

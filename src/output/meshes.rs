@@ -34,11 +34,17 @@ pub fn mesh_paths(scene: &Scene) -> Vec<PathBuf> {
     named(scene).cloned().collect()
 }
 
+/// Those of walls, then those of fabric, each with the file of its motion. (Of a series of files that is none: what it names would not be with it.)
 fn named(scene: &Scene) -> impl Iterator<Item = &PathBuf> {
-    scene.walls.iter().filter_map(|wall| match &wall.shape {
+    let of_walls = scene.walls.iter().filter_map(|wall| match &wall.shape {
         Shape::Mesh { path, .. } => Some(path),
         _ => None,
-    })
+    });
+    let kept = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "nodes");
+    let of_fabric = scene.fabrics.iter();
+    of_walls.chain(
+        of_fabric.flat_map(move |fabric| std::iter::once(&fabric.mesh).chain(fabric.motion.as_ref().filter(kept))),
+    )
 }
 
 impl MeshRecord {

@@ -60,7 +60,7 @@ pub use phases::PhaseTable;
 pub use progress::{LOG_ONLY, Progress, Shown};
 pub use report::{COMPARISON_FILE, Progressing, Seen, audit_verdict, seen, write_report};
 pub use scatter::{Group, Mark, Scatter, Shape, scatter_chart};
-pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter};
+pub use snapshot::{ParticleRow, SnapshotState, SnapshotWriter, TriangleSet};
 pub use snapshot_read::{Snapshot, SnapshotEntry, SnapshotSurfaces, snapshots_of};
 pub use spread::spread as history_spread;
 pub use subdomains::{Frame, subdomain_chart};

@@ -79,11 +79,12 @@ pub(super) fn is_seed_folder(name: &str) -> bool {
 
 pub(super) fn is_snapshot_file(name: &str) -> bool {
     let name = name.trim_end_matches(PARTIAL_SUFFIX);
-    let numbered = name
-        .strip_prefix("particles_")
-        .and_then(|rest| rest.strip_suffix(".vtu"))
-        .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()));
-    numbered || name == "particles.pvd" || name == "walls.vtp"
+    let is_numbered = |prefix, suffix| {
+        let digits = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(suffix));
+        digits.is_some_and(|digits: &str| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let numbered = is_numbered("particles_", ".vtu") || is_numbered("fabric_", ".vtp");
+    numbered || ["particles.pvd", "fabric.pvd", "walls.vtp"].contains(&name)
 }
 
 /// Whether a file of [`MESH_FOLDER`] is a copy that a run has made, whole or not.

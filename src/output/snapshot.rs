@@ -1,5 +1,6 @@
 //! Snapshots that ParaView opens: the particles as `snapshots/particles_000000.vtu`, ..., their times as
-//! `snapshots/particles.pvd`, and the walls once as `snapshots/walls.vtp`.
+//! `snapshots/particles.pvd`, and the walls once as `snapshots/walls.vtp`. Surfaces that deform are beside each as `snapshots/fabric_000000.vtp`, ..., with
+//! `snapshots/fabric.pvd`.
 //!
 //! Each particle is a vertex cell, so that thresholds and selections work on single particles. Positions
 //! are f64 because fixed-point positions hold 31 bits (method.md, "Equal bits"); what is only looked at is f32.
@@ -57,6 +58,38 @@ fn file_name(index: usize) -> String {
     format!("particles_{index:06}.vtu")
 }
 
+fn fabric_name(index: usize) -> String {
+    format!("fabric_{index:06}.vtp")
+}
+
+/// Triangles of walls or of fabric.
+#[derive(Debug, Clone, Copy)]
+pub struct TriangleSet<'a> {
+    /// m.
+    pub vertices: &'a [[f64; 3]],
+    /// Vertex indices.
+    pub triangles: &'a [[u32; 3]],
+    /// Of each triangle the index of what it is of.
+    pub owners: &'a [u32],
+    pub names: &'a [String],
+}
+
+impl TriangleSet<'_> {
+    fn check(&self) -> Result<(), OutputError> {
+        let &TriangleSet { vertices, triangles, owners, .. } = self;
+        if owners.len() != triangles.len() {
+            return Err(OutputError::WallIndexCount { triangles: triangles.len(), indices: owners.len() });
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+                let vertices = vertices.len();
+                return Err(OutputError::BadTriangle { triangle, vertex, vertices });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl SnapshotWriter {
     /// Makes `snapshots` in the existing output folder `dir`.
     pub fn create(dir: &Path) -> Result<SnapshotWriter, OutputError> {
@@ -82,11 +115,13 @@ impl SnapshotWriter {
                 Err(_) => tracing::warn!("{} is not there; the list of snapshots still names it", path.display()),
             }
         }
-        let kept: Vec<String> = (0..state.written.len()).map(file_name).collect();
+        let kept: Vec<String> =
+            (0..state.written.len()).flat_map(|index| [file_name(index), fabric_name(index)]).collect();
         for entry in fs::read_dir(&writer.folder).map_err(OutputError::io("list", &writer.folder))? {
             let path = entry.map_err(OutputError::io("list", &writer.folder))?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if name.starts_with("particles_") && is_snapshot_file(&name) && !kept.contains(&name) {
+            let numbered = name.starts_with("particles_") || name.starts_with("fabric_");
+            if numbered && is_snapshot_file(&name) && !kept.contains(&name) {
                 fs::remove_file(&path).map_err(OutputError::io("remove", &path))?;
             }
         }
@@ -144,33 +179,35 @@ impl SnapshotWriter {
         Ok(path)
     }
 
-    /// Writes the walls: `vertices` in m, `triangles` as vertex indices, for each triangle the index of its wall, and their names.
+    /// Writes the walls.
     ///
     /// Errors: a triangle that names no vertex, or another number of wall indices than of triangles.
-    pub fn write_walls(
-        &self,
-        vertices: &[[f64; 3]],
-        triangles: &[[u32; 3]],
-        walls: &[u32],
-        names: &[String],
-    ) -> Result<PathBuf, OutputError> {
-        if walls.len() != triangles.len() {
-            return Err(OutputError::WallIndexCount { triangles: triangles.len(), indices: walls.len() });
-        }
-        for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
-                let vertices = vertices.len();
-                return Err(OutputError::BadTriangle { triangle, vertex, vertices });
-            }
-        }
+    pub fn write_walls(&self, walls: TriangleSet<'_>) -> Result<PathBuf, OutputError> {
+        walls.check()?;
         let path = self.folder.join("walls.vtp");
-        let data = wall_data(vertices, triangles, walls, names);
+        let data = surface_data(["wall", "wall_names", r#" Scalars="wall""#], None, walls);
         write_atomically(&path, |out| data.write(out))?;
         Ok(path)
     }
 
+    /// Writes the fabric of the last snapshot beside it.
+    ///
+    /// Errors: as of walls.
+    pub fn write_fabric(&self, fabric: TriangleSet<'_>) -> Result<(), OutputError> {
+        let Some(last) = self.written.last() else { return Ok(()) };
+        fabric.check()?;
+        let path = self.folder.join(fabric_name(self.written.len() - 1));
+        let data = surface_data(["fabric", "fabric_names", r#" Scalars="fabric""#], Some(last.time), fabric);
+        write_atomically(&path, |out| data.write(out))?;
+        self.write_list("fabric.pvd", fabric_name)
+    }
+
     fn write_collection(&self) -> Result<(), OutputError> {
-        write_atomically(&self.folder.join("particles.pvd"), |out| {
+        self.write_list("particles.pvd", file_name)
+    }
+
+    fn write_list(&self, list: &str, file_name: impl Fn(usize) -> String) -> Result<(), OutputError> {
+        write_atomically(&self.folder.join(list), |out| {
             writeln!(out, r#"<?xml version="1.0"?>"#)?;
             writeln!(out, r#"<VTKFile type="Collection" version="1.0">"#)?;
             writeln!(out, "<Collection>")?;
@@ -226,12 +263,13 @@ fn particle_data<'a>(time: f64, particles: &'a [ParticleRow], gases: &'a [String
     }
 }
 
-fn wall_data<'a>(
-    vertices: &'a [[f64; 3]],
-    triangles: &'a [[u32; 3]],
-    walls: &'a [u32],
-    names: &'a [String],
+/// `array` is called the number of what a triangle is of, and `list` their names.
+fn surface_data<'a>(
+    [array, list, attributes]: [&'static str; 3],
+    time: Option<f64>,
+    surfaces: TriangleSet<'a>,
 ) -> DataSet<'a> {
+    let TriangleSet { vertices, triangles, owners, names } = surfaces;
     DataSet {
         kind: "PolyData",
         counts: format!(
@@ -239,13 +277,13 @@ fn wall_data<'a>(
             vertices.len(),
             triangles.len()
         ),
-        time: None,
-        names: vec![("wall_names", names)],
+        time,
+        names: vec![(list, names)],
         sections: vec![
             Section {
                 element: "CellData",
-                attributes: r#" Scalars="wall""#,
-                arrays: vec![Array::new("wall", "UInt32", walls.iter(), |wall| [wall.to_le_bytes()])],
+                attributes,
+                arrays: vec![Array::new(array, "UInt32", owners.iter(), |owner| [owner.to_le_bytes()])],
             },
             Section {
                 element: "Points",

@@ -4,8 +4,8 @@ use super::text::significant;
 use crate::geometry::GridError;
 use crate::scene::shown_collision_number;
 
-/// A particle's id and its gas share one 32-bit word on the device: 28 bits of id, 4 of gas.
-pub const MOST_PARTICLES: u64 = (1 << 28) - 1;
+/// A particle's id and its gas share one 32-bit word on the device: 27 bits of id, one that tells the side of closed fabric, 4 of gas.
+pub const MOST_PARTICLES: u64 = (1 << 27) - 1;
 pub const MOST_GASES: usize = 16;
 pub const MOST_ROUNDS: u32 = 8;
 /// Cell numbers are 32-bit on the device, with a bit to spare.

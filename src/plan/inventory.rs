@@ -162,7 +162,8 @@ impl Inventory {
             moves: measured.motion.is_some(),
             squeezed: measured
                 .motion
-                .filter(|_| !inflow)
+                // Of fabric it is not known on which chamber it works.
+                .filter(|_| !inflow && scene.fabrics.is_empty())
                 .map(|_| squeezed(scene, amounts, [measured.gas_volume, volume])),
             inflow,
         }

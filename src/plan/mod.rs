@@ -10,7 +10,7 @@
 //! - the grid's cell edge h satisfies h >= sqrt(sigma^2 + (g_max time_step / 2)^2), g_max = 6 sqrt(k
 //!   `temperature_max` / m) of the lightest gas (section 2); for `cell` it holds a few particles, for free flight
 //!   h = n^(-1/3);
-//! - the particles of chambers and inflow sum to `particles`, at most 2^28 - 1;
+//! - the particles of chambers and inflow sum to `particles`, at most 2^27 - 1;
 //! - equal scenes give equal plans, bit for bit.
 
 mod amounts;

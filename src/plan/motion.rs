@@ -26,11 +26,12 @@ pub fn heating(scene: &Scene, motion: &MeasuredMotion, hottest: f64) -> f64 {
 
 pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
     let Some(motion) = &measured.motion else { return };
-    let walls: Vec<String> =
-        scene.motions.iter().map(|motion| format!("`{}`", scene.walls[motion.wall].name)).collect();
+    let walls = scene.motions.iter().map(|motion| &scene.walls[motion.wall].name);
+    let names: Vec<String> =
+        walls.chain(scene.fabrics.iter().map(|fabric| &fabric.name)).map(|name| format!("`{name}`")).collect();
     reasons.push(Reason {
-        quantity: "moving walls".into(),
-        value: walls.join(", "),
+        quantity: if scene.fabrics.is_empty() { "moving walls" } else { "fabric" }.into(),
+        value: names.join(", "),
         why: format!(
             "up to {} m/s; all gas has {} of its volume at the end, a chamber {} at least",
             significant(motion.fastest),

@@ -13,7 +13,7 @@ fn gas(name: &str, molar_mass: f64, cv: f64) -> Gas {
 
 fn chamber(name: &str) -> Chamber {
     let mixture = Mixture(vec![(0, 1.0)]);
-    Chamber { name: name.into(), region: None, pressure: 101_325.0, temperature: 293.0, mixture }
+    Chamber { name: name.into(), region: None, inside: None, pressure: 101_325.0, temperature: 293.0, mixture }
 }
 
 /// A box of a metre around gas.
@@ -49,6 +49,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         surfaces: vec![],
         vents: vec![],
         motions: vec![],
+        fabrics: vec![],
         model: ModelRequest {
             method: Some(Method::ClosestApproach),
             particles: Some(1_000_000),

@@ -33,6 +33,7 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
         add("vent", &vent.value.name, &vent.span);
         add("vents", &vent.value.name, &vent.span);
     }
+    raw.fabric.iter().for_each(|at| add("fabric", &at.value.name, &at.span));
     raw.motion.iter().for_each(|at| add("motion of wall", &at.value.wall, &at.span));
     for wall in &raw.wall {
         let part = |part: &At<_>| line(&part.span);

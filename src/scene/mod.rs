@@ -6,6 +6,7 @@
 
 mod entries;
 mod errors;
+mod fabrics;
 mod flows;
 mod gases;
 mod holes;

@@ -30,15 +30,21 @@ pub(super) fn region(raw: &RawRegion, units: UnitSystem) -> Result<Region, Probl
 }
 
 /// Only the last chamber may do without a region.
-pub(super) fn chamber(raw: &At<RawChamber>, last: bool, gases: &Names, units: UnitSystem) -> Result<Chamber, Problem> {
+pub(super) fn chamber(
+    raw: &At<RawChamber>,
+    last: bool,
+    (gases, fabrics): (&Names, &Names),
+    units: UnitSystem,
+) -> Result<Chamber, Problem> {
     let chamber = &raw.value;
-    if chamber.region.is_none() && !last {
+    if chamber.region.is_none() && chamber.inside.is_none() && !last {
         return Err(Problem::missing(&raw.span, "region", "a region for every chamber but the last")
             .hint("a chamber without region has all gas space that no earlier one has: move it to the end"));
     }
     Ok(Chamber {
         name: chamber.name.value.clone(),
         region: chamber.region.as_ref().map(|r| region(&r.value, units)).transpose()?,
+        inside: chamber.inside.as_ref().map(|name| fabrics.find(name)).transpose()?,
         pressure: positive(&chamber.pressure, Quantity::Pressure, units).map_err(|problem| {
             let hint = "pressures of chambers are absolute; space in no chamber is empty at the start";
             if chamber.pressure.value <= 0.0 { problem.hint(hint) } else { problem }

@@ -51,6 +51,9 @@ pub struct RawScene {
     /// Walls that move.
     #[serde(default)]
     pub motion: Vec<At<RawMotion>>,
+    /// Surfaces that deform as a file says, with gas on both sides.
+    #[serde(default)]
+    pub fabric: Vec<At<RawFabric>>,
     /// What the plan otherwise decides.
     #[serde(default)]
     pub model: RawModel,
@@ -275,6 +278,8 @@ pub struct RawChamber {
     /// Where; the last chamber may leave it out and then has all gas space that is left. Where regions
     /// overlap the earlier chamber has the gas.
     pub region: Option<At<RawRegion>>,
+    /// The name of a closed [[fabric]] whose inside this chamber is, in place of a region.
+    pub inside: Option<At<String>>,
     /// Initial pressure (SI: Pa).
     pub pressure: At<f64>,
     /// Initial temperature, K.
@@ -387,6 +392,21 @@ pub struct RawVent {
     pub external_pressure: Option<At<f64>>,
 }
 
+/// A surface whose nodes go where a file says, with gas on both sides.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawFabric {
+    /// Unique among fabrics and walls.
+    pub name: At<String>,
+    /// Path of an STL or OBJ file, relative to the scene file: the surface at the start.
+    pub file: At<String>,
+    /// Length units of the scene per unit of the files; 1 unless given.
+    pub scale: Option<At<f64>>,
+    /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files. Without it the
+    /// fabric stays as it is at the start.
+    pub motion: Option<At<String>>,
+}
+
 /// The motion of a wall along a straight line, as it is prescribed; exactly one of `velocity`, `displacement`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -407,7 +427,7 @@ pub struct RawMotion {
 pub struct RawModel {
     /// How particles meet.
     pub method: Option<Method>,
-    /// Particles at the end of the run, initial and injected together, 1 to 268435455.
+    /// Particles at the end of the run, initial and injected together, 1 to 134217727.
     pub particles: Option<At<i64>>,
     /// Collision diameter; not together with `occupancy`.
     pub diameter: Option<At<f64>>,
@@ -430,7 +450,7 @@ pub struct RawModel {
     pub accuracy: Option<At<f64>>,
     /// Device time that the run may take, in seconds whatever the units.
     pub time_budget: Option<At<f64>>,
-    /// The most particles that the plan may choose, 1 to 268435455.
+    /// The most particles that the plan may choose, 1 to 134217727.
     pub particle_budget: Option<At<i64>>,
     /// Million particle-steps per second that the device does (`cargo bench --bench step` prints it), for the predicted
     /// time; 3 unless given, that of lavapipe on two cores.

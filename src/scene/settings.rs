@@ -11,7 +11,7 @@ use super::types::{
 use super::units::Quantity;
 
 /// Particle ids share a word with flags.
-const MOST_PARTICLES: i64 = (1 << 28) - 1;
+const MOST_PARTICLES: i64 = (1 << 27) - 1;
 /// Z where the scene gives none.
 const COLLISION_NUMBER: f64 = 5.0;
 /// Range of a wished accuracy.

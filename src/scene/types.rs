@@ -30,6 +30,7 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     pub vents: Vec<Vent>,
     pub motions: Vec<Motion>,
+    pub fabrics: Vec<Fabric>,
     pub model: ModelRequest,
     pub output: OutputRequest,
     /// Where its entries stand in the file.
@@ -225,11 +226,24 @@ pub struct Chamber {
     pub name: String,
     /// `None`: all gas space that no earlier chamber has; only the last chamber may be so.
     pub region: Option<Region>,
+    /// The closed fabric whose inside it is, in place of a region.
+    pub inside: Option<usize>,
     /// Pa.
     pub pressure: f64,
     /// K.
     pub temperature: f64,
     pub mixture: Mixture,
+}
+
+/// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fabric {
+    pub name: String,
+    /// STL or OBJ, by extension: the surface at the start.
+    pub mesh: PathBuf,
+    pub scale: f64,
+    /// Where its nodes are over time; without it they rest.
+    pub motion: Option<PathBuf>,
 }
 
 /// A hole between two chambers, for the control-volume reference. Holes of boxes and planes are found

@@ -11,7 +11,7 @@ use super::raw::{RawScene, RawUnits};
 use super::raw_values::At;
 use super::types::{Scene, UnitSystem};
 use super::units::Quantity;
-use super::{flows, gases, motions, places, settings, vents, walls};
+use super::{fabrics, flows, gases, motions, places, settings, vents, walls};
 
 /// At most 56 bits of the seed are used.
 const LARGEST_SEED: i64 = (1 << 56) - 1;
@@ -37,6 +37,10 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     Names::collect("vent", raw.vent.iter().map(|v| &v.value.name), &mut problems);
     Names::collect("surface", raw.surface.iter().map(|s| &s.value.name), &mut problems);
 
+    let fabric_names = Names::collect("fabric", raw.fabric.iter().map(|f| &f.value.name), &mut problems);
+    refuse_names_of_walls(raw, &mut problems);
+    fabrics::refuse(raw, &mut problems);
+
     let title = keep(title(raw, stem), &mut problems);
     let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
     let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
@@ -44,14 +48,16 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let parts = Parts::collect(raw, &wall_names);
     let walls = each(&raw.wall, &mut problems, |wall, index| walls::wall(wall, index, &parts, units, base_dir));
     let last = raw.chamber.len().saturating_sub(1);
-    let chambers =
-        each(&raw.chamber, &mut problems, |chamber, i| places::chamber(chamber, i == last, &gas_names, units));
+    let chambers = each(&raw.chamber, &mut problems, |chamber, i| {
+        places::chamber(chamber, i == last, (&gas_names, &fabric_names), units)
+    });
     let openings = each(&raw.opening, &mut problems, |opening, _| places::opening(opening, &chamber_names, units));
     let orifices = each(&raw.orifice, &mut problems, |orifice, _| flows::orifice(orifice, &gas_names, units));
     let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
     let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &parts));
     let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &parts, units));
     let motions = each(&raw.motion, &mut problems, |_, index| motions::motion(raw, index, &wall_names, units));
+    let fabrics = each(&raw.fabric, &mut problems, |fabric, _| fabrics::fabric(fabric, units, base_dir));
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
@@ -73,6 +79,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
             surfaces,
             vents,
             motions,
+            fabrics,
             model,
             output,
             lines: Lines::default(),
@@ -111,9 +118,23 @@ fn refuse_wrong_numbers_of_entries(raw: &RawScene, problems: &mut Vec<Problem>) 
         let found = format!("{} gases", raw.gas.len());
         problems.push(Problem::value(&surplus.span, found, format!("at most {}", gases::MOST_GASES)));
     }
+    if let Some(surplus) = raw.fabric.get(fabrics::MOST_FABRICS) {
+        let found = format!("{} fabrics", raw.fabric.len());
+        problems.push(Problem::value(&surplus.span, found, format!("at most {}", fabrics::MOST_FABRICS)));
+    }
     if let Some(surplus) = raw.motion.get(motions::MOST_MOTIONS) {
         let found = format!("{} motions", raw.motion.len());
         problems.push(Problem::value(&surplus.span, found, format!("at most {}", motions::MOST_MOTIONS)));
+    }
+}
+
+/// Fabrics have columns as walls do.
+fn refuse_names_of_walls(raw: &RawScene, problems: &mut Vec<Problem>) {
+    for name in raw.fabric.iter().map(|fabric| &fabric.value.name) {
+        if raw.wall.iter().any(|wall| wall.value.name.value == name.value) {
+            let found = format!("{}, which is the name of a wall", quote(&name.value));
+            problems.push(Problem::value(&name.span, found, "a name that no wall has"));
+        }
     }
 }
 

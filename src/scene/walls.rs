@@ -1,7 +1,7 @@
 //! Walls: which keys a shape takes, and what its numbers may be.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::errors::{Problem, list, near_mesh, quote};
 use super::holes::holes;
@@ -218,6 +218,17 @@ fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Pat
     if !known {
         return Err(Problem::value(&file.span, quote(&file.value), "a file name that ends with .stl or .obj"));
     }
+    let path = existing(file, base_dir)?;
+    // The file's `scale` leads to length units of the scene; those of `Shape::Mesh` lead to metres.
+    let scale = match &raw.value.scale {
+        Some(scale) => positive(scale, Quantity::Length, units)?,
+        None => units.factor(Quantity::Length),
+    };
+    Ok(Shape::Mesh { path, scale, parts })
+}
+
+/// The absolute path of a file that is there.
+pub(super) fn existing(file: &At<String>, base_dir: &Path) -> Result<PathBuf, Problem> {
     let joined = base_dir.join(&file.value);
     // Absolute, so that the resolved scene can be read from another folder.
     let path = std::path::absolute(&joined).unwrap_or_else(|_| joined.clone());
@@ -237,10 +248,5 @@ fn mesh(raw: &At<RawWall>, parts: Vec<String>, units: UnitSystem, base_dir: &Pat
             Problem::value(&file.span, format!("{}, {what}", quote(&file.value)), "an existing file").hint(&hint)
         );
     }
-    // The file's `scale` leads to length units of the scene; those of `Shape::Mesh` lead to metres.
-    let scale = match &raw.value.scale {
-        Some(scale) => positive(scale, Quantity::Length, units)?,
-        None => units.factor(Quantity::Length),
-    };
-    Ok(Shape::Mesh { path, scale, parts })
+    Ok(path)
 }

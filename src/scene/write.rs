@@ -31,6 +31,9 @@ pub fn to_toml(scene: &Scene) -> String {
         if let Some(region) = &chamber.region {
             out.entry("region", &region_table(region));
         }
+        if let Some(inside) = chamber.inside {
+            out.text("inside", &scene.fabrics[inside].name);
+        }
         out.number("pressure", chamber.pressure);
         out.number("temperature", chamber.temperature);
         out.entry("gas", &mixture_table(&chamber.mixture, &scene.gases));
@@ -77,6 +80,15 @@ pub fn to_toml(scene: &Scene) -> String {
     }
     for motion in &scene.motions {
         write_motion(&mut out, motion, scene);
+    }
+    for fabric in &scene.fabrics {
+        out.header("[[fabric]]");
+        out.text("name", &fabric.name);
+        out.text("file", &fabric.mesh.to_string_lossy());
+        out.number("scale", fabric.scale);
+        if let Some(motion) = &fabric.motion {
+            out.text("motion", &motion.to_string_lossy());
+        }
     }
     write_settings(&mut out, scene);
     out.0

@@ -30,6 +30,7 @@ pub use control::surface_states::{SeenGas, SurfaceMemory, SurfaceStates, VentTar
 pub use error::SimulationError;
 pub use model::build::Model;
 pub use model::error::{ModelError, NoChamber};
+pub use model::fabric::{Surface as DeformingSurface, Surfaces};
 pub use model::measure::mesh_doubts;
 pub use model::places::chamber_of;
 pub use model::surface_models::{PlacedModel, SurfaceModels};

@@ -103,6 +103,8 @@ mod tests {
             surface_models: SURFACE_MODELS,
             vents: VENTS,
             motions: MOTIONS,
+            fabrics: 0,
+            patches: 0,
         };
         Averages::new(plan, layout, PATCHES)
     }

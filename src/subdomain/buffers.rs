@@ -5,6 +5,7 @@ use crate::gpu::{Device, GpuError};
 use super::constants::Features;
 use super::counters;
 use super::domain_buffers::DomainBuffers;
+use super::fabric::FabricBuffers;
 use super::layout::{
     GpuMotion, GpuNewborn, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuSurfaceModel, GpuUpdate, GpuVent, GpuWeights,
 };
@@ -304,6 +305,7 @@ pub struct Buffers<'a> {
     pub domain: &'a DomainBuffers,
     pub fixed: &'a FixedBuffers,
     pub cell: &'a CellBuffers,
+    pub fabric: &'a FabricBuffers,
     pub particle: &'a ParticleBuffers,
     pub exchange: &'a ExchangeBuffers,
 }
@@ -311,7 +313,7 @@ pub struct Buffers<'a> {
 impl<'a> Buffers<'a> {
     /// The buffer that shaders call `name`.
     pub fn by_name(&self, name: &str) -> Option<&'a wgpu::Buffer> {
-        let Buffers { domain, fixed, cell, particle, exchange } = *self;
+        let Buffers { domain, fixed, cell, fabric, particle, exchange } = *self;
         Some(match registry::made_as(name) {
             "step" => &fixed.step,
             "gases" => &domain.gases,
@@ -338,6 +340,9 @@ impl<'a> Buffers<'a> {
             "triangles" => &domain.triangles,
             "cell_class" => &domain.cell_class,
             "parting" => &domain.parting,
+            "nodes" => &fabric.nodes,
+            "fabric" => &domain.fabric,
+            "fabric_cells" => &fabric.cells,
             "cell_volume" => &domain.cell_volume,
             "cell_parts" => &domain.cell_parts,
             "still_gas" => &domain.still_gas,

@@ -6,6 +6,7 @@ use crate::gpu::Device;
 use crate::plan::{Plan, TILE_EDGE};
 use crate::scene::{GAS_CONSTANT, Method};
 
+use super::fabric::Fabric;
 use super::nearness;
 use super::registry::{SURFACE_MODEL_WORDS, SURFACE_WORDS, VENT_WORDS};
 use super::scales::Scales;
@@ -47,6 +48,8 @@ pub struct Features {
     pub vents: bool,
     /// Walls that move.
     pub moving: bool,
+    /// Surfaces that deform.
+    pub fabric: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
 }
@@ -107,6 +110,8 @@ pub struct Patches {
     pub vents: usize,
     /// Walls that move.
     pub motions: usize,
+    /// Surfaces that deform.
+    pub fabrics: usize,
 }
 
 impl Patches {
@@ -118,7 +123,7 @@ impl Patches {
     }
 
     pub(super) fn words(&self) -> usize {
-        self.ends()[2] + self.motions * SURFACE_MODEL_WORDS as usize
+        self.ends()[2] + (self.motions + self.fabrics) * SURFACE_MODEL_WORDS as usize
     }
 
     /// Words of a copy of these tallies: no two copies share a line of a cache.
@@ -147,6 +152,7 @@ impl Features {
             surface_models: patches.surface_models > 0,
             vents: patches.vents > 0,
             moving: patches.motions > 0,
+            fabric: patches.fabrics > 0,
             halo: among_others && plan.method != Method::None,
         }
     }
@@ -173,12 +179,13 @@ pub struct Specialisation<'a> {
     pub features: Features,
     pub patches: Patches,
     pub walls: &'a Walls,
+    pub fabric: &'a Fabric,
     /// Particles of a thread of the tally.
     pub tally_loops: u32,
 }
 
 pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
-    let &Specialisation { plan, features, patches, walls, tally_loops } = of;
+    let &Specialisation { plan, features, patches, walls, fabric, tally_loops } = of;
     let scales = Scales::new(plan);
     let grid = &plan.grid;
     let [surface_models_at, vents_at, works_at] = patches.ends();
@@ -241,6 +248,9 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("CELLS_FLOWN", f64::from(1u32 << box_bits(plan.method))),
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
+        ("FABRIC", flag(features.fabric)),
+        ("NODES", fabric.nodes as f64),
+        ("SHEET_GAP", fabric.gap),
         ("MOST_BOUNCES", MOST_BOUNCES),
         ("IMPULSE_SCALE", scales.velocity),
         ("GASES", plan.gases.len() as f64),

@@ -9,6 +9,7 @@ use super::buffers::{
 };
 use super::constants::{Features, block_counts};
 use super::domain::Domain;
+use super::fabric::FabricBuffers;
 use super::guess::Guess;
 use super::kernels::Kernels;
 use super::layout::{GpuParticle, GpuPeer};
@@ -21,6 +22,7 @@ pub struct Subdomain {
     pub(super) kernels: Kernels<BoundKernel>,
     pub(super) fixed: FixedBuffers,
     pub(super) cell: CellBuffers,
+    pub(super) fabric: FabricBuffers,
     pub(super) particle: ParticleBuffers,
     pub(super) exchange: ExchangeBuffers,
     pub(super) exchange_room: ExchangeRoom,
@@ -74,8 +76,15 @@ impl Subdomain {
         let cell = CellBuffers::new(device, bins)?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
-        let buffers =
-            Buffers { domain: &domain.buffers, fixed: &fixed, cell: &cell, particle: &particle, exchange: &exchange };
+        let fabric = FabricBuffers::new(device, &plan.grid, &domain.fabric, plan.steps_per_interval, 0)?;
+        let buffers = Buffers {
+            domain: &domain.buffers,
+            fixed: &fixed,
+            cell: &cell,
+            fabric: &fabric,
+            particle: &particle,
+            exchange: &exchange,
+        };
         let kernels = domain.compiled.bind(device, features, &buffers)?;
         device.write(&particle.particles, 0, particles);
         let mut subdomain = Subdomain {
@@ -83,6 +92,7 @@ impl Subdomain {
             kernels,
             fixed,
             cell,
+            fabric,
             particle,
             exchange,
             exchange_room,
@@ -177,6 +187,7 @@ impl Subdomain {
             domain: &self.domain.buffers,
             fixed: &self.fixed,
             cell: &self.cell,
+            fabric: &self.fabric,
             particle: &self.particle,
             exchange: &self.exchange,
         };

@@ -5,41 +5,14 @@ use crate::plan::Plan;
 use crate::scene::Method;
 
 use super::buffers::TallyWords;
-use super::cell_table::CellTable;
 use super::constants::{Features, Patches, Specialisation, block_counts, constants, runtime_constants_of, tally_loops};
 use super::domain_buffers::DomainBuffers;
+use super::domain_input::{DomainInput, KernelChoice};
+use super::fabric::Fabric;
 use super::kernels::Compiled;
-use super::layout::GpuZone;
 use super::registry::{BLOCK_WORDS, ZONE_WORDS};
 use super::sizes::SURFACE_COPIES;
-use super::walls::{BodyLists, Walls};
-
-/// What a domain is made from.
-pub struct DomainInput<'a> {
-    pub plan: &'a Plan,
-    pub walls: &'a Walls,
-    /// The gas of each cell, for collisions within cells.
-    pub cells: &'a CellTable,
-    /// Zone 0 is everything, then the chambers, then the probes.
-    pub zones: &'a [GpuZone],
-    pub patches: Patches,
-    /// Entries of the table of vents.
-    pub vent_entries: usize,
-    /// Whether other subdomains own particles too.
-    pub among_others: bool,
-    pub kernels: KernelChoice,
-}
-
-/// Which kernels a domain has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KernelChoice {
-    /// For what the scene has.
-    Fitting,
-    /// The same with all numbers of the scene compiled in.
-    Fixed,
-    /// For what the scene lacks too.
-    AllFeatures,
-}
+use super::walls::BodyLists;
 
 pub struct Domain {
     pub(super) plan: Plan,
@@ -63,6 +36,7 @@ pub struct Domain {
     pub(super) moved_cells: u64,
     /// Of the walls that move.
     pub(super) bodies: Vec<BodyLists>,
+    pub(super) fabric: Fabric,
 }
 
 impl Domain {
@@ -85,7 +59,14 @@ impl Domain {
             blocks: blocks * BLOCK_WORDS as usize + plan.ladder_levels as usize,
         };
         let tally_loops = tally_loops(device, plan);
-        let specialisation = Specialisation { plan, features, patches: input.patches, walls: input.walls, tally_loops };
+        let specialisation = Specialisation {
+            plan,
+            features,
+            patches: input.patches,
+            walls: input.walls,
+            fabric: input.fabric,
+            tally_loops,
+        };
         let constants = constants(&specialisation);
         let runtime = if input.kernels == KernelChoice::Fixed { &[] } else { runtime_constants_of(device, plan) };
         Ok(Domain {
@@ -96,7 +77,7 @@ impl Domain {
             variant: device.variant(),
             tally_loops,
             constants,
-            buffers: DomainBuffers::new(device, plan, input.walls, input.cells, input.zones)?,
+            buffers: DomainBuffers::new(device, input)?,
             words,
             patches: input.patches,
             vent_entries: input.vent_entries,
@@ -105,6 +86,7 @@ impl Domain {
             divided_cells: input.cells.divided,
             moved_cells: input.cells.still.len() as u64,
             bodies: input.walls.bodies.clone(),
+            fabric: input.fabric.clone(),
         })
     }
 

@@ -1,12 +1,10 @@
 //! The buffers that all subdomains of a device share.
 
 use crate::gpu::{Device, GpuError};
-use crate::plan::Plan;
 
-use super::cell_table::CellTable;
-use super::layout::{GpuGas, GpuTriangle, GpuZone};
+use super::domain_input::DomainInput;
+use super::layout::{GpuGas, GpuSheet, GpuTriangle};
 use super::state::{gas_table, mode_table, share_table};
-use super::walls::Walls;
 
 /// The gases, the walls and the zones.
 pub struct DomainBuffers {
@@ -18,6 +16,7 @@ pub struct DomainBuffers {
     pub triangles: wgpu::Buffer,
     pub cell_class: wgpu::Buffer,
     pub parting: wgpu::Buffer,
+    pub fabric: wgpu::Buffer,
     pub zones: wgpu::Buffer,
     pub cell_volume: wgpu::Buffer,
     pub cell_parts: wgpu::Buffer,
@@ -25,13 +24,8 @@ pub struct DomainBuffers {
 }
 
 impl DomainBuffers {
-    pub fn new(
-        device: &Device,
-        plan: &Plan,
-        walls: &Walls,
-        cells: &CellTable,
-        zones: &[GpuZone],
-    ) -> Result<DomainBuffers, GpuError> {
+    pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<DomainBuffers, GpuError> {
+        let &DomainInput { plan, walls, fabric, cells, zones, .. } = input;
         let (gases, modes) = (gas_table(plan), mode_table(plan));
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(&gases);
@@ -51,6 +45,7 @@ impl DomainBuffers {
             triangles: device.storage_of::<GpuTriangle>("triangles", &walls.triangles)?,
             cell_class: device.storage_of("cell_class", &walls.class)?,
             parting: device.storage_of("parting", &walls.parting)?,
+            fabric: device.storage_of::<GpuSheet>("fabric", &fabric.sheets)?,
             zones: device.storage_of("zones", zones)?,
             cell_volume: device.storage_of("cell_volume", &cells.volume)?,
             cell_parts: device.storage_of("cell_parts", &cells.parts)?,

@@ -6,6 +6,7 @@ use super::buffers::{RECORD, few_stretches};
 use super::counters;
 use super::device_gas::Subdomain;
 use super::dispatch::{all, threads};
+use super::fabric::words_of_cells;
 use super::registry::{
     LIST_BOUNCE, LIST_COLLISION_CELLS, LIST_CROWDED, LIST_CROWDS, LIST_CUT_CELLS, LIST_DIVIDED, LIST_INCOMPLETE,
     LIST_MOVED, LISTS,
@@ -30,6 +31,17 @@ impl Subdomain {
         let stretches = if sorts { self.cell.capacity / STRETCH + 1 } else { 0 };
         let groups = threads(rec.device(), stretches.max(LISTS.into()));
         self.kernels.reset.dispatch(&mut rec.phase(if sorts { "bin" } else { "advect" }), 0, groups);
+    }
+
+    /// Lists the triangles of fabric by cell.
+    pub fn list_fabric(&self, rec: &mut Recording<'_>, step: &StepSlot) {
+        if let Some(kernel) = &self.kernels.list_fabric {
+            let bytes = 4 * words_of_cells(&self.domain.plan.grid);
+            rec.encoder().clear_buffer(&self.fabric.cells, 0, Some(bytes));
+            let device = rec.device();
+            let groups = threads(device, self.domain.fabric.sheets.len() as u64);
+            kernel.dispatch(&mut rec.phase("fabric"), self.offset(device, step, 0), groups);
+        }
     }
 
     /// The particles that are here, and the newborns, which it puts behind them; those that come from other devices are binned as they arrive.

@@ -13,6 +13,8 @@ pub struct Kernels<K> {
     pub cells: Option<CellKernels<K>>,
     pub half_turn: Option<HalfTurnKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
+    /// Of a scene with surfaces that deform.
+    pub list_fabric: Option<K>,
     pub reset: K,
     pub advect: K,
     pub bounce: K,
@@ -105,7 +107,11 @@ impl<K> Kernels<K> {
                 arrange_by_id: make("arrange_by_id")?,
                 collision_cells: make("collision_cells")?,
                 half_turn: make("half_turn")?,
-                cut: if features.divided || features.moving { Some(make("half_turn_cut")?) } else { None },
+                cut: if features.divided || features.moving || features.fabric {
+                    Some(make("half_turn_cut")?)
+                } else {
+                    None
+                },
             })
         } else {
             None
@@ -164,6 +170,7 @@ impl<K> Kernels<K> {
             cells,
             half_turn,
             exchange,
+            list_fabric: if features.fabric { Some(make("list_fabric")?) } else { None },
             reset: make("reset")?,
             advect: make("advect")?,
             bounce: make("bounce")?,

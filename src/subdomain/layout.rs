@@ -66,7 +66,7 @@ pub struct GpuStillGas {
 pub struct GpuParticle {
     /// Quanta of the grid.
     pub position: [u32; 3],
-    /// Gas in the top 4 bits, id below.
+    /// Gas in the top 4 bits, below it a bit that is set inside of closed fabric, the id below.
     pub tag: u32,
     /// m/s.
     pub velocity: [f32; 3],
@@ -77,7 +77,8 @@ pub struct GpuParticle {
 impl GpuParticle {
     /// The tag of a slot that holds no particle.
     pub const NOBODY: u32 = u32::MAX;
-    pub const ID_MASK: u32 = (1 << 28) - 1;
+    pub const ID_MASK: u32 = (1 << 27) - 1;
+    pub const INSIDE: u32 = 1 << 27;
 
     pub fn tag(gas: u8, id: u32) -> u32 {
         (u32::from(gas) << 28) | (id & Self::ID_MASK)
@@ -90,6 +91,25 @@ impl GpuParticle {
     pub fn gas(&self) -> u8 {
         (self.tag >> 28) as u8
     }
+
+    /// Whether it is inside of closed fabric.
+    pub fn is_inside(&self) -> bool {
+        self.tag & Self::INSIDE != 0
+    }
+}
+
+/// `Sheet` of `shaders/shared/fabric.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuSheet {
+    pub a: u32,
+    pub b: u32,
+    pub c: u32,
+    pub closed: u32,
+    pub surface: u32,
+    pub surface_model: u32,
+    pub work: u32,
+    pub pad: u32,
 }
 
 /// `Newborn` of `shaders/shared/newborn.wgsl`.

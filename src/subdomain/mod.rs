@@ -12,8 +12,10 @@ mod device_gas;
 mod dispatch;
 mod domain;
 mod domain_buffers;
+mod domain_input;
 mod encode;
 mod exchange;
+mod fabric;
 mod fit;
 mod guess;
 mod kernels;
@@ -40,18 +42,20 @@ pub use cell_table::{CellTable, TooManyParts};
 pub use constants::{Features, Patches, block_counts, box_bits, constants, runtime_constants};
 pub use counters::{Counters, places_in_shards};
 pub use device_gas::Subdomain;
-pub use domain::{Domain, DomainInput, KernelChoice};
+pub use domain::Domain;
+pub use domain_input::{DomainInput, KernelChoice};
 pub use exchange::{Messages, Outgoing};
+pub use fabric::Fabric;
 pub use layout::{
-    GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuStep, GpuStillGas,
-    GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuSheet, GpuStep,
+    GpuStillGas, GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
 pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
 pub use sizes::{CHUNK, CROWD, MEMBERS, MOST_MEMBERS, MOTION_ENTRIES, STRETCH, TILE_BITS, WORKGROUP};
-pub use state::{StateError, share_table, zone_of};
+pub use state::{StateError, share_table, zone_inside, zone_of};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use subdomain_box::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};

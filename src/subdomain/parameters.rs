@@ -5,6 +5,7 @@ use crate::scene::MOST_MOTIONS;
 
 use super::buffers::step_stride;
 use super::device_gas::Subdomain;
+use super::fabric::{FabricBuffers, most_entries};
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::registry::INTERVAL_STEPS;
@@ -36,6 +37,7 @@ impl Subdomain {
         device.write(&self.fixed.surface_models, 0, &tables.surface_models);
         device.write(&self.fixed.vents, 0, &tables.vents);
         self.place_walls(device, &tables.motions);
+        self.place_fabric(device, &tables.nodes)?;
         device.write(&self.fixed.cross_section_shares, 0, &tables.cross_section_shares);
         let near2 = nearness::near2(&self.domain.plan, tables.halvings);
         let mut tallies_left: u32 = tallied.iter().map(|&tallied| u32::from(tallied)).sum();
@@ -168,6 +170,25 @@ impl Subdomain {
             step.iter_mut().zip(&self.domain.bodies).for_each(|(motion, body)| *motion = body.complete(*motion));
         }
         device.write(&self.fixed.motions, 0, &told);
+    }
+
+    /// Places the nodes: at the start of each step of an interval, and at its end.
+    ///
+    /// # Errors
+    /// If lists need more room than the device has.
+    fn place_fabric(&mut self, device: &Device, nodes: &[[u32; 4]]) -> Result<(), GpuError> {
+        if nodes.is_empty() {
+            return Ok(());
+        }
+        let plan = &self.domain.plan;
+        let wanted = most_entries(&plan.grid, &self.domain.fabric, nodes);
+        if wanted > self.fabric.room {
+            let room = wanted + wanted / 4;
+            self.fabric = FabricBuffers::new(device, &plan.grid, &self.domain.fabric, plan.steps_per_interval, room)?;
+            self.rebind(device)?;
+        }
+        device.write(&self.fabric.nodes, 0, nodes);
+        Ok(())
     }
 
     /// The particles as they are, for tallies outside a step.

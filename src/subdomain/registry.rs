@@ -205,6 +205,9 @@ pub const BUFFERS: &[&str] = &[
     "triangles",
     "cell_class",
     "parting",
+    "nodes",
+    "fabric",
+    "fabric_cells",
     "cell_volume",
     "cell_parts",
     "still_gas",
@@ -255,6 +258,7 @@ pub const BUFFERS: &[&str] = &[
 /// The phases of a step in their order, and behind them what is done between steps. Collisions are those of `collide`
 /// (the method `cell`) or those of `neighbours` to `lost`.
 pub const PHASES: &[&str] = &[
+    "fabric",
     "bin",
     "exchange",
     "scan",

@@ -124,16 +124,24 @@ pub fn mode_table(plan: &Plan) -> Vec<[f32; 4]> {
     table
 }
 
+/// The first quanta that are not before a point: one outside the grid is moved to its edge, since there are no particles beyond.
+fn within(point: [f64; 3], grid: &Grid) -> [u32; 3] {
+    std::array::from_fn(|axis| {
+        let limit = f64::from(grid.cells[axis]) * f64::from(1u32 << grid.cell_bits);
+        ((point[axis] - grid.origin[axis]) / grid.quantum()).ceil().clamp(0.0, limit) as u32
+    })
+}
+
+/// The inside of closed fabric that never leaves a box.
+pub fn zone_inside((low, high): ([f64; 3], [f64; 3]), grid: &Grid) -> GpuZone {
+    // A particle may be on its fabric, and a gap beyond.
+    let [low, high] = [low.map(|x| x - grid.cell), high.map(|x| x + grid.cell)].map(|corner| within(corner, grid));
+    GpuZone { kind: 4, low, high, ..GpuZone::default() }
+}
+
 /// A region as `shaders/shared/zones.wgsl` tests it; `None` is everywhere.
 pub fn zone_of(region: Option<&Region>, grid: &Grid) -> GpuZone {
-    let quantum = grid.quantum();
-    // A corner outside the grid is moved to its edge: there are no particles beyond.
-    let fixed = |point: [f64; 3]| -> [u32; 3] {
-        std::array::from_fn(|axis| {
-            let limit = f64::from(grid.cells[axis]) * f64::from(1u32 << grid.cell_bits);
-            ((point[axis] - grid.origin[axis]) / quantum).ceil().clamp(0.0, limit) as u32
-        })
-    };
+    let fixed = |point: [f64; 3]| within(point, grid);
     let mut zone = GpuZone::default();
     match region {
         None => {}

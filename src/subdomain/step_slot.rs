@@ -35,6 +35,8 @@ pub struct Tables {
     pub surface_models: Vec<GpuSurfaceModel>,
     pub vents: Vec<GpuVent>,
     pub motions: Vec<GpuMotion>,
+    /// Of surfaces that deform the places of all nodes, quanta, at the start of each step and at the end of the last.
+    pub nodes: Vec<[u32; 4]>,
     /// What is left of the cross-section in each coarse block, in [`FULL_SHARE`]ths; empty without a cap.
     pub cross_section_shares: Vec<u32>,
     /// By how many halvings less the fastest pairs fly in these steps than in the longest.

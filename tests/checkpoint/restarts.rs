@@ -68,6 +68,15 @@ fn a_piston_goes_on_from_any_step() {
     restarts(&scene, 10, [1, 4, 2, 3]);
 }
 
+/// Where its nodes are follows from the clock, and its files are kept with the run.
+#[test]
+fn a_bag_goes_on_from_any_step() {
+    let scene = published("bag.toml", 1500, 2e-3);
+    let case = restarts(&scene, 12, [2, 1, 3, 2]);
+    let copies = std::fs::read_dir(case.out("out").join("meshes")).expect("copies of meshes").count();
+    assert_eq!(copies, 2, "the mesh and its motion");
+}
+
 /// What it remembers of the rows, and what it has decided, is in the checkpoint.
 #[test]
 fn a_run_that_switches_goes_on_from_any_step() {

@@ -18,6 +18,10 @@ fn row_bits(row: &Row) -> Vec<u64> {
         bits.push(surface.pressure.to_bits());
         bits.extend(surface.impulse.map(f64::to_bits));
     }
+    for fabric in &row.fabrics {
+        let [outer, inner] = fabric.pressure;
+        bits.extend([fabric.volume, fabric.area, outer, inner, fabric.work, fabric.power].map(f64::to_bits));
+    }
     bits.extend(row.walls.iter().flat_map(|wall| [wall.heat, wall.heat_flux]).map(f64::to_bits));
     for vent in &row.vents {
         let flows = [vent.mass_flow, vent.wanted_mass_flow, vent.discharge, vent.wanted_discharge];

@@ -11,8 +11,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, switching, tank, thin, tube,
-    venting, venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, shaken_bag, switching, tank, thin,
+    tube, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -226,6 +226,18 @@ fn collisions_within_cells_have_the_same_bits_on_any_number_of_ranks() {
     let ways = [Way::new(3, Initial, 1), Way::new(8, Forced { seed: 8 }, 2)];
     same(&by(Method::Cell, plate()), &ways);
     same(&by(Method::Cell, burst()), &ways);
+}
+
+/// Which triangles are near follows from the clock, whoever owns the cells.
+#[test]
+fn a_shaken_bag_has_the_same_bits_on_any_number_of_ranks() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+        let runs = same(&shaken_bag(method), &ways);
+        let inside = runs[0].outcome.particles.iter().filter(|particle| particle.is_inside()).count();
+        assert!((100..1400).contains(&inside), "{inside} inside");
+    }
+    same(&shaken_bag(Method::None), &[Way::new(3, Off, 1).over_places()]);
 }
 
 #[test]

@@ -19,7 +19,7 @@ pub struct SceneArguments {
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
     /// Particles at the end of the run, initial and injected together
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 27) - 1))]
     pub particles: Option<u64>,
     /// Another seed is another sample of the same gas
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count::<u64>(0..=(1 << 56) - 1))]
@@ -37,7 +37,7 @@ pub struct WishArguments {
     #[arg(long, allow_negative_numbers = true, value_name = "TIME")]
     pub time_budget: Option<WallTime>,
     /// The most particles that the plan may choose
-    #[arg(long, value_name = "N", conflicts_with = "particles", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
+    #[arg(long, value_name = "N", conflicts_with = "particles", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 27) - 1))]
     pub particle_budget: Option<u64>,
     /// Million particle-steps per second of the device, for the predicted time [default: 3, lavapipe on two cores]
     #[arg(long, value_name = "MILLIONS", allow_negative_numbers = true, value_parser = rate)]
@@ -183,7 +183,7 @@ pub struct RefineArguments {
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub from: PathBuf,
     /// How many particles each becomes
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count::<u64>(2..=(1 << 28) - 1))]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count::<u64>(2..=(1 << 27) - 1))]
     pub times: u64,
     /// The folder of the refined run [default: beside the run's, as <name>-x<K>]
     #[arg(short, long, value_name = "NEWDIR", value_hint = ValueHint::DirPath)]

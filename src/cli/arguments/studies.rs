@@ -190,7 +190,7 @@ pub struct BenchArguments {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "box,tank,corner")]
     pub scene: Vec<String>,
     /// Particles at the end of the scene, initial and injected
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1e5", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 28) - 1))]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1e5", allow_negative_numbers = true, value_parser = count::<u64>(1..=(1 << 27) - 1))]
     pub particles: Vec<u64>,
     /// Methods of collision
     #[arg(

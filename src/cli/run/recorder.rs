@@ -7,7 +7,7 @@ use super::reference::Reference;
 use super::table::{columns, values};
 use crate::output::{
     BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
-    SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, over_mean, subdomain_chart,
+    SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, TriangleSet, over_mean, subdomain_chart,
 };
 use crate::simulation::{
     BalanceRecord, GuardWarning, Model, Moment, Observer, Outcome, Request, Row, RowObserver, SimulationError,
@@ -198,7 +198,20 @@ impl<'a> Recorder<'a> {
                 spin_energy: (f64::from(particle.spin) * scales.reference_mass) as f32,
             })
             .collect();
-        writer.write_among(time, &rows, self.among.is_some().then_some(owners)).map(|_| ())
+        writer.write_among(time, &rows, self.among.is_some().then_some(owners))?;
+        let fabric = &self.model.fabric;
+        if fabric.is_empty() {
+            return Ok(());
+        }
+        let owners: Vec<u32> =
+            (0..).zip(&fabric.all).flat_map(|(k, own)| own.triangles.clone().map(move |_| k)).collect();
+        let names: Vec<String> = fabric.all.iter().map(|own| own.name.clone()).collect();
+        writer.write_fabric(TriangleSet {
+            vertices: &fabric.places(time),
+            triangles: &fabric.triangles,
+            owners: &owners,
+            names: &names,
+        })
     }
 }
 
@@ -223,7 +236,8 @@ fn write_walls(writer: &SnapshotWriter, model: &Model) -> Result<(), OutputError
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.vertices).collect();
     let walls: Vec<u32> = triangles.iter().map(|triangle| triangle.wall).collect();
     let names: Vec<String> = model.scene.walls.iter().map(|wall| wall.name.clone()).collect();
-    writer.write_walls(&model.vessel.vertices, &corners, &walls, &names).map(|_| ())
+    let walls = TriangleSet { vertices: &model.vessel.vertices, triangles: &corners, owners: &walls, names: &names };
+    writer.write_walls(walls).map(|_| ())
 }
 
 fn gas_names(model: &Model) -> Vec<String> {

@@ -21,6 +21,8 @@ pub struct Owners {
     pub vents: Vec<String>,
     /// Walls that move.
     pub motions: Vec<String>,
+    /// Surfaces that deform.
+    pub fabrics: Vec<String>,
 }
 
 impl Owners {
@@ -44,6 +46,7 @@ impl Owners {
             walls: scene.heated_surfaces().map(|(id, _)| scene.surface_name(id)).collect(),
             vents: owned(&vents),
             motions: owned(&moving),
+            fabrics: scene.fabrics.iter().map(|fabric| fabric.name.clone()).collect(),
         }
     }
 }
@@ -67,7 +70,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(pressure_columns(owner));
         columns.push(Column::new(format!("{owner}:temperature"), "k"));
         columns.push(Column::new(format!("{owner}:reference_temperature"), "k"));
-        if !scene.motions.is_empty() {
+        if !scene.motions.is_empty() || !scene.fabrics.is_empty() {
             columns.push(Column::new(format!("{owner}:volume"), "m3"));
         }
         flow_columns(&mut columns, owner, scene);
@@ -100,6 +103,14 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.push(Column::new(format!("{owner}:work"), "j"));
         columns.push(Column::new(format!("{owner}:power"), "w"));
     }
+    for owner in &owners.fabrics {
+        columns.push(Column::new(format!("{owner}:enclosed_volume"), "m3"));
+        columns.push(Column::new(format!("{owner}:area"), "m2"));
+        columns.push(Column::new(format!("{owner}:outer_pressure"), "pa"));
+        columns.push(Column::new(format!("{owner}:inner_pressure"), "pa"));
+        columns.push(Column::new(format!("{owner}:work"), "j"));
+        columns.push(Column::new(format!("{owner}:power"), "w"));
+    }
     columns
 }
 
@@ -115,7 +126,7 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
     for (chamber, state) in row.chambers.iter().enumerate() {
         let [pressure, temperature] = reference.at(row.time, chamber);
         values.extend([state.pressure, pressure, state.temperature, temperature]);
-        if !row.motions.is_empty() {
+        if !row.motions.is_empty() || !row.fabrics.is_empty() {
             values.push(state.volume);
         }
         push_flow(&mut values, state);
@@ -138,6 +149,9 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
     }
     for motion in &row.motions {
         values.extend([motion.displacement, motion.velocity, motion.work, motion.power]);
+    }
+    for fabric in &row.fabrics {
+        values.extend([fabric.volume, fabric.area, fabric.pressure[0], fabric.pressure[1], fabric.work, fabric.power]);
     }
     values
 }

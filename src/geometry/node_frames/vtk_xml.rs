@@ -140,7 +140,7 @@ fn decoded(kind: &str, bytes: &[u8]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{ParticleRow, SnapshotWriter};
+    use crate::output::{ParticleRow, SnapshotWriter, TriangleSet};
 
     fn refused(bytes: &[u8]) -> String {
         let Misread { place, found, expected } = read(bytes).unwrap_err();
@@ -161,7 +161,14 @@ mod tests {
         let mut writer = SnapshotWriter::create(folder.path()).unwrap();
         let vertices = [[0.1, 0.2, 0.3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0 / 3.0]];
         let triangles = [[0, 1, 2], [0, 3, 1]];
-        let path = writer.write_walls(&vertices, &triangles, &[0, 0], &["w".into()]).unwrap();
+        let path = writer
+            .write_walls(TriangleSet {
+                vertices: &vertices,
+                triangles: &triangles,
+                owners: &[0, 0],
+                names: &["w".into()],
+            })
+            .unwrap();
         let bytes = std::fs::read(path).unwrap();
         let frame = read(&bytes).unwrap();
         assert_eq!((&frame.nodes[..], &frame.triangles[..]), (&vertices[..], &triangles[..]));

@@ -8,7 +8,14 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn chamber(region: Option<Region>) -> Chamber {
-    Chamber { name: "c".into(), region, pressure: 1e5, temperature: 300.0, mixture: Mixture(vec![(0, 1.0)]) }
+    Chamber {
+        name: "c".into(),
+        region,
+        inside: None,
+        pressure: 1e5,
+        temperature: 300.0,
+        mixture: Mixture(vec![(0, 1.0)]),
+    }
 }
 
 fn vessel() -> Vessel {

@@ -13,9 +13,9 @@ pub const FORMAT: u32 = 10;
 pub const KEPT: usize = 2;
 /// One particle.
 pub const RECORD_BYTES: usize = 32;
-/// A record's id is in the low 28 bits of the little-endian word at this offset.
+/// A record's id is in the low 27 bits of the little-endian word at this offset.
 pub(super) const ID_OFFSET: usize = 12;
-pub(super) const ID_MASK: u32 = (1 << 28) - 1;
+pub(super) const ID_MASK: u32 = (1 << 27) - 1;
 
 pub(super) const MANIFEST: &str = "manifest.toml";
 pub(super) const SCENE: &str = "scene.toml";

@@ -89,10 +89,24 @@ impl Checkpoint {
         }
         let content = |problem: String| CheckpointError::Content { path: self.path.join(SCENE), problem };
         let mut scene: toml::Table = text.parse().map_err(|error: toml::de::Error| content(error.to_string()))?;
-        let walls = scene.get_mut("wall").and_then(toml::Value::as_array_mut);
-        let files = walls.into_iter().flatten().filter_map(|wall| wall.get_mut("file"));
-        for (file, mesh) in files.zip(meshes) {
-            *file = toml::Value::String(mesh.to_string_lossy().into_owned());
+        let mut meshes = meshes.into_iter();
+        // In the order of `meshes_of`.
+        for (list, key) in [("wall", "file"), ("fabric", "file")] {
+            let entries = scene.get_mut(list).and_then(toml::Value::as_array_mut);
+            for entry in entries.into_iter().flatten() {
+                let files = [Some(key), (list == "fabric").then_some("motion")].into_iter().flatten();
+                for key in files {
+                    let kept = |file: &toml::Value| {
+                        key == "file" || file.as_str().is_some_and(|name| name.ends_with(".nodes"))
+                    };
+                    if let Some(file) = entry.get_mut(key)
+                        && kept(file)
+                        && let Some(mesh) = meshes.next()
+                    {
+                        *file = toml::Value::String(mesh.to_string_lossy().into_owned());
+                    }
+                }
+            }
         }
         toml::to_string(&scene).map_err(|error| content(error.to_string()))
     }
@@ -110,7 +124,11 @@ impl Checkpoint {
             Shape::Mesh { path, .. } => Some(path),
             _ => None,
         });
-        for (path, record) in paths.zip(&self.manifest.mesh) {
+        let kept = |path: &&mut PathBuf| path.extension().is_some_and(|ending| ending == "nodes");
+        let of_fabric = scene.fabrics.iter_mut();
+        let of_fabric =
+            of_fabric.flat_map(|fabric| std::iter::once(&mut fabric.mesh).chain(fabric.motion.as_mut().filter(kept)));
+        for (path, record) in paths.chain(of_fabric).zip(&self.manifest.mesh) {
             path.clone_from(&record.path);
         }
     }

@@ -1,7 +1,7 @@
 use super::super::names::*;
 use super::*;
 use crate::output::marker::has_ended;
-use crate::output::{Column, HistoryWriter, SnapshotWriter};
+use crate::output::{Column, HistoryWriter, SnapshotWriter, TriangleSet};
 
 fn claim(force: bool) -> Claim<'static> {
     Claim { content: Content::Run, scene: None, meshes: &[], inputs: &[], force }
@@ -19,7 +19,7 @@ fn finished_run(path: &Path) {
     }
     let mut snapshots = SnapshotWriter::create(folder.path()).unwrap();
     snapshots.write(0.0, &[]).unwrap();
-    snapshots.write_walls(&[], &[], &[], &[]).unwrap();
+    snapshots.write_walls(TriangleSet { vertices: &[], triangles: &[], owners: &[], names: &[] }).unwrap();
     folder.end("all is well").unwrap();
 }
 

@@ -163,7 +163,9 @@ fn walls_hold_the_triangles_given_and_refuse_bad_ones() {
     let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let triangles = [[0, 2, 1], [0, 1, 3]];
     let names = ["box".to_owned(), "lid".to_owned()];
-    let path = writer.write_walls(&vertices, &triangles, &[0, 7], &names).unwrap();
+    let path = writer
+        .write_walls(TriangleSet { vertices: &vertices, triangles: &triangles, owners: &[0, 7], names: &names })
+        .unwrap();
     let bytes = std::fs::read(path).unwrap();
     let text = String::from_utf8_lossy(&bytes);
     let named = r#"Name="wall_names" NumberOfTuples="2" format="ascii">98 111 120 0 108 105 100 0 </Array>"#;
@@ -174,7 +176,14 @@ fn walls_hold_the_triangles_given_and_refuse_bad_ones() {
     assert_eq!(numbers(&arrays["offsets"], "Int64", i64::from_le_bytes), [3, 6]);
     assert_eq!(numbers(&arrays["wall"], "UInt32", u32::from_le_bytes), [0, 7]);
     assert_eq!(numbers(&arrays["position"], "Float64", f64::from_le_bytes), vertices.as_flattened());
-    let error = writer.write_walls(&vertices, &[[0, 1, 4]], &[0], &names).unwrap_err().to_string();
+    let error = writer
+        .write_walls(TriangleSet { vertices: &vertices, triangles: &[[0, 1, 4]], owners: &[0], names: &names })
+        .unwrap_err()
+        .to_string();
     assert_eq!(error, "triangle 0 of the walls names vertex 4, but there are 4");
-    assert!(writer.write_walls(&vertices, &triangles, &[0], &names).is_err());
+    assert!(
+        writer
+            .write_walls(TriangleSet { vertices: &vertices, triangles: &triangles, owners: &[0], names: &names })
+            .is_err()
+    );
 }

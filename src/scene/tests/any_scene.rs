@@ -28,7 +28,7 @@ prop_compose! {
         state in (1e-3..1e9f64, 1.0..1e4f64),
         flow in prop::collection::vec((1e-6..1.0f64, 0.0..10.0f64), 2..9),
         jet in prop::option::of((prop::bool::ANY, 1e-3..20.0f64, 0.0..89.9f64)),
-        model in (prop::option::of(1u64..1 << 28), prop::option::of(1e-9..1.0f64), prop::option::of(1u32..9)),
+        model in (prop::option::of(1u64..1 << 27), prop::option::of(1e-9..1.0f64), prop::option::of(1u32..9)),
         cap in prop::option::of(prop::option::of(1e-3..10.0f64)),
         output in (1u32..1_000_000, 0u32..100_000),
         report in prop::option::of(prop::bool::ANY),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::averages::Averages;
 use crate::gas::Inflow;
-use crate::geometry::Vessel;
+use crate::geometry::{Bag, Vessel};
 use crate::output::{Audit, AuditLimits, CollisionCells, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
@@ -35,6 +35,8 @@ pub struct AtEnd<'a> {
     pub inflow: &'a Inflow,
     /// Particles that were found in no gas.
     pub outside: u64,
+    /// And on the wrong side of closed fabric, if there is any.
+    pub passed: Option<u64>,
     pub averages: &'a Averages,
     pub surface_states: &'a SurfaceStates<'a>,
 }
@@ -330,7 +332,7 @@ impl Account {
 
     /// The account at the end.
     pub fn close(&self, model: &Model, at_end: &AtEnd<'_>) -> Audit {
-        let &AtEnd { tallies, inflow, outside, averages, surface_states } = at_end;
+        let &AtEnd { tallies, inflow, outside, passed, averages, surface_states } = at_end;
         let end = self.totals(tallies);
         let plan = &model.plan;
         let (entered, before) = (self.entered(inflow), self.counted.before);
@@ -344,6 +346,7 @@ impl Account {
             particles_vented,
             particles_inside: end.number - outside,
             particles_outside: outside,
+            particles_passed: passed,
             mass_start: self.counted.start.mass,
             mass_injected: entered.mass - before.mass,
             mass_vented,
@@ -355,7 +358,7 @@ impl Account {
             energy_start: self.counted.start.energy,
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
-            work_by_walls: (!model.moving.is_empty()).then(|| averages.total_work()),
+            work_by_walls: (!model.moving.is_empty() || !model.fabric.is_empty()).then(|| averages.total_work()),
             heat_to_walls: model.scene.has_heat().then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
@@ -403,6 +406,24 @@ pub fn count_outside(vessel: &Vessel, plan: &Plan, particles: &[GpuParticle]) ->
         })
     });
     outside.count() as u64
+}
+
+/// Particles whose tag says another side of closed fabric than the parity of its triangles beyond them, none of which is within
+/// reach of rounding.
+pub fn count_passed(bags: &[Option<Bag>], plan: &Plan, particles: &[GpuParticle]) -> u64 {
+    let inside = |place: [f64; 3]| bags.iter().flatten().any(|bag| bag.contains(place));
+    let reach = 4.0 * plan.grid.quantum();
+    let passed = particles.iter().filter(|particle| {
+        let place = plan.grid.to_metres(particle.position);
+        let is_wrong = |place| inside(place) != particle.is_inside();
+        is_wrong(place)
+            && (0..6).all(|side| {
+                let mut near = place;
+                near[side / 2] += if side % 2 == 0 { reach } else { -reach };
+                is_wrong(near)
+            })
+    });
+    passed.count() as u64
 }
 
 #[cfg(test)]

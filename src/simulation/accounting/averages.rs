@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::row::{Layout, MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
+use super::row::{FabricState, Layout, MotionState, Row, SurfaceState, VentState, WallState, ZoneState};
 use crate::plan::Plan;
 use crate::scene::GAS_CONSTANT;
 use crate::simulation::control::state_error::RunStateError;
@@ -137,8 +137,8 @@ impl Averages {
             received: vec![[0; 3]; patches],
             heat: vec![[0; 2]; layout.surface_models],
             passed: vec![[Passed::default(); 2]; layout.vents],
-            works: vec![[0; 2]; layout.motions],
-            room: if layout.motions > 0 { vec![0.0; zones] } else { Vec::new() },
+            works: vec![[0; 2]; layout.motions + layout.fabrics],
+            room: if layout.motions + layout.fabrics > 0 { vec![0.0; zones] } else { Vec::new() },
             layout,
         }
     }
@@ -266,7 +266,8 @@ impl Averages {
                 .map(|(surface_models, area)| self.wall(surface_models, *area, duration))
                 .collect(),
             vents: self.passed.iter().map(|passed| self.vent(passed, duration)).collect(),
-            motions: self.works.iter().map(|work| self.motion(work, duration)).collect(),
+            motions: self.works[..self.layout.motions].iter().map(|work| self.motion(work, duration)).collect(),
+            fabrics: (0..self.layout.fabrics).map(|fabric| self.fabric(fabric, duration)).collect(),
             chambers: states[..self.layout.chambers].to_vec(),
             probes: states[self.layout.chambers..].to_vec(),
         };
@@ -365,6 +366,16 @@ impl Averages {
     fn motion(&self, work: &[i128; 2], duration: f64) -> MotionState {
         let [window, all] = work.map(|work| -(work as f64) * self.energy_unit() + 0.0);
         MotionState { work: all, power: window / duration, ..MotionState::default() }
+    }
+
+    /// How large it is the time loop knows: of the pressures here are the forces, N.
+    fn fabric(&self, fabric: usize, duration: f64) -> FabricState {
+        let MotionState { work, power, .. } = self.motion(&self.works[self.layout.motions + fabric], duration);
+        let force = |side: usize| {
+            let normal = self.patches[self.layout.patches + 2 * fabric + side].normal;
+            normal as f64 * self.impulse_unit() / duration
+        };
+        FabricState { pressure: [force(0), force(1)], work, power, ..FabricState::default() }
     }
 
     /// All the work that walls have done on the gas since the start, J.

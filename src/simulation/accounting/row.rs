@@ -18,6 +18,8 @@ pub struct Row {
     pub vents: Vec<VentState>,
     /// The walls that move.
     pub motions: Vec<MotionState>,
+    /// The surfaces that deform.
+    pub fabrics: Vec<FabricState>,
 }
 
 /// Mean state of a zone over a window.
@@ -90,6 +92,20 @@ pub struct MotionState {
     pub power: f64,
 }
 
+/// A surface that deforms.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FabricState {
+    /// What it encloses, m3 (of an open one zero), and its area, m2, in the middle of the window.
+    pub volume: f64,
+    pub area: f64,
+    /// Of the gas on its outer side (that its normals point to) and on its inner side, Pa.
+    pub pressure: [f64; 2],
+    /// That it has done on the gas since the start of the run, J.
+    pub work: f64,
+    /// The same per time in the window, W.
+    pub power: f64,
+}
+
 /// The scene's side of the averages.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
@@ -103,4 +119,7 @@ pub struct Layout {
     pub surface_models: usize,
     pub vents: usize,
     pub motions: usize,
+    pub fabrics: usize,
+    /// Of walls: behind them are two of each surface that deforms, the outer side and the inner.
+    pub patches: usize,
 }

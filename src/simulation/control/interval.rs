@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use crate::gas::{Inflow, Newborn};
 use crate::plan::Plan;
-use crate::subdomain::{GpuNewborn, Newborns, Scales, StateError, Tables, Tallies};
+use crate::subdomain::{GpuNewborn, GpuParticle, Newborns, Scales, StateError, Tables, Tallies};
 
 /// The steps of an interval.
 #[derive(Debug, Clone, Copy)]
@@ -46,8 +46,14 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Takes the newborns of the interval from the inflow.
-    pub fn new(plan: &Plan, inflow: &mut Inflow, span: &Span, deal: Deal) -> Result<Interval, StateError> {
+    /// Takes the newborns of the interval from the inflow; `inside` tells of orifices whether they are inside of closed fabric.
+    pub fn new(
+        plan: &Plan,
+        inflow: &mut Inflow,
+        span: &Span,
+        deal: Deal,
+        inside: &[bool],
+    ) -> Result<Interval, StateError> {
         let &Span { start, end, first_step, steps } = span;
         let dt = (end - start) / f64::from(steps);
         let scales = Scales::new(plan);
@@ -77,7 +83,10 @@ impl Interval {
             let k = (((newborn.time - start) / dt) as usize).min(steps as usize - 1);
             let late = (newborn.time - start - k as f64 * dt).clamp(0.0, dt);
             interval.entering[k] += 1;
-            let on_device = GpuNewborn::from_host(&newborn.particle, late, &plan.grid, &scales)?;
+            let mut on_device = GpuNewborn::from_host(&newborn.particle, late, &plan.grid, &scales)?;
+            if inside.get(newborn.orifice).is_some_and(|&inside| inside) {
+                on_device.particle.tag |= GpuParticle::INSIDE;
+            }
             let particle = &on_device.particle;
             let mass = plan.gases[usize::from(newborn.particle.gas)].molar_mass * plan.moles_per_particle;
             let mut speed2 = 0.0;

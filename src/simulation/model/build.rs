@@ -1,6 +1,7 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
 use super::error::ModelError;
+use super::fabric::Surfaces;
 use super::facing::Known;
 use super::flow_only;
 use super::flow_only::Part;
@@ -8,6 +9,7 @@ use super::measure::measured;
 use super::moving::Moving;
 use super::orifices::{check_discs, check_orifices};
 use super::outlook::outlook;
+use super::places::along;
 use super::surface_models::SurfaceModels;
 use crate::gas::{Inflow, InflowParticles};
 use crate::geometry::Vessel;
@@ -15,7 +17,7 @@ use crate::plan::{
     Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
     notes_of_reach, plan, significant,
 };
-use crate::scene::{Method, Scene};
+use crate::scene::{Method, Orifice, Scene};
 use crate::subdomain::Memory;
 
 pub struct Model {
@@ -25,6 +27,10 @@ pub struct Model {
     pub surface_models: SurfaceModels,
     /// The walls that move; `vessel` has them as they are at the start.
     pub moving: Moving,
+    /// The surfaces that deform.
+    pub fabric: Surfaces,
+    /// Of each orifice whether it is inside of closed fabric; at the start, and so for ever.
+    pub orifices_inside: Vec<bool>,
     /// m3 of gas in each probe.
     pub probe_volumes: Vec<f64>,
     /// Of a scene that wished an accuracy or had a budget: what was chosen, now part of `scene`, and why.
@@ -38,6 +44,9 @@ impl Model {
     pub fn new(mut scene: Scene) -> Result<Model, ModelError> {
         let mut seen = Survey::new(&scene)?;
         let mut choice = None;
+        if scene.model.wish.is_any() && !scene.fabrics.is_empty() {
+            return Err(ModelError::FabricWith { what: "`accuracy`, `time_budget` or `particle_budget`".into() });
+        }
         if scene.model.wish.is_any() {
             let (chosen, part) = chosen(&scene, &seen)?;
             if let Some((of_part, seen_of_part)) = part {
@@ -52,11 +61,13 @@ impl Model {
         if plan.method == Method::ControlVolume || scene.model.switch.is_some() {
             Known::of(&scene, &seen.vessel)?;
         }
+        refuse_with_fabric(&scene, &plan)?;
         if plan.method != Method::ControlVolume {
             check_discs(&scene, &seen.vessel)?;
         }
-        let Survey { vessel, surface_models, moving, probe_volumes, .. } = seen;
-        Ok(Model { scene, vessel, plan, surface_models, moving, probe_volumes, choice })
+        let Survey { vessel, surface_models, moving, fabric, probe_volumes, .. } = seen;
+        let orifices_inside = orifices_inside(&scene, &vessel);
+        Ok(Model { scene, vessel, plan, surface_models, moving, fabric, orifices_inside, probe_volumes, choice })
     }
 
     /// All that will flow in.
@@ -101,7 +112,7 @@ impl Model {
 
     /// What is no warning, of the walls and of the scene.
     pub fn notes(&self) -> Vec<String> {
-        [self.vessel.notes(self.scene.units), self.plan.inventory.notes.clone()].concat()
+        [self.vessel.notes(self.scene.units), self.fabric.notes.clone(), self.plan.inventory.notes.clone()].concat()
     }
 
     /// The walls as they are at a time, s.
@@ -118,24 +129,65 @@ struct Survey {
     vessel: Vessel,
     surface_models: SurfaceModels,
     moving: Moving,
+    fabric: Surfaces,
     probe_volumes: Vec<f64>,
     measured: Measured,
 }
 
 impl Survey {
     fn new(scene: &Scene) -> Result<Survey, ModelError> {
-        let vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
+        let mut vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
+        let fabric = Surfaces::of(scene)?;
+        fabric.refuse_neighbours()?;
+        vessel.bags = fabric.bags(0.0)?;
+        refuse_open_chambers(scene, &vessel)?;
         check_orifices(scene, &vessel)?;
         let surface_models = SurfaceModels::new(scene, &vessel)?;
-        let moving = Moving::new(scene, &vessel)?;
+        let mut moving = Moving::new(scene, &vessel)?;
+        moving.deform(scene, &vessel, &fabric)?;
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
         let measured = measured(scene, &vessel, &surface_models, &moving, &probe_volumes);
-        Ok(Survey { vessel, surface_models, moving, probe_volumes, measured })
+        Ok(Survey { vessel, surface_models, moving, fabric, probe_volumes, measured })
     }
 
     fn outlook(&self, scene: &Scene) -> Outlook {
         outlook(scene, &self.vessel, &self.measured, &self.surface_models)
     }
+}
+
+/// What is not done yet beside surfaces that deform.
+fn refuse_with_fabric(scene: &Scene, plan: &Plan) -> Result<(), ModelError> {
+    if scene.fabrics.is_empty() {
+        return Ok(());
+    }
+    let what = match plan.method {
+        Method::HalfTurn | Method::ClosestApproach | Method::None => match scene.model.switch {
+            None => return Ok(()),
+            Some(_) => "`switch`".into(),
+        },
+        other => format!("the method `{}`", other.name()),
+    };
+    Err(ModelError::FabricWith { what })
+}
+
+/// The gas before its disc is inside of closed fabric.
+fn orifices_inside(scene: &Scene, vessel: &Vessel) -> Vec<bool> {
+    let before = |orifice: &Orifice| along(orifice.position, orifice.direction, 1e-3 * orifice.area.sqrt());
+    let inside = |point| vessel.bags.iter().flatten().any(|bag| bag.contains(point));
+    scene.orifices.iter().map(|orifice| inside(before(orifice))).collect()
+}
+
+/// What is inside of an open surface is not known.
+fn refuse_open_chambers(scene: &Scene, vessel: &Vessel) -> Result<(), ModelError> {
+    for chamber in &scene.chambers {
+        if let Some(fabric) = chamber.inside
+            && vessel.bag_of(chamber).is_none()
+        {
+            let (chamber, fabric) = (chamber.name.clone(), scene.fabrics[fabric].name.clone());
+            return Err(ModelError::OpenFabric { chamber, fabric });
+        }
+    }
+    Ok(())
 }
 
 /// What is chosen for a scene with a wish; with the part of the scene that is left where holes are modelled, if that is the better

@@ -49,6 +49,17 @@ pub enum ModelError {
     )]
     #[diagnostic(help("let the side lie in the wall that is to take it along"))]
     SideOfTwo { chamber: String, walls: String },
+    #[error("fabric \"{fabric}\": {problem}")]
+    #[diagnostic(help("see the reference of meshes for what its files hold"))]
+    Fabric { fabric: String, problem: String },
+    #[error("chamber \"{chamber}\" is inside of the fabric \"{fabric}\", whose surface is open")]
+    #[diagnostic(help("close its mesh: each edge is an edge of two triangles; an open sheet has no inside"))]
+    OpenFabric { chamber: String, fabric: String },
+    #[error("{what} is not possible in a scene with [[fabric]]")]
+    #[diagnostic(help(
+        "leave it out; the methods `half-turn`, `closest-approach` and `none` know surfaces that deform"
+    ))]
+    FabricWith { what: String },
     #[error("vent \"{vent}\": no gas lies before its place, or an earlier vent has all of it")]
     #[diagnostic(help("a disc has its centre on the wall, and `face` is a part of it; `chamber` must border on it"))]
     VentNowhere { vent: String },

@@ -6,6 +6,7 @@ pub(super) mod build;
 mod clearances;
 mod contact;
 pub(super) mod error;
+pub(super) mod fabric;
 pub(super) mod facing;
 pub(super) mod flow_only;
 mod fronts;

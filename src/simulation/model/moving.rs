@@ -8,10 +8,11 @@
 //! stay apart.
 
 use super::error::ModelError;
+use super::fabric::Surfaces;
 use crate::gas::{Swept, bends, displacement, turns, velocity};
 use crate::geometry::{Grid, Vessel, region_bounds};
 use crate::plan::MeasuredMotion;
-use crate::scene::{Chamber, Face, MOST_MOTIONS, Motion, Region, Scene};
+use crate::scene::{Chamber, Course, Curve, Face, MOST_MOTIONS, Motion, Region, Scene};
 use crate::subdomain::{GpuMotion, Walls};
 
 /// A chamber may not be squeezed to less than this share of its volume.
@@ -27,6 +28,8 @@ pub struct Moving {
     pub swept: Vec<Swept>,
     /// Of each chamber the motions that its sides go along with: `carried` of `shaders/shared/zones.wgsl`.
     pub carried: Vec<u32>,
+    /// Of surfaces that deform: the times at which they were measured, s, and their fastest node, m/s.
+    deformed: (Vec<f64>, f64),
     /// The corners of all that the walls sweep, m.
     bounds: Option<([f64; 3], [f64; 3])>,
     end_time: f64,
@@ -83,6 +86,7 @@ impl Moving {
             carried: scene.chambers.iter().map(|chamber| carried(chamber, &bodies)).collect::<Result<_, _>>()?,
             bodies,
             swept: Vec::new(),
+            deformed: (Vec::new(), 0.0),
             bounds: Some(bounds),
             end_time: scene.end_time,
         };
@@ -94,6 +98,44 @@ impl Moving {
         }
         moving.refuse_squeezed(scene, &initial)?;
         Ok(moving)
+    }
+
+    /// Takes in what surfaces that deform leave of the volumes of chambers, linear between the moments at which they are measured.
+    ///
+    /// # Errors
+    /// If a chamber is squeezed to nothing.
+    pub fn deform(&mut self, scene: &Scene, vessel: &Vessel, fabric: &Surfaces) -> Result<(), ModelError> {
+        if fabric.is_empty() {
+            return Ok(());
+        }
+        self.bounds = Some(fabric.bounds(self.bounds(vessel)));
+        self.end_time = scene.end_time;
+        if fabric.moments.len() < 2 {
+            return Ok(());
+        }
+        let initial = fabric.measures(0.0);
+        let change = |time: f64| -> Vec<f64> {
+            let now = fabric.measures(time);
+            let grown: Vec<f64> = now.iter().zip(&initial).map(|([now, _], [initial, _])| now - initial).collect();
+            let inside: f64 = scene.chambers.iter().filter_map(|chamber| chamber.inside).map(|bag| grown[bag]).sum();
+            let of = |chamber: &Chamber| chamber.inside.map_or(-inside, |bag| grown[bag]);
+            scene.chambers.iter().map(of).chain(scene.probes.iter().map(|_| 0.0)).collect()
+        };
+        self.swept.push(Swept {
+            // Displaced by a metre a second: volumes are by time.
+            course: Course::Displacement(Curve { points: vec![[0.0, 0.0], [scene.end_time, scene.end_time]] }),
+            at: fabric.moments.clone(),
+            change: fabric.moments.iter().map(|&time| change(time)).collect(),
+        });
+        self.deformed = (fabric.moments.clone(), fabric.fastest());
+        let volumes = vessel.chamber_volumes(&scene.chambers);
+        let probes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
+        self.refuse_squeezed(scene, &volumes.into_iter().chain(probes).collect::<Vec<_>>())
+    }
+
+    /// Whether the volumes of chambers change.
+    pub fn changes_volumes(&self) -> bool {
+        !self.swept.is_empty()
     }
 
     pub fn is_empty(&self) -> bool {
@@ -241,7 +283,8 @@ impl Moving {
     /// Times at which volumes may be largest or smallest, s.
     fn moments(&self) -> Vec<f64> {
         let turns = self.bodies.iter().flat_map(|body| turns(&body.motion.course));
-        turns.filter(|&time| time > 0.0 && time < self.end_time).chain([0.0, self.end_time]).collect()
+        let within = turns.chain(self.deformed.0.iter().copied()).filter(|&time| time > 0.0 && time < self.end_time);
+        within.chain([0.0, self.end_time]).collect()
     }
 
     /// The volumes at a time, s, of zones that have `initial` at the start, m3.
@@ -259,7 +302,7 @@ impl Moving {
 
     /// What the plan must know of it; `initial` are the volumes of the chambers, m3.
     pub fn measured(&self, initial: &[f64]) -> Option<MeasuredMotion> {
-        if self.is_empty() {
+        if !self.changes_volumes() {
             return None;
         }
         let all = |time: f64| self.volumes(initial, time).iter().sum::<f64>();
@@ -273,7 +316,7 @@ impl Moving {
         Some(MeasuredMotion {
             final_gas_volume: all(self.end_time),
             least_share: moments.iter().map(|&time| share(time)).fold(1.0, f64::min),
-            fastest: bends.chain([0.0, self.end_time]).map(fastest).fold(0.0, f64::max),
+            fastest: bends.chain([0.0, self.end_time]).map(fastest).fold(self.deformed.1, f64::max),
         })
     }
 
@@ -304,7 +347,7 @@ impl Moving {
 
     /// The mean volumes over the steps of an interval that are tallied, m3; empty where nothing moves or is tallied.
     pub fn mean_volumes(&self, initial: &[f64], times: impl Iterator<Item = f64>) -> Vec<f64> {
-        if self.is_empty() {
+        if !self.changes_volumes() {
             return Vec::new();
         }
         let mut sum = vec![0.0; initial.len()];

@@ -1,11 +1,11 @@
 //! Where points are.
 
-use crate::geometry::{Vessel, region_contains};
+use crate::geometry::Vessel;
 use crate::scene::Scene;
 
 /// The chamber that a point of the gas belongs to.
 pub fn chamber_of(scene: &Scene, vessel: &Vessel, point: [f64; 3]) -> Option<usize> {
-    let holds = |chamber: &crate::scene::Chamber| chamber.region.as_ref().is_none_or(|r| region_contains(r, point));
+    let holds = |chamber: &crate::scene::Chamber| vessel.is_of(chamber, point);
     if vessel.is_gas(point) { scene.chambers.iter().position(holds) } else { None }
 }
 

@@ -7,14 +7,13 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::gas::{Correction, FillError, Filling, InitialGas};
-use crate::geometry::{region_bounds, region_contains};
+use crate::gas::{Correction, FillError, Filling, InitialGas, Particle};
+use crate::geometry::{Bag, Grid, region_bounds};
 use crate::output::Checkpoint;
 use crate::ranks::{Communicator, RankError};
-use crate::scene::Region;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
-use crate::subdomain::{GpuParticle, Scales};
+use crate::subdomain::{GpuParticle, Scales, StateError};
 
 /// What a rank hands on at once of its share.
 const BATCH: usize = 1 << 14;
@@ -89,7 +88,8 @@ impl Initial {
         with_gas(model, |gas| {
             let corrections = self.0.get_or_init(|| gas.corrections()).as_ref().map_err(FillError::clone)?;
             let scales = Scales::new(&model.plan);
-            let stored = |particle| Ok(GpuParticle::from_host(&particle?, &model.plan.grid, &scales)?);
+            let sided = Sided::new(model);
+            let stored = |particle| Ok(sided.stored(&particle?, &scales)?);
             gas.part(corrections, ids)?.map(stored).collect()
         })
     }
@@ -102,8 +102,29 @@ impl Initial {
 pub fn initial_particles(model: &Model) -> Result<Vec<GpuParticle>, SimulationError> {
     let particles = with_gas(model, |gas| Ok(gas.all()?))?;
     let scales = Scales::new(&model.plan);
-    let stored = particles.iter().map(|particle| GpuParticle::from_host(particle, &model.plan.grid, &scales));
+    let sided = Sided::new(model);
+    let stored = particles.iter().map(|particle| sided.stored(particle, &scales));
     Ok(stored.collect::<Result<_, _>>()?)
+}
+
+/// Tells particles of a start on which side of closed fabric they are.
+struct Sided<'a> {
+    grid: &'a Grid,
+    bags: &'a [Option<Bag>],
+}
+
+impl Sided<'_> {
+    fn new(model: &Model) -> Sided<'_> {
+        Sided { grid: &model.plan.grid, bags: &model.vessel.bags }
+    }
+
+    fn stored(&self, particle: &Particle, scales: &Scales) -> Result<GpuParticle, StateError> {
+        let mut stored = GpuParticle::from_host(particle, self.grid, scales)?;
+        if self.bags.iter().flatten().any(|bag| bag.contains(particle.position)) {
+            stored.tag |= GpuParticle::INSIDE;
+        }
+        Ok(stored)
+    }
 }
 
 /// Finds a place for a particle of each gas in each chamber.
@@ -119,12 +140,9 @@ fn with_gas<T>(
     act: impl FnOnce(&InitialGas<'_>) -> Result<T, SimulationError>,
 ) -> Result<T, SimulationError> {
     let Model { scene, vessel, plan, .. } = model;
-    let holds = |region: &Option<Region>, point| region.as_ref().is_none_or(|region| region_contains(region, point));
     let in_chamber: Vec<Box<dyn Fn([f64; 3]) -> bool>> = (0..scene.chambers.len())
         .map(|index| -> Box<dyn Fn([f64; 3]) -> bool> {
-            Box::new(move |point| {
-                scene.chambers.iter().position(|chamber| holds(&chamber.region, point)) == Some(index)
-            })
+            Box::new(move |point| scene.chambers.iter().position(|chamber| vessel.is_of(chamber, point)) == Some(index))
         })
         .collect();
     let fillings: Vec<Filling<'_>> = scene
@@ -133,7 +151,8 @@ fn with_gas<T>(
         .zip(&plan.chambers)
         .zip(&in_chamber)
         .map(|((asked, planned), inside)| {
-            let (min, max) = asked.region.as_ref().map_or(vessel.bounds, region_bounds);
+            let bag = vessel.bag_of(asked).map(|bag| bag.bounds);
+            let (min, max) = asked.region.as_ref().map(region_bounds).or(bag).unwrap_or(vessel.bounds);
             Filling { counts: &planned.particles, temperature: asked.temperature, min, max, in_chamber: inside }
         })
         .collect();

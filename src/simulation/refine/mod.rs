@@ -54,6 +54,9 @@ pub enum RefineError {
     #[error("the wall `{wall}` moves: the places of children are looked for between walls at rest")]
     #[diagnostic(help("refine a state of a scene without [[motion]]"))]
     Motion { wall: String },
+    #[error("the fabric `{fabric}` deforms: the places of children are looked for between walls at rest")]
+    #[diagnostic(help("refine a state of a scene without [[fabric]]"))]
+    Fabric { fabric: String },
     #[error("{times} times the {particles} particles of the run are more than the {limit} that an id can name")]
     TooMany { times: u64, particles: u64, limit: u64 },
     #[error("the refined scene cannot be planned: {0}")]
@@ -91,6 +94,9 @@ impl From<InflowStateError> for RefineError {
 pub fn refine(parent: &Model, state: &RunState, particles: &[GpuParticle], times: u64) -> Result<Refined, RefineError> {
     if let Some(motion) = parent.scene.motions.first() {
         return Err(RefineError::Motion { wall: parent.scene.walls[motion.wall].name.clone() });
+    }
+    if let Some(fabric) = parent.scene.fabrics.first() {
+        return Err(RefineError::Fabric { fabric: fabric.name.clone() });
     }
     if let Some(vent) = parent.scene.vents.first() {
         return Err(RefineError::Vents { vent: vent.name.clone() });

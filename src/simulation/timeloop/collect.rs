@@ -196,6 +196,11 @@ impl Simulation<'_> {
         for (state, [moved, velocity]) in row.motions.iter_mut().zip(self.model.moving.courses(row.time)) {
             (state.displacement, state.velocity) = (moved, velocity);
         }
+        let measures = if row.fabrics.is_empty() { Vec::new() } else { self.model.fabric.measures(row.time) };
+        for ((state, surface), [volume, area]) in row.fabrics.iter_mut().zip(&self.model.fabric.all).zip(measures) {
+            state.pressure = state.pressure.map(|force| force / area);
+            (state.volume, state.area) = (if surface.closed { volume } else { 0.0 }, area);
+        }
         let told = self.books.guards.row(&row);
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
         while self.progress.next_row <= self.progress.read_until * (1.0 + 1e-9) {

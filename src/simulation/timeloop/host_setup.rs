@@ -7,11 +7,12 @@ use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::patches::patches;
 use crate::simulation::parallel::initial_particles::find_room;
-use crate::subdomain::{CellTable, GpuZone, Patches, Walls, zone_of};
+use crate::subdomain::{CellTable, Fabric, GpuZone, Patches, Walls, zone_inside, zone_of};
 
 /// The part of a set-up that the host makes alone.
 pub struct HostSetup {
     pub walls: Walls,
+    pub fabric: Fabric,
     /// Of the method `cell`.
     pub cells: CellTable,
     pub zones: Vec<GpuZone>,
@@ -45,13 +46,15 @@ impl HostSetup {
         };
         let zones = zones(model);
         let counted = Patches {
-            surfaces: patches.len(),
+            surfaces: patches.len() + 2 * model.fabric.all.len(),
             surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
+            fabrics: model.fabric.all.len(),
         };
         Ok(HostSetup {
             walls,
+            fabric: model.fabric.for_device(&plan.grid, model.moving.count(), patches.len()),
             cells,
             zones,
             patches: counted,
@@ -104,7 +107,10 @@ fn zones(model: &Model) -> Vec<GpuZone> {
     let grid = &model.plan.grid;
     let chambers = model.scene.chambers.iter().enumerate().map(|(index, chamber)| GpuZone {
         carried: model.moving.carried.get(index).copied().unwrap_or(0),
-        ..zone_of(chamber.region.as_ref(), grid)
+        ..match chamber.inside {
+            Some(fabric) => zone_inside(model.fabric.swept(fabric), grid),
+            None => zone_of(chamber.region.as_ref(), grid),
+        }
     });
     let probes = model.scene.probes.iter().map(|probe| zone_of(Some(&probe.region), grid));
     std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
@@ -142,6 +148,8 @@ fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -
         vents: scene.vents.len(),
         surface_models: surface_models.placed.len(),
         motions: moving.count(),
+        fabrics: model.fabric.all.len(),
+        patches: patches.len(),
         volumes: plan.chambers.iter().map(|chamber| chamber.volume).chain(probe_volumes.iter().copied()).collect(),
         chambers: scene.chambers.len(),
         surfaces: surfaces.collect(),

@@ -11,11 +11,11 @@ use super::observer::{Moment, Observer, Outcome};
 use super::simulation::Simulation;
 use super::submit::Machine;
 use crate::gpu::Recording;
-use crate::simulation::accounting::audit::{AtEnd, count_outside};
+use crate::simulation::accounting::audit::{AtEnd, count_outside, count_passed};
 use crate::simulation::control::interval::{Deal, Interval, Span};
 use crate::simulation::error::SimulationError;
 use crate::simulation::parallel::decomposition::Histogram;
-use crate::subdomain::Tallies;
+use crate::subdomain::{GpuParticle, Tallies};
 
 /// Intervals under way at once. The step size of an interval is that which the state AHEAD intervals before
 /// asked for, whether it could have been read sooner or not: so nothing that reads early changes a result.
@@ -111,10 +111,12 @@ impl Simulation<'_> {
         let vessel = self.model.vessel_at(self.control.clock.time());
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
+        let passed = self.passed(&own)?;
         let closing = AtEnd {
             tallies: &at_end,
             inflow: &self.inflow,
             outside,
+            passed,
             averages: &self.books.averages,
             surface_states: &self.control.surfaces,
         };
@@ -154,6 +156,10 @@ impl Simulation<'_> {
         }
         (self.requests.wish, self.requests.agreed) = (Request::None, Request::None);
         let own = self.subdomain.particles(self.device)?;
+        if let Some(passed) = self.passed(&own)?.filter(|&passed| passed > 0) {
+            let what = format!("{passed} particles are on the wrong side of closed fabric");
+            return Err(SimulationError::Lost { time: self.control.clock.time(), what });
+        }
         let entered = self.inflow.entered_by_gas().iter().sum::<u64>();
         observer.checkpoint(&Moment {
             step: self.control.clock.steps,
@@ -174,6 +180,16 @@ impl Simulation<'_> {
     /// Whether the next interval follows what was read.
     fn follows(&self) -> bool {
         self.submissions.submitted >= AHEAD
+    }
+
+    /// Particles of all ranks on the wrong side of closed fabric, if there is any. Collective.
+    fn passed(&self, own: &[GpuParticle]) -> Result<Option<u64>, SimulationError> {
+        let fabric = &self.model.fabric;
+        if !fabric.all.iter().any(|surface| surface.closed) {
+            return Ok(None);
+        }
+        let bags = fabric.bags(self.control.clock.time())?;
+        Ok(Some(self.ranks.comm().sum(vec![count_passed(&bags, &self.model.plan, own)])?[0]))
     }
 
     /// Tallies of the particles as they are, of all ranks.
@@ -227,15 +243,24 @@ impl Simulation<'_> {
             None => Deal::ById { rank: self.ranks.comm().rank() as u32, ranks: self.ranks.comm().size() as u32 },
             Some(_) => Deal::All,
         };
-        let mut interval = Interval::new(plan, &mut self.inflow, &Span { start, end, first_step, steps }, deal)?;
+        let mut interval = Interval::new(
+            plan,
+            &mut self.inflow,
+            &Span { start, end, first_step, steps },
+            deal,
+            &self.model.orifices_inside,
+        )?;
         interval.tables = self.control.surfaces.tables(start, end);
         interval.tables.cross_section_shares = self.control.ladder.shares().to_vec();
         interval.tables.halvings = self.control.ladder.halvings(level);
         let moving = &self.model.moving;
         if !moving.is_empty() {
             interval.tables.motions = moving.steps(&plan.grid, start, interval.dt, steps);
+        }
+        if moving.changes_volumes() {
             interval.volumes = moving.mean_volumes(self.books.averages.initial_volumes(), interval.tallied_at(start));
         }
+        interval.tables.nodes = self.model.fabric.steps(&plan.grid, start, interval.dt, steps);
         self.submit(interval)
     }
 

@@ -106,10 +106,11 @@ impl Setup {
         if plan.method == Method::ControlVolume {
             return Err(SimulationError::NoParticles);
         }
-        let HostSetup { walls, cells, zones, patches, layout, volumes } = HostSetup::new(model)?;
+        let HostSetup { walls, fabric, cells, zones, patches, layout, volumes } = HostSetup::new(model)?;
         let input = DomainInput {
             plan,
             walls: &walls,
+            fabric: &fabric,
             cells: &cells,
             zones: &zones,
             patches,

@@ -25,6 +25,7 @@ pub fn step(
     sampling: Sampling,
 ) -> Result<(), SimulationError> {
     subdomain.reset(rec);
+    subdomain.list_fabric(rec, slot);
     subdomain.bin(rec, slot);
     exchange.particles(subdomain, rec, slot)?;
     subdomain.scan(rec, slot);

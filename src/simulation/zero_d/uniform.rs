@@ -148,6 +148,7 @@ fn stretch(
             walls: walls(model, &heated, window, [lost_before, lost_after], last),
             vents: vents(window, [lost_before, lost_after], last),
             motions,
+            fabrics: Vec::new(),
         })?;
         observer.progress(window[1], row as u64 + 1, 0);
     }

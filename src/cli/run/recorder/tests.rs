@@ -29,6 +29,7 @@ fn row(model: &Model, k: usize) -> Row {
         walls: Vec::new(),
         vents: Vec::new(),
         motions: Vec::new(),
+        fabrics: Vec::new(),
     }
 }
 

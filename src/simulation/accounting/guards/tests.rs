@@ -152,6 +152,7 @@ fn few_particles_at_openings_and_probes_are_told() {
         walls: Vec::new(),
         vents: Vec::new(),
         motions: Vec::new(),
+        fabrics: Vec::new(),
     };
     let mut guards = Guards::new(&model.scene, plan, Vec::new());
     assert!(!plan.openings.is_empty() && !model.scene.probes.is_empty());

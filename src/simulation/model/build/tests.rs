@@ -135,6 +135,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
+            fabrics: 0,
         };
         let features = Features::of(&model.plan, patches, false, false);
         let flags = [

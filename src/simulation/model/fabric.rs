@@ -1,0 +1,267 @@
+//! The surfaces that deform: their triangles, where their nodes are at a time, and what is inside of them.
+//!
+//! Places of nodes are a function of the clock, made on the host in f64: the same on any number of ranks, and nothing that a
+//! checkpoint must remember. In a step each node has one velocity, that which takes it from its place at the start to that at the end.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::error::ModelError;
+use crate::geometry::{Bag, GeometryError, Grid, NodeFrames, TriangleMesh};
+use crate::scene::{Dimension, Scene, UnitSystem};
+use crate::subdomain::{Fabric, GpuSheet};
+
+/// A mirror.
+const NOBODY: u32 = u32::MAX;
+/// Moments of a run at which edges and volumes are measured, beside those of the frames.
+const MOMENTS: u32 = 64;
+/// Frames of a run at which they are measured, at most.
+const MOST_FRAMES: usize = 4096;
+/// m/s: nodes that are faster have jumped.
+const FASTEST_NODE: f64 = 3000.0;
+
+/// Where all nodes are at a time, s, in m.
+type Places = dyn Fn(f64) -> Vec<[f64; 3]> + Send + Sync;
+
+/// One surface of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    pub name: String,
+    /// Its triangles are a stretch of all.
+    pub triangles: Range<usize>,
+    /// It encloses a space; its triangles are counter-clockwise seen from outside.
+    pub closed: bool,
+}
+
+/// How the nodes of all surfaces move.
+#[derive(Clone)]
+pub struct Course {
+    pub places: Arc<Places>,
+    /// When the velocities of nodes change, s; empty of nodes that rest.
+    pub bends: Vec<f64>,
+    /// m/s.
+    pub fastest: f64,
+}
+
+/// All surfaces that deform.
+#[derive(Clone, Default)]
+pub struct Surfaces {
+    pub all: Vec<Surface>,
+    pub triangles: Vec<[u32; 3]>,
+    course: Option<Course>,
+    /// Times in order at which surfaces are measured, s.
+    pub moments: Vec<f64>,
+    longest_edge: f64,
+    /// The corners of what each sweeps in the run, m.
+    swept: Vec<[DVec3; 2]>,
+    /// What is doubtful of the files.
+    pub notes: Vec<String>,
+}
+
+impl Surfaces {
+    /// Of a run that ends at a time, s.
+    pub fn new(all: Vec<Surface>, triangles: Vec<[u32; 3]>, course: Course, end: f64) -> Surfaces {
+        let even = (0..=MOMENTS).map(|k| end * f64::from(k) / f64::from(MOMENTS));
+        let within = course.bends.iter().copied().filter(|&time| 0.0 < time && time < end).take(MOST_FRAMES);
+        let mut moments: Vec<f64> = if course.bends.is_empty() { vec![0.0] } else { even.chain(within).collect() };
+        moments.sort_by(f64::total_cmp);
+        moments.dedup();
+        let mut longest_edge: f64 = 0.0;
+        let mut swept = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; all.len()];
+        for &moment in &moments {
+            let nodes: Vec<DVec3> = (course.places)(moment).into_iter().map(DVec3::from).collect();
+            let edge = |[a, b]: [u32; 2]| nodes[a as usize].distance(nodes[b as usize]);
+            let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(edge);
+            longest_edge = edges.fold(longest_edge, f64::max);
+            for (swept, surface) in swept.iter_mut().zip(&all) {
+                let corners = triangles[surface.triangles.clone()].iter().flatten().map(|&node| nodes[node as usize]);
+                *swept = corners.fold(*swept, |[low, high], corner| [low.min(corner), high.max(corner)]);
+            }
+        }
+        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, notes: Vec::new() }
+    }
+
+    /// Those of a scene; their files are read here.
+    ///
+    /// # Errors
+    /// If a file cannot be read, is of another mesh, or has nodes that jump.
+    pub fn of(scene: &Scene) -> Result<Surfaces, ModelError> {
+        if scene.fabrics.is_empty() {
+            return Ok(Surfaces::default());
+        }
+        let (mut all, mut triangles, mut frames, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut first_node = 0;
+        for fabric in &scene.fabrics {
+            let read = read(fabric, scene.units)?;
+            notes.extend(read.notes);
+            let first = triangles.len();
+            triangles.extend(read.mesh.triangles.iter().map(|corners| corners.map(|node| node + first_node)));
+            first_node += read.mesh.nodes.len() as u32;
+            all.push(Surface {
+                name: fabric.name.clone(),
+                triangles: first..triangles.len(),
+                closed: read.mesh.is_closed(),
+            });
+            frames.push(read.frames);
+        }
+        let mut bends: Vec<f64> =
+            frames.iter().filter(|own| own.frame_count() > 1).flat_map(|own| own.times().to_vec()).collect();
+        bends.sort_by(f64::total_cmp);
+        bends.dedup();
+        let fastest = frames.iter().map(NodeFrames::top_speed).fold(0.0, f64::max);
+        let places = move |time: f64| frames.iter().flat_map(|own| own.at(time)).collect();
+        let course = Course { places: Arc::new(places), bends, fastest };
+        Ok(Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) })
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.course.is_none()
+    }
+
+    /// The speed of the fastest node, m/s.
+    pub fn fastest(&self) -> f64 {
+        self.course.as_ref().map_or(0.0, |course| course.fastest)
+    }
+
+    /// m.
+    pub fn places(&self, time: f64) -> Vec<[f64; 3]> {
+        self.course.as_ref().map_or_else(Vec::new, |course| (course.places)(time))
+    }
+
+    /// The corners of a box and of all that the surfaces sweep, m.
+    pub fn bounds(&self, (low, high): ([f64; 3], [f64; 3])) -> ([f64; 3], [f64; 3]) {
+        let (low, high) = self
+            .swept
+            .iter()
+            .fold((DVec3::from(low), DVec3::from(high)), |(low, high), own| (low.min(own[0]), high.max(own[1])));
+        (low.to_array(), high.to_array())
+    }
+
+    /// The corners of what one of them sweeps in the run, m.
+    pub fn swept(&self, index: usize) -> ([f64; 3], [f64; 3]) {
+        (self.swept[index][0].to_array(), self.swept[index][1].to_array())
+    }
+
+    /// Particles know whether they are inside of closed fabric, and by their places of which.
+    ///
+    /// # Errors
+    /// If two closed surfaces pass through places near each other.
+    pub fn refuse_neighbours(&self) -> Result<(), ModelError> {
+        let closed: Vec<usize> = (0..self.all.len()).filter(|&index| self.all[index].closed).collect();
+        for (k, &one) in closed.iter().enumerate() {
+            for &other in &closed[k + 1..] {
+                let ([low, high], [other_low, other_high]) = (self.swept[one], self.swept[other]);
+                if low.cmple(other_high).all() && other_low.cmple(high).all() {
+                    let problem = format!(
+                        "the boxes around what it and fabric \"{}\" sweep overlap: closed fabrics are told apart by these",
+                        self.all[other].name
+                    );
+                    return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What the device knows of them; their works are tallied behind those of so many walls that move, the sides of each, the outer
+    /// and the inner, behind so many patches of walls.
+    pub fn for_device(&self, grid: &Grid, motions: usize, patches: usize) -> Fabric {
+        let mut sheets = Vec::with_capacity(self.triangles.len());
+        for (index, surface) in self.all.iter().enumerate() {
+            sheets.extend(self.triangles[surface.triangles.clone()].iter().map(|&[a, b, c]| GpuSheet {
+                a,
+                b,
+                c,
+                closed: u32::from(surface.closed),
+                surface: (patches + 2 * index) as u32,
+                surface_model: NOBODY,
+                work: (motions + index) as u32,
+                pad: 0,
+            }));
+        }
+        Fabric { nodes: self.places(0.0).len(), sheets, gap: Fabric::gap_of(grid, self.longest_edge) }
+    }
+
+    /// Where the nodes are at the start of each of the steps of an interval and at the end of the last, quanta.
+    pub fn steps(&self, grid: &Grid, start: f64, dt: f64, steps: u32) -> Vec<[u32; 4]> {
+        let quanta = |place: f64, axis: usize| ((place - grid.origin[axis]) / grid.quantum()).round() as i64 as u32;
+        let moments = if self.is_empty() { 0 } else { steps + 1 };
+        let nodes = (0..moments).flat_map(|k| self.places(start + f64::from(k) * dt));
+        nodes.map(|place| [quanta(place[0], 0), quanta(place[1], 1), quanta(place[2], 2), 0]).collect()
+    }
+
+    /// The volume that each surface encloses at a time, m3 (of an open one it has no meaning), and its area, m2.
+    pub fn measures(&self, time: f64) -> Vec<[f64; 2]> {
+        let nodes = self.places(time);
+        let corner = |node: u32| DVec3::from(nodes[node as usize]);
+        let of = |surface: &Surface| {
+            let own = &self.triangles[surface.triangles.clone()];
+            // Seen from one of its nodes, so that a surface far from the origin loses no digits.
+            let origin = own.first().map_or(DVec3::ZERO, |triangle| corner(triangle[0]));
+            let [six_volumes, two_areas] = own.iter().fold([0.0, 0.0], |[volume, area], &[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(|node| corner(node) - origin);
+                [volume + a.dot(b.cross(c)), area + (b - a).cross(c - a).length()]
+            });
+            [six_volumes / 6.0, 0.5 * two_areas]
+        };
+        self.all.iter().map(of).collect()
+    }
+
+    /// The closed surfaces at a time, s; none in place of an open one.
+    ///
+    /// # Errors
+    /// If one is not closed after all.
+    pub fn bags(&self, time: f64) -> Result<Vec<Option<Bag>>, GeometryError> {
+        let nodes = self.places(time);
+        let bag = |surface: &Surface| {
+            let own = &self.triangles[surface.triangles.clone()];
+            Bag::new(&nodes, own, &format!("fabric `{}`", surface.name))
+        };
+        self.all.iter().map(|surface| Ok(if surface.closed { Some(bag(surface)?) } else { None })).collect()
+    }
+}
+
+/// A fabric's files, SI.
+struct Read {
+    mesh: TriangleMesh,
+    frames: NodeFrames,
+    notes: Vec<String>,
+}
+
+fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
+    let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
+    let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
+    mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);
+    if mesh.triangles.is_empty() {
+        return Err(refused(format!("{} has no triangle", fabric.mesh.display())));
+    }
+    if mesh.is_closed() && mesh.volume() < 0.0 {
+        mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    let frames = match &fabric.motion {
+        None => NodeFrames::new(vec![0.0], vec![mesh.nodes.clone()], Vec::new())
+            .map_err(|error| refused(error.to_string()))?,
+        Some(path) => {
+            let read = NodeFrames::read(path).map_err(|error| refused(error.to_string()))?;
+            let told = |error: &dyn std::fmt::Display| refused(format!("{}: {error}", path.display()));
+            read.scaled(fabric.scale, units.factor(Dimension::Time)).map_err(|error| told(&error))?
+        }
+    };
+    if frames.node_count() != mesh.nodes.len() {
+        return Err(refused(format!(
+            "its motion has {} nodes, and its mesh {}: they must be those of one mesh, in one order",
+            frames.node_count(),
+            mesh.nodes.len()
+        )));
+    }
+    let mut notes = Vec::new();
+    for note in frames.notes(&mesh, FASTEST_NODE).map_err(|error| refused(error.to_string()))? {
+        if matches!(note, crate::geometry::FrameNote::Jump { .. }) {
+            return Err(refused(note.told(units)));
+        }
+        notes.push(format!("fabric `{}`: {}", fabric.name, note.told(units)));
+    }
+    Ok(Read { mesh, frames, notes })
+}

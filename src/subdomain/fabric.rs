@@ -1,0 +1,98 @@
+//! Surfaces that deform as the device sees them: triangles, and in each step of an interval where their nodes are.
+//!
+//! Nodes lie on the lattice of positions and fly straight within a step. Which triangles may touch a cell is found on the device in
+//! each step (`shaders/list_fabric.wgsl`); the host knows how much room that takes at most, by the same boxes of integers.
+
+use crate::geometry::Grid;
+use crate::gpu::{Device, GpuError};
+
+use super::layout::GpuSheet;
+
+/// `SHEET_MARGIN` of `shaders/shared/fabric.wgsl`, in gaps.
+const SHEET_MARGIN: f64 = 16.0;
+/// How near a flight comes to a sheet, as a share of the longest edge of a triangle and a cell: f32 sums of distances of that size err
+/// by a tenth of it.
+const GAP: f64 = 2e-6;
+/// And at least, in quanta of positions.
+const LEAST_GAP: f64 = 32.0;
+/// Words of `fabric_cells` before those of the cells.
+const BEFORE_CELLS: u64 = 1;
+const ENTRY_WORDS: u64 = 2;
+
+/// The surfaces that deform.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fabric {
+    pub nodes: usize,
+    pub sheets: Vec<GpuSheet>,
+    /// How near a flight comes to a sheet, m.
+    pub gap: f64,
+}
+
+impl Fabric {
+    /// The gap of sheets whose longest edge is ever so long, m.
+    pub fn gap_of(grid: &Grid, longest_edge: f64) -> f64 {
+        (GAP * (longest_edge + 2.0 * grid.cell)).max(LEAST_GAP * grid.quantum())
+    }
+}
+
+/// Where the nodes are, and which triangles are in which cells.
+pub struct FabricBuffers {
+    pub nodes: wgpu::Buffer,
+    pub cells: wgpu::Buffer,
+    /// Entries of lists that there is room for.
+    pub room: u64,
+}
+
+/// The words of `fabric_cells` before its entries.
+pub fn words_of_cells(grid: &Grid) -> u64 {
+    let cells = grid.cell_count() as u64;
+    BEFORE_CELLS + cells + cells.div_ceil(32)
+}
+
+impl FabricBuffers {
+    /// # Errors
+    /// If the device has no memory for it.
+    pub fn new(
+        device: &Device,
+        grid: &Grid,
+        fabric: &Fabric,
+        steps: u32,
+        room: u64,
+    ) -> Result<FabricBuffers, GpuError> {
+        let words = if fabric.nodes > 0 { words_of_cells(grid) + ENTRY_WORDS * room } else { 1 };
+        Ok(FabricBuffers {
+            nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
+            cells: device.storage::<u32>("fabric_cells", words)?,
+            room,
+        })
+    }
+}
+
+/// The most entries that lists of a step have: `nodes` are the places of all nodes, one moment of an interval after the other.
+pub fn most_entries(grid: &Grid, fabric: &Fabric, nodes: &[[u32; 4]]) -> u64 {
+    let margin = (SHEET_MARGIN * fabric.gap / grid.quantum()).ceil() as i64 + 1;
+    let cells_along = |low: i64, high: i64, axis: usize| {
+        let last = i64::from(grid.cells[axis]) - 1;
+        let cell = |place: i64| (place >> grid.cell_bits).clamp(0, last);
+        (cell(high + margin) - cell(low - margin) + 1) as u64
+    };
+    let moments = nodes.len() / fabric.nodes.max(1);
+    let of_step = |step: usize| -> u64 {
+        let at = |moment: usize, node: u32| nodes[(step + moment) * fabric.nodes + node as usize];
+        let of_sheet = |sheet: &GpuSheet| -> u64 {
+            let corners = [sheet.a, sheet.b, sheet.c].map(|node| [at(0, node), at(1, node)]);
+            (0..3)
+                .map(|axis| {
+                    // (Below the origin a place wraps.)
+                    let places = || {
+                        corners.iter().flatten().map(|place| i64::from(place[axis].wrapping_add(1 << 30)) - (1 << 30))
+                    };
+                    let [low, high] = [places().min(), places().max()].map(Option::unwrap_or_default);
+                    cells_along(low, high, axis)
+                })
+                .product()
+        };
+        fabric.sheets.iter().map(of_sheet).sum()
+    };
+    (0..moments.saturating_sub(1)).map(of_step).max().unwrap_or(0)
+}

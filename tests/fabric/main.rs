@@ -1,0 +1,11 @@
+//! Gas beside fabric whose nodes are told where to be: nothing passes it, and what it does to the gas is in the account.
+
+#[path = "../whole_run/mod.rs"]
+#[allow(dead_code, reason = "its scenes are all in files of their own")]
+mod whole_run;
+
+mod bags;
+mod paddle;
+mod refused;
+mod scenes;
+mod sheets;
