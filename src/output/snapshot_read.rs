@@ -136,7 +136,7 @@ impl SnapshotSurfaces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{ParticleRow, SnapshotWriter};
+    use crate::output::{ParticleRow, SnapshotWriter, TriangleSet};
 
     fn row(id: u32) -> ParticleRow {
         let x = f64::from(id);
@@ -160,7 +160,8 @@ mod tests {
         writer.write(0.0, &[]).unwrap();
         writer.write_among(2.5e-3, &rows, Some(&[0, 1, 1, 0, 2])).unwrap();
         let (vertices, triangles) = ([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]], [[0, 1, 2], [2, 1, 0]]);
-        writer.write_walls(&vertices, &triangles, &[0, 1], &names).unwrap();
+        let walls = TriangleSet { vertices: &vertices, triangles: &triangles, owners: &[0, 1], names: &names };
+        writer.write_walls(walls).unwrap();
 
         let list = snapshots_of(dir.path()).unwrap();
         assert_eq!(list.iter().map(|entry| entry.time).collect::<Vec<_>>(), [0.0, 2.5e-3]);

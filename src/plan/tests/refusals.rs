@@ -72,8 +72,8 @@ fn what_cannot_be_planned_is_refused() {
     let EmptyChamber { needed, .. } = &empty else { panic!("{empty}") };
     let needed = *needed;
     assert!(planned(|scene, _| scene.model.particles = Some(needed)).is_ok(), "the help's number must do");
-    assert!(matches!(refused(&|s, _| s.model.particles = Some(1 << 28)), TooManyParticles { .. }));
-    assert!(planned(|s, _| s.model.particles = Some((1 << 28) - 10)).is_ok());
+    assert!(matches!(refused(&|s, _| s.model.particles = Some(1 << 27)), TooManyParticles { .. }));
+    assert!(planned(|s, _| s.model.particles = Some((1 << 27) - 10)).is_ok());
     assert!(matches!(refused(&|s, _| s.model.diameter = Some(1e-6)), Grid(_)));
     let refined = |s: &mut Scene, _: &mut Measured| (s.model.diameter, s.model.time_step) = (Some(1e-4), Some(1e-8));
     assert!(matches!(refused(&refined), TooManyCells { .. }));
