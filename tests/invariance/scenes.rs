@@ -206,7 +206,7 @@ pub fn pistons() -> Model {
 /// A bag that is shaken, with another pressure inside, and gas that flows into it.
 pub fn shaken_bag(method: Method) -> Model {
     let folder = tempfile::TempDir::new().expect("a folder");
-    let mesh = MeshShape::Cushion { radius: 0.04, rings: 4, gap: 0.03 }.mesh([0.05, 0.05, 0.04]).expect("a cushion");
+    let mesh = MeshShape::Cushion { radius: 0.04, rings: 4, gap: 0.018 }.mesh([0.05, 0.05, 0.04]).expect("a cushion");
     let shake = NodeMotion::Shake { speed: 60.0, amplitude: Some(1.5e-3), seed: 3 };
     let frames = shake.frames(&mesh, 25, 3e-4).expect("frames");
     mesh.write(&folder.path().join("bag.obj"), 1.0).expect("a mesh file");
