@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(named(1.627), "1.7 times the particles");
         assert_eq!(named(2.0), "2 times the particles");
         assert_eq!(named(1234.3), "1300 times the particles");
-        assert!(more_particles(3e4, 1e4).is_none() && more_particles(2e4, 1e4).is_some());
+        assert!(more_particles(1.5e4, 1e4).is_none() && more_particles(1e4, 1e4).is_some());
     }
 
     /// Gas that rounds to no particle is warned of, by chamber and by orifice, with a number of particles that do; so is an

@@ -16,6 +16,7 @@ mod collide;
 mod crowd;
 mod devices;
 mod exchange;
+mod fabric;
 mod fly;
 mod half_turn;
 mod halo;
@@ -67,6 +68,7 @@ fn every_kernel_has_its_test() {
         "fill_updates",
         "half_turn",
         "half_turn_cut",
+        "list_fabric",
         "list_ids",
         "lost",
         "match_pairs",

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use corpuscle::gpu::{Kernel, KernelVariant, Recording};
 use corpuscle::subdomain::{
-    GpuFlight, GpuGas, GpuMotion, GpuStep, MOTION_ENTRIES, registry, runtime_constants, shader, share_table,
+    GpuFlight, GpuGas, GpuMotion, GpuSheet, GpuStep, MOTION_ENTRIES, registry, runtime_constants, shader, share_table,
 };
 
 pub use crate::devices::device;
@@ -122,6 +122,10 @@ impl Rig {
         rig.put("triangles", &world.walls.triangles);
         rig.put("cell_class", &world.walls.class);
         rig.put("parting", &world.walls.parting);
+        // No fabric, unless a test has some.
+        rig.put("nodes", &[0u32; 4]);
+        rig.put("fabric", &[GpuSheet::default()]);
+        rig.put("fabric_cells", &[0u32; 4]);
         rig.put("counters", &[0u32; COUNTER_WORDS]);
         rig.put("stalled", &[0u32; STALLED_PARTICLES + 1]);
         rig.put("step_state", &[0u32; INTERVAL_STEPS + 1]);
