@@ -114,7 +114,7 @@ fn coarser(vertices: &[[f64; 3]], triangles: &[[u32; 3]], walls: &[u32]) -> Mesh
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::SnapshotWriter;
+    use crate::output::{SnapshotWriter, TriangleSet};
 
     /// A square of n x n squares, each of two triangles.
     fn square(n: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
@@ -135,7 +135,8 @@ mod tests {
         let (vertices, triangles) = square(n);
         let walls: Vec<u32> = (0..triangles.len()).map(|k| u32::from(k > triangles.len() / 2)).collect();
         let names = ["left", "right"].map(str::to_owned);
-        SnapshotWriter::create(dir.path()).unwrap().write_walls(&vertices, &triangles, &walls, &names).unwrap();
+        let set = TriangleSet { vertices: &vertices, triangles: &triangles, owners: &walls, names: &names };
+        SnapshotWriter::create(dir.path()).unwrap().write_walls(set).unwrap();
         Walls::read(dir.path()).unwrap()
     }
 
