@@ -258,7 +258,7 @@ fn what_cannot_be_refined_is_refused_with_the_reason() {
     }
     for times in [1 << 20, u64::MAX] {
         let error = fails(&cut.particles, times);
-        assert!(matches!(error, RefineError::TooMany { .. }) && error.to_string().contains("268435455"), "{error}");
+        assert!(matches!(error, RefineError::TooMany { .. }) && error.to_string().contains("134217727"), "{error}");
     }
     let error = fails(&cut.particles[1..], 2);
     assert!(matches!(error, RefineError::Particles { .. }), "{error}");
