@@ -5,11 +5,12 @@
 // A cell is touched if it overlaps the box around the triangle at the start and at the end, and lies as near to the triangle's plane as its
 // corners come in the step. More cells than need be change nothing: who finds a triangle there does not hit it.
 //
-// Reads `nodes` and `fabric`; writes `fabric_cells`, which the host has cleared. One thread per triangle. The order of a cell's entries
+// Reads `nodes` and `fabric`; writes `fabric_planes`, and `fabric_cells`, which the host has cleared. One thread per triangle. The order of a cell's entries
 // is that of the threads; of several hits the earliest counts, ties by triangle.
 
 var<uniform> step: Step;
 var<storage, read_write> fabric_cells: array<atomic<u32>>;
+var<storage, read_write> fabric_planes: array<vec4<f32>>;
 
 // The first and the last cell of a box, m around it included.
 struct Reach {
@@ -84,8 +85,11 @@ fn list_fabric(thread: Thread) {
     let normal = cross(between(origin, node_before(sheet.b)), between(origin, node_before(sheet.c)));
     let size = length(normal);
     let n = select(normal / size, vec3<f32>(0.0), size == 0.0);
+    let away = farthest + SHEET_MARGIN * SHEET_GAP * QUANTA;
+    // (Of a triangle without area nothing is left out.)
+    fabric_planes[triangle] = vec4<f32>(n, select(away * QUANTUM, 1e30, size == 0.0));
     // From the plane at the start to where a cell's middle may be, quanta; the last share is for rounding.
-    let slab = 0.5 * edge * (abs(n.x) + abs(n.y) + abs(n.z)) * 1.001 + farthest + SHEET_MARGIN * SHEET_GAP * QUANTA;
+    let slab = 0.5 * edge * (abs(n.x) + abs(n.y) + abs(n.z)) * 1.001 + away;
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             for (var x = cells.low.x; x <= cells.high.x; x++) {

@@ -10,6 +10,8 @@
 // edges by SHEET_REACH gaps, over the sine of the flight's angle to them. Of several hits the earliest counts, ties by triangle.
 
 var<storage, read> fabric_cells: array<u32>;
+// Of each triangle its unit normal at the start of the step, and how far from that plane it comes in the step, m (list_fabric.wgsl).
+var<storage, read> fabric_planes: array<vec4<f32>>;
 
 // In place of a triangle's number: that of fabric.
 const OF_FABRIC: u32 = 0x80000000;
@@ -29,6 +31,14 @@ struct OnSheet {
     normal: vec3<f32>,
     weights: vec3<f32>,
     within: bool,
+}
+
+// Whether a flight, of which two points are given that it flies between, stays on one side of all that a triangle sweeps in the step.
+fn stays_off(triangle: u32, node: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
+    let plane = fabric_planes[triangle];
+    let corner = node_before(node);
+    let ends = vec2<f32>(dot(plane.xyz, between(corner, p)), dot(plane.xyz, between(corner, q)));
+    return min(ends.x, ends.y) > plane.w || max(ends.x, ends.y) < -plane.w;
 }
 
 // How far a node comes in the step, m.

@@ -250,8 +250,20 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32, inside: bool) ->
     return hit;
 }
 
+// Takes a triangle of fabric into account.
+fn meet_sheet(hit: ptr<function, Hit>, triangle: u32, sheet: Sheet, corners: Corners, times: vec2<f32>, inside: bool) {
+    let met = meeting(sheet, corners, inside);
+    let time = times.x + met * (times.y - times.x);
+    let index = OF_FABRIC | triangle;
+    if (met <= 1.0 && (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle))) {
+        (*hit).time = time;
+        (*hit).triangle = index;
+    }
+}
+
 // Takes the fabric in some cells into account; the flight is at `from_point` at the first of two times, and ends at the second.
 fn first_sheet(hit: ptr<function, Hit>, cells: Cells, from_point: vec3<u32>, v: vec3<f32>, times: vec2<f32>, inside: bool) {
+    let to_point = shifted(from_point, v, times.y - times.x);
     // bench: plane of cells
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         // bench: row of cells
@@ -262,14 +274,8 @@ fn first_sheet(hit: ptr<function, Hit>, cells: Cells, from_point: vec3<u32>, v: 
                 while (next != 0u) {
                     let entry = fabric_entry(next);
                     let sheet = fabric[entry.x];
-                    let met = meeting(sheet, corners_of(sheet, from_point, v, times.x, times.y), inside);
-                    if (met <= 1.0) {
-                        let time = times.x + met * (times.y - times.x);
-                        let index = OF_FABRIC | entry.x;
-                        if (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle)) {
-                            (*hit).time = time;
-                            (*hit).triangle = index;
-                        }
+                    if (!stays_off(entry.x, sheet.a, from_point, to_point)) {
+                        meet_sheet(hit, entry.x, sheet, corners_of(sheet, from_point, v, times.x, times.y), times, inside);
                     }
                     next = entry.y;
                 }
@@ -295,14 +301,15 @@ fn passes_fabric(p: vec3<u32>, q: vec3<u32>) -> bool {
 }
 
 // Whether fabric lies between two points at a time of the step.
-fn blocked_by_fabric(cells: Cells, p: vec3<u32>, along: vec3<f32>, time: f32) -> bool {
+fn blocked_by_fabric(cells: Cells, p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
+    let along = between(p, q);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             for (var x = cells.low.x; x <= cells.high.x; x++) {
                 var next = first_of_cell(vec3<u32>(x, y, z));
                 while (next != 0u) {
                     let entry = fabric_entry(next);
-                    if (sheet_between(entry.x, p, along, time)) {
+                    if (!stays_off(entry.x, fabric[entry.x].a, p, q) && sheet_between(entry.x, p, along, time)) {
                         return true;
                     }
                     next = entry.y;
@@ -431,7 +438,7 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
             through(k, list.y);
         }
     }
-    if (FABRIC && blocked_by_fabric(cells, p, along, time)) {
+    if (FABRIC && blocked_by_fabric(cells, p, q, time)) {
         return true;
     }
     if (MOVING) {

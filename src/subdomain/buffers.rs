@@ -343,6 +343,7 @@ impl<'a> Buffers<'a> {
             "nodes" => &fabric.nodes,
             "fabric" => &domain.fabric,
             "fabric_cells" => &fabric.cells,
+            "fabric_planes" => &fabric.planes,
             "cell_volume" => &domain.cell_volume,
             "cell_parts" => &domain.cell_parts,
             "still_gas" => &domain.still_gas,

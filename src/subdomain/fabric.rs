@@ -39,6 +39,8 @@ impl Fabric {
 pub struct FabricBuffers {
     pub nodes: wgpu::Buffer,
     pub cells: wgpu::Buffer,
+    /// Of each triangle: the normal at the start of the step, and how far from that plane it comes.
+    pub planes: wgpu::Buffer,
     /// Entries of lists that there is room for.
     pub room: u64,
 }
@@ -63,6 +65,7 @@ impl FabricBuffers {
         Ok(FabricBuffers {
             nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
             cells: device.storage::<u32>("fabric_cells", words)?,
+            planes: device.storage::<[f32; 4]>("fabric_planes", (fabric.sheets.len() as u64).max(1))?,
             room,
         })
     }

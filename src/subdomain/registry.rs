@@ -208,6 +208,7 @@ pub const BUFFERS: &[&str] = &[
     "nodes",
     "fabric",
     "fabric_cells",
+    "fabric_planes",
     "cell_volume",
     "cell_parts",
     "still_gas",

@@ -40,6 +40,7 @@ fn swept(seed: u32) -> Swept {
     let sheets: Vec<GpuSheet> =
         triangles.iter().map(|&[a, b, c]| GpuSheet { a, b, c, ..GpuSheet::default() }).collect();
     rig.put("fabric", &sheets);
+    rig.put("fabric_planes", &vec![0f32; 4 * TRIANGLES]);
     rig.constant("FABRIC", 1.0);
     rig.constant("NODES", NODES as f64);
     rig.constant("SHEET_GAP", GAP);
