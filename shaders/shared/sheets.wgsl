@@ -10,7 +10,7 @@
 // edges by SHEET_REACH gaps, over the sine of the flight's angle to them. Of several hits the earliest counts, ties by triangle.
 
 var<storage, read> fabric_cells: array<u32>;
-// Of each triangle its unit normal at the start of the step, and how far from that plane it comes in the step, m (list_fabric.wgsl).
+// The unit normal of each triangle at the start of the step, and how far from that plane it comes in the step, m (list_fabric.wgsl).
 var<storage, read> fabric_planes: array<vec4<f32>>;
 
 // In place of a triangle's number: that of fabric.
@@ -190,10 +190,10 @@ fn meeting(sheet: Sheet, corners: Corners, inside: bool) -> f32 {
 
 // What is hit: a wall or fabric.
 struct Struck {
-    // Of unit length, to the side of the particle.
+    // The unit normal to the side of the particle.
     normal: vec3<f32>,
     surface: u32,
-    // Of the surface at that place, m/s.
+    // The velocity of the surface at that place, m/s.
     velocity: vec3<f32>,
     surface_model: u32,
     // The tally of its work, or NOBODY: it is at rest.

@@ -53,7 +53,7 @@ fn touches(cells: Cells, motion: Motion) -> bool {
 
 struct Hit {
     time: f32,
-    // Of a wall, or of fabric (OF_FABRIC); or NOBODY.
+    // The triangle of a wall, or of fabric (OF_FABRIC); or NOBODY.
     triangle: u32,
     // How far behind a wall the flight was found to start, m.
     overshoot: f32,

@@ -54,6 +54,16 @@ fn what_fabric_cannot_have_is_told() {
     }
 }
 
+/// A bag whose triangles all face inwards, and the file of its motion that has them so, too: it is turned.
+#[test]
+fn a_bag_inside_out_is_turned() {
+    let mut mesh = MeshShape::Sphere { radius: 0.03, subdivisions: 1 }.mesh([0.05; 3]).expect("a sphere");
+    mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let frames = NodeMotion::Scale { factor: 0.9 }.frames(&mesh, 3, 1e-3).expect("frames");
+    let model = Scene { mesh, frames: Some(frames), ..ball() }.model();
+    assert!(model.fabric.measures(0.0)[0][0] > 0.0 && model.plan.chambers[0].volume > 0.0);
+}
+
 #[test]
 fn files_that_do_not_belong_together_are_told() {
     let scene = ball();

@@ -237,9 +237,6 @@ fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelE
     if mesh.triangles.is_empty() {
         return Err(refused(format!("{} has no triangle", fabric.mesh.display())));
     }
-    if mesh.is_closed() && mesh.volume() < 0.0 {
-        mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-    }
     let frames = match &fabric.motion {
         None => NodeFrames::new(vec![0.0], vec![mesh.nodes.clone()], Vec::new())
             .map_err(|error| refused(error.to_string()))?,
@@ -262,6 +259,10 @@ fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelE
             return Err(refused(note.told(units)));
         }
         notes.push(format!("fabric `{}`: {}", fabric.name, note.told(units)));
+    }
+    // Turned outwards once the frames are known to be of it: their file has the triangles as the mesh has them.
+    if mesh.is_closed() && mesh.volume() < 0.0 {
+        mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     }
     Ok(Read { mesh, frames, notes })
 }
