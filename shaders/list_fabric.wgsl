@@ -19,7 +19,7 @@ struct Reach {
 }
 
 fn reach_of(low: vec3<i32>, high: vec3<i32>, origin: vec3<u32>) -> Reach {
-    let margin = vec3<i32>(i32(ceil(SHEET_MARGIN * SHEET_GAP * QUANTA)));
+    let margin = vec3<i32>(i32(ceil(f32(SHEET_MARGIN) * SHEET_GAP * QUANTA)));
     let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 1;
     let a = clamp(signed_cell(origin + bitcast<vec3<u32>>(low - margin)), vec3<i32>(0), last);
     let b = clamp(signed_cell(origin + bitcast<vec3<u32>>(high + margin)), vec3<i32>(0), last);
@@ -85,7 +85,7 @@ fn list_fabric(thread: Thread) {
     let normal = cross(between(origin, node_before(sheet.b)), between(origin, node_before(sheet.c)));
     let size = length(normal);
     let n = select(normal / size, vec3<f32>(0.0), size == 0.0);
-    let away = farthest + SHEET_MARGIN * SHEET_GAP * QUANTA;
+    let away = farthest + f32(SHEET_MARGIN) * SHEET_GAP * QUANTA;
     // (Of a triangle without area nothing is left out.)
     fabric_planes[triangle] = vec4<f32>(n, select(away * QUANTUM, 1e30, size == 0.0));
     // From the plane at the start to where a cell's middle may be, quanta; the last share is for rounding.

@@ -29,8 +29,6 @@ override SHEET_GAP: f32 = 0.0;
 const SHEET_BEHIND: f32 = 8.0;
 // How far sheets reach beyond their edges, in gaps.
 const SHEET_REACH: f32 = 2.0;
-// And how far around the box that a sheet sweeps it is listed.
-const SHEET_MARGIN: f32 = 16.0;
 
 var<storage, read> nodes: array<vec4<u32>>;
 var<storage, read> fabric: array<Sheet>;
@@ -43,9 +41,6 @@ fn node_before(node: u32) -> vec3<u32> {
 fn node_after(node: u32) -> vec3<u32> {
     return nodes[(step.slot + 1u) * NODES + node].xyz;
 }
-
-const FABRIC_ENTRIES: u32 = 0;
-const FABRIC_FIRST: u32 = 1;
 
 fn grid_cells() -> u32 {
     return CELLS_X * CELLS_Y * CELLS_Z;

@@ -7,16 +7,13 @@ use crate::geometry::Grid;
 use crate::gpu::{Device, GpuError};
 
 use super::layout::GpuSheet;
+use super::registry::{FABRIC_FIRST, SHEET_MARGIN};
 
-/// `SHEET_MARGIN` of `shaders/shared/fabric.wgsl`, in gaps.
-const SHEET_MARGIN: f64 = 16.0;
 /// How near a flight comes to a sheet, as a share of the longest edge of a triangle and a cell: f32 sums of distances of that size err
 /// by a tenth of it.
 const GAP: f64 = 2e-6;
 /// And at least, in quanta of positions.
 const LEAST_GAP: f64 = 32.0;
-/// Words of `fabric_cells` before those of the cells.
-const BEFORE_CELLS: u64 = 1;
 const ENTRY_WORDS: u64 = 2;
 
 /// The surfaces that deform.
@@ -48,7 +45,7 @@ pub struct FabricBuffers {
 /// The words of `fabric_cells` before its entries.
 pub fn words_of_cells(grid: &Grid) -> u64 {
     let cells = grid.cell_count() as u64;
-    BEFORE_CELLS + cells + cells.div_ceil(32)
+    u64::from(FABRIC_FIRST) + cells + cells.div_ceil(32)
 }
 
 impl FabricBuffers {
@@ -73,7 +70,7 @@ impl FabricBuffers {
 
 /// The most entries that lists of a step have: `nodes` are the places of all nodes, one moment of an interval after the other.
 pub fn most_entries(grid: &Grid, fabric: &Fabric, nodes: &[[u32; 4]]) -> u64 {
-    let margin = (SHEET_MARGIN * fabric.gap / grid.quantum()).ceil() as i64 + 1;
+    let margin = (f64::from(SHEET_MARGIN) * fabric.gap / grid.quantum()).ceil() as i64 + 1;
     let cells_along = |low: i64, high: i64, axis: usize| {
         let last = i64::from(grid.cells[axis]) - 1;
         let cell = |place: i64| (place >> grid.cell_bits).clamp(0, last);

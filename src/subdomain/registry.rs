@@ -172,8 +172,19 @@ registry! {
     }
 }
 
+registry! {
+    /// Fabric (`shaders/shared/fabric.wgsl`).
+    FABRIC_TABLE {
+        /// How far around the box that a triangle sweeps it is listed, in gaps.
+        SHEET_MARGIN = 16,
+        /// Words of `fabric_cells`: how many entries there are, and where the cells begin.
+        FABRIC_ENTRIES = 0,
+        FABRIC_FIRST = 1,
+    }
+}
+
 /// All numbers that kernels see.
-pub const NUMBERS: [&[(&str, u32)]; 5] = [LISTS_AND_COUNTS, COUNTERS, STALLED_TABLE, STEP_STATE, TALLIES];
+pub const NUMBERS: [&[(&str, u32)]; 6] = [LISTS_AND_COUNTS, COUNTERS, STALLED_TABLE, STEP_STATE, TALLIES, FABRIC_TABLE];
 
 /// The uniform of which each dispatch sees the part of its step and round.
 pub const STEPPED: &str = "step";
