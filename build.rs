@@ -10,6 +10,7 @@
 //! gets the binding number of the buffer NAME from there; `//! binds: BUFFER as NAME` says that a kernel (or what uses a shared file)
 //! has another buffer by that name. `//! phase: choose lost` names the phases of the step in which a kernel is dispatched.
 //!
+//! The kernels of a membrane are in `shaders/membrane/`, with the registry `src/fabric/registry.rs`; they may use the files of `shaders/shared/`, too.
 //! The shaders of pictures are in `shaders/render/`, and found by `build/render.rs`. What the program says of its own version is found in
 //! `build/version.rs`.
 
@@ -19,6 +20,9 @@ use std::{env, fs, process};
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
+#[path = "src/fabric/registry.rs"]
+#[allow(dead_code)]
+mod fabric_registry;
 #[path = "src/subdomain/registry.rs"]
 #[allow(dead_code)] // Most of it is for the host.
 mod registry;
@@ -44,6 +48,14 @@ pub const REGISTRY: Registry<'static> = Registry {
     buffers: registry::BUFFERS,
     stepped: registry::STEPPED,
     path: "src/subdomain/registry.rs",
+};
+
+/// That of the kernels of a membrane.
+pub const FABRIC_REGISTRY: Registry<'static> = Registry {
+    numbers: &fabric_registry::NUMBERS,
+    buffers: fabric_registry::BUFFERS,
+    stepped: fabric_registry::STEPPED,
+    path: "src/fabric/registry.rs",
 };
 
 /// What the kernels may ask of an adapter beyond the basics of WebGPU: nothing.
@@ -106,8 +118,11 @@ fn write_tables() -> Result<(), String> {
         let path = Path::new(&out).join(name);
         fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
     };
-    let (kernels, mut unused) = kernels(Path::new("shaders"), REGISTRY)?;
-    write("shaders.rs", table(&kernels))?;
+    let (of_gas, mut unused) = kernels(Path::new("shaders"), REGISTRY)?;
+    write("shaders.rs", table(&of_gas))?;
+    let (membrane, unused_there) = kernels(Path::new("shaders/membrane"), FABRIC_REGISTRY)?;
+    write("membrane_shaders.rs", table(&membrane))?;
+    unused.extend(unused_there);
     let (shaders, unused_there) = render::shaders(Path::new("shaders/render"))?;
     write("render_shaders.rs", render::table(&shaders))?;
     unused.extend(unused_there);
@@ -349,6 +364,11 @@ fn collect(
         marked(&text, "uses:").flat_map(|(line, names)| names.split_whitespace().map(move |name| (line, name)))
     {
         let mut shared = folder.join("shared").join(used);
+        if let Some(above) = folder.parent().map(|above| above.join("shared").join(used)).filter(|_| !shared.is_file())
+        {
+            // What the kernels of all folders use stands above them.
+            shared = if above.is_file() { above } else { shared };
+        }
         let other = variant.map(|variant| shared.with_extension(format!("{variant}.wgsl")));
         if let Some(other) = other.filter(|other| other.is_file()) {
             shared = other;

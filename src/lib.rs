@@ -3,6 +3,7 @@
 //! `ARCHITECTURE.md` maps the folders; each module's head says what it is for.
 
 pub mod cli;
+pub mod fabric;
 pub mod gas;
 pub mod geometry;
 pub mod gpu;

@@ -270,6 +270,7 @@ pub const BUFFERS: &[&str] = &[
 /// The phases of a step in their order, and behind them what is done between steps. Collisions are those of `collide`
 /// (the method `cell`) or those of `neighbours` to `lost`.
 pub const PHASES: &[&str] = &[
+    "membrane",
     "fabric",
     "bin",
     "exchange",

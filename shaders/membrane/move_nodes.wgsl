@@ -1,0 +1,144 @@
+//! uses: thread.wgsl membrane.wgsl
+//! phase: membrane
+// Moves each node by a step of the fabric: sums the forces of its triangles, takes its share of what the gas gave, and flies on.
+//
+// Central differences: v' = v + (sum of impulses)/m, x' = x + v' dt. Forces act for half the last step and half this one. The work of each
+// impulse J is J.(v + v')/2: together they change the kinetic energy, exactly. What the gas gave in its last step, J in all, was given to nodes that flew at
+// `seen`, J.seen in energy; each of the step's `substeps` here takes J/substeps. The ledger has the difference: J.seen less all of J/substeps.(v + v')/2.
+//
+// Reads `element_forces`, `corners`, `node_constants`, `prescribed`; reads and writes `membrane_nodes`, takes and clears `impulses` in the first substep; writes
+// `nodes`, where the gas sees them at the start and at the end of its step. One thread per node; its triangles are added in the order of `corners`.
+
+var<uniform> substep: Substep;
+var<uniform> membrane_step: MembraneStep;
+var<storage, read> element_forces: array<ElementForces>;
+// Of each node, one after the other: four times the triangle, and which of its corners.
+var<storage, read> corners: array<u32>;
+var<storage, read> node_constants: array<NodeConstants>;
+// m/s, of nodes that are held.
+var<storage, read> prescribed: array<vec4<f32>>;
+var<storage, read_write> membrane_nodes: array<MembraneNode>;
+// Three sums of two words for each node.
+var<storage, read_write> impulses: array<u32>;
+var<storage, read_write> nodes: array<vec4<u32>>;
+var<storage, read_write> faults: array<atomic<u32>>;
+
+struct NodeConstants {
+    // kg.
+    mass: f32,
+    // 1: it moves with its prescribed velocity.
+    held: u32,
+    // Its triangles.
+    first: u32,
+    end: u32,
+}
+
+// A signed sum of two words.
+fn impulse_word(slot: u32) -> f32 {
+    let low = impulses[slot];
+    let high = impulses[slot + 1u];
+    impulses[slot] = 0u;
+    impulses[slot + 1u] = 0u;
+    let negative = high >= 0x80000000u;
+    let size = select(vec2<u32>(low, high), vec2<u32>(~low + 1u, ~high + select(0u, 1u, low == 0u)), negative);
+    let value = f32(size.y) * 4294967296.0 + f32(size.x);
+    return select(value, -value, negative) * membrane_step.impulse_unit;
+}
+
+// Kahan's sum.
+fn added(sum: vec2<f32>, more: f32) -> vec2<f32> {
+    let less = more - sum.y;
+    let total = sum.x + less;
+    return vec2<f32>(total, (total - sum.x) - less);
+}
+
+struct Forces {
+    strain: vec3<f32>,
+    damping: vec3<f32>,
+    pressure: vec3<f32>,
+}
+
+fn forces_on(constants: NodeConstants) -> Forces {
+    var sum = Forces();
+    for (var at = constants.first; at < constants.end; at += 1u) {
+        let corner = corners[at];
+        let forces = element_forces[corner >> 2u];
+        switch (corner & 3u) {
+            case 1u: {
+                sum.strain += forces.second;
+                sum.damping += forces.damped_second;
+            }
+            case 2u: {
+                sum.strain += forces.third;
+                sum.damping += forces.damped_third;
+            }
+            default: {
+                sum.strain -= forces.second + forces.third;
+                sum.damping -= forces.damped_second + forces.damped_third;
+            }
+        }
+        sum.pressure += forces.pressed;
+    }
+    return sum;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn move_nodes(thread: Thread) {
+    let k = linear(thread);
+    if (k >= membrane_step.nodes) {
+        return;
+    }
+    var node = membrane_nodes[k];
+    let constants = node_constants[k];
+    let mass = constants.mass;
+    let here = substep.slot * membrane_step.nodes + k;
+    if (substep.substep == 0u) {
+        let whole = vec3<f32>(impulse_word(6u * k), impulse_word(6u * k + 2u), impulse_word(6u * k + 4u));
+        node.given = whole / f32(membrane_step.substeps);
+        node.work[WORK_LEDGER] = added(node.work[WORK_LEDGER], dot(whole, node.seen));
+        nodes[here] = vec4<u32>(node.place, 0u);
+    }
+
+    let kick = 0.5 * (node.dt + membrane_step.dt);
+    let forces = forces_on(constants);
+    let strain = kick * forces.strain;
+    let damping = kick * (forces.damping - (mass * membrane_step.drag) * node.velocity);
+    let pressure = kick * forces.pressure;
+    let weight = (kick * mass) * membrane_step.gravity;
+    let sum = strain + damping + pressure + weight + node.given;
+    var velocity = prescribed[k].xyz;
+    if (constants.held == 0u) {
+        velocity = node.velocity + sum / mass;
+    }
+    let mean = 0.5 * (node.velocity + velocity);
+    node.work[WORK_DAMPING] = added(node.work[WORK_DAMPING], dot(damping, mean));
+    node.work[WORK_PRESSURE] = added(node.work[WORK_PRESSURE], dot(pressure, mean));
+    node.work[WORK_GRAVITY] = added(node.work[WORK_GRAVITY], dot(weight, mean));
+    let gas = dot(node.given, mean);
+    node.work[WORK_GAS] = added(node.work[WORK_GAS], gas);
+    node.work[WORK_LEDGER] = added(node.work[WORK_LEDGER], -gas);
+    if (constants.held == 1u) {
+        let hold = mass * (velocity - node.velocity) - sum;
+        node.work[WORK_HOLDS] = added(node.work[WORK_HOLDS], dot(hold, mean));
+    }
+
+    // Below 2^30 quanta the next place has no second reading.
+    let flown = node.remainder + (membrane_step.dt * membrane_step.quanta) * velocity;
+    let quanta = round(flown);
+    let sound = all(abs(quanta) < vec3<f32>(1073741824.0));
+    let next = bitcast<vec3<u32>>(bitcast<vec3<i32>>(node.place) + vec3<i32>(select(vec3<f32>(0.0), quanta, vec3<bool>(sound))));
+    if (sound && all(next < membrane_step.limit)) {
+        node.place = next;
+        node.remainder = flown - quanta;
+    } else {
+        atomicAdd(&faults[0], 1u);
+    }
+    node.velocity = velocity;
+    node.dt = membrane_step.dt;
+    if (substep.substep + 1u == membrane_step.substeps) {
+        let start = nodes[here].xyz;
+        node.seen = vec3<f32>(bitcast<vec3<i32>>(node.place - start)) * (membrane_step.quantum / membrane_step.gas_dt);
+        nodes[here + membrane_step.nodes] = vec4<u32>(node.place, 0u);
+    }
+    membrane_nodes[k] = node;
+}

@@ -1,0 +1,65 @@
+//! The account of a membrane, from what the device has.
+//!
+//! Velocities are those of half a step before the places. The energy of motion is exactly that of these velocities; that of strain is taken half a step back, where the
+//! nodes were then. So to the square of the step, from the start on,
+//!
+//! kinetic + strain + damped = (both at the start) + pressure + gravity + holds + gas, and gas + ledger = what the gas gave.
+
+use glam::DVec3;
+
+use super::layout::GpuMembraneNode;
+use super::model::Model;
+use super::registry::{WORK_DAMPING, WORK_GAS, WORK_GRAVITY, WORK_HOLDS, WORK_LEDGER, WORK_PRESSURE};
+use super::state::place;
+
+/// J; works since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energies {
+    /// Of motion, half a step before the nodes' places.
+    pub kinetic: f64,
+    /// Of strain, then.
+    pub strain: f64,
+    /// What damping took.
+    pub damped: f64,
+    /// Of the uniform pressures.
+    pub pressure: f64,
+    pub gravity: f64,
+    /// Of what holds nodes.
+    pub holds: f64,
+    /// What nodes took of what the gas gave.
+    pub gas: f64,
+    /// What the gas gave less that: it was given to nodes with the velocity of one step, and taken with that of the next.
+    pub ledger: f64,
+}
+
+impl Energies {
+    pub fn of(model: &Model, nodes: &[GpuMembraneNode]) -> Energies {
+        let middle = |node: &GpuMembraneNode| {
+            let velocity = DVec3::from_array(node.velocity.map(f64::from));
+            place(node, model) - 0.5 * f64::from(node.dt) * velocity
+        };
+        let middles: Vec<DVec3> = nodes.iter().map(middle).collect();
+        let kinetic = |(node, mass): (&GpuMembraneNode, &f64)| {
+            0.5 * mass * node.velocity.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>()
+        };
+        let work = |which: u32| -> f64 {
+            let sums = nodes.iter().map(|node| node.work[which as usize]);
+            sums.map(|[sum, excess]| f64::from(sum) - f64::from(excess)).sum()
+        };
+        Energies {
+            kinetic: nodes.iter().zip(&model.masses).map(kinetic).sum(),
+            strain: model.strain_energy(&middles),
+            damped: -work(WORK_DAMPING),
+            pressure: work(WORK_PRESSURE),
+            gravity: work(WORK_GRAVITY),
+            holds: work(WORK_HOLDS),
+            gas: work(WORK_GAS),
+            ledger: work(WORK_LEDGER),
+        }
+    }
+
+    /// What is there less what was put in; its change from the start is what the integration lost or made.
+    pub fn balance(&self) -> f64 {
+        self.kinetic + self.strain + self.damped - self.pressure - self.gravity - self.holds - self.gas
+    }
+}

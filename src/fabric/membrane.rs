@@ -1,0 +1,324 @@
+//! A membrane on a device: its buffers, and the dispatches of a step.
+
+use crate::gpu::{BoundKernel, Device, GpuError, Kernel, Recording, fold};
+
+use super::energies::Energies;
+use super::error::MembraneError;
+use super::input::{Hold, MembraneInput};
+use super::law::Law;
+use super::layout::{
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+};
+use super::model::{Model, Triangle};
+use super::registry::PHASE;
+use super::shaders::shader;
+use super::state::{IMPULSE_WORDS, MembraneState};
+
+/// Threads of a workgroup of the kernels.
+const WORKGROUP: u32 = 64;
+
+/// A membrane, whole. A step of the gas is [`Membrane::step`] and then the gas's own flights against `nodes`; what they give is added to `impulses`.
+pub struct Membrane {
+    model: Model,
+    /// Places on the lattice, `array<vec4<u32>>`: those at the start of step `slot` of an interval at `slot * NODES`, those at its end behind them.
+    pub nodes: wgpu::Buffer,
+    /// What the gas gave in its last step, in the input's unit: of each node three signed sums of two words, the low one first. The next step takes and clears
+    /// them.
+    pub impulses: wgpu::Buffer,
+    /// Of each node a [`GpuMembraneNode`].
+    pub state: wgpu::Buffer,
+    /// A word: how often a node would have left the grid, or was nowhere. A run with any is wrong.
+    pub faults: wgpu::Buffer,
+    saved_state: wgpu::Buffer,
+    saved_impulses: wgpu::Buffer,
+    element_forces: wgpu::Buffer,
+    membrane_step: wgpu::Buffer,
+    prescribed: wgpu::Buffer,
+    /// That of no length.
+    no_step: GpuMembraneStep,
+    forces_of_elements: BoundKernel,
+    move_nodes: BoundKernel,
+    element_groups: [u32; 3],
+    node_groups: [u32; 3],
+    /// Bytes from one substep to the next in their uniform.
+    stride: u32,
+}
+
+impl Membrane {
+    /// # Errors
+    /// If the input does not hold together, a node lies outside the grid, or the device has no room.
+    pub fn new(device: &Device, input: &MembraneInput<'_>) -> Result<Membrane, MembraneError> {
+        let model = Model::new(input)?;
+        let (count, elements) = (input.nodes.len(), model.triangles.len());
+        let state = device.storage_of("membrane_nodes", &initial_nodes(input)?)?;
+        let slots = (u64::from(input.steps_per_interval) + 1) * count as u64;
+        let nodes = device.storage::<[u32; 4]>("nodes", slots)?;
+        let impulses = device.storage::<u32>("impulses", (count * IMPULSE_WORDS) as u64)?;
+        let element_forces = device.storage::<GpuElementForces>("element_forces", elements as u64)?;
+        let (corners, constants) = corners_of_nodes(&model);
+        let corners = device.storage_of("corners", &corners)?;
+        let constants = device.storage_of("node_constants", &constants)?;
+        let of_device: Vec<GpuElement> = model.triangles.iter().map(element).collect();
+        let of_device = device.storage_of("elements", &of_device)?;
+        let elastic: Vec<GpuElastic> = model.laws.iter().map(elastic).collect();
+        let elastic = device.storage_of("elastic", &elastic)?;
+        let prescribed = device.storage_of("prescribed", &held_velocities(&model.holds))?;
+        let faults = device.storage::<u32>("faults", 1)?;
+        let membrane_step = device.uniform("membrane_step", size_of::<GpuMembraneStep>() as u64)?;
+        let stride = device.limits().min_uniform_buffer_offset_alignment.max(size_of::<GpuSubstep>() as u32);
+        let substep = substeps(device, input, stride)?;
+        let bind = |name: &str| {
+            let kernel = Kernel::new(device, shader(name)?, &[("WORKGROUP", f64::from(WORKGROUP))])?;
+            kernel.bind(device, |name| match name {
+                "substep" => Some(&substep),
+                "membrane_step" => Some(&membrane_step),
+                "elastic" => Some(&elastic),
+                "elements" => Some(&of_device),
+                "element_forces" => Some(&element_forces),
+                "corners" => Some(&corners),
+                "node_constants" => Some(&constants),
+                "prescribed" => Some(&prescribed),
+                "membrane_nodes" => Some(&state),
+                "impulses" => Some(&impulses),
+                "nodes" => Some(&nodes),
+                "faults" => Some(&faults),
+                _ => None,
+            })
+        };
+        let (forces_of_elements, move_nodes) = (bind("element_forces")?, bind("move_nodes")?);
+        let groups = |items: usize| fold(items as u64, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
+        Ok(Membrane {
+            saved_state: device.storage::<GpuMembraneNode>("saved_membrane", count as u64)?,
+            saved_impulses: device.storage::<u32>("saved_impulses", (count * IMPULSE_WORDS) as u64)?,
+            no_step: step_of_no_length(input, count, elements),
+            element_groups: groups(elements),
+            node_groups: groups(count),
+            model,
+            nodes,
+            impulses,
+            state,
+            faults,
+            element_forces,
+            membrane_step,
+            prescribed,
+            forces_of_elements,
+            move_nodes,
+            stride,
+        })
+    }
+
+    /// The same on the host.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    pub fn node_count(&self) -> u32 {
+        self.no_step.nodes
+    }
+
+    /// The length of the gas's steps from the next submission on, s: before the first step, and where it changes.
+    pub fn set_step(&self, device: &Device, dt: f64) {
+        let step =
+            GpuMembraneStep { dt: (dt / f64::from(self.no_step.substeps)) as f32, gas_dt: dt as f32, ..self.no_step };
+        device.write(&self.membrane_step, 0, &[step]);
+    }
+
+    /// The velocities of prescribed nodes from the next submission on, m/s, one for each node; those of others count for nothing.
+    ///
+    /// # Errors
+    /// If there are more or fewer.
+    pub fn prescribe(&self, device: &Device, velocities: &[[f64; 3]]) -> Result<(), MembraneError> {
+        let (found, expected) = (velocities.len(), self.model.holds.len());
+        if found != expected {
+            return Err(MembraneError::Count { what: "velocities", found, expected });
+        }
+        let holds = velocities.iter().zip(&self.model.holds).map(|(velocity, hold)| match hold {
+            Hold::Prescribed(_) => Hold::Prescribed(*velocity),
+            other => *other,
+        });
+        device.write(&self.prescribed, 0, &held_velocities(&holds.collect::<Vec<_>>()));
+        Ok(())
+    }
+
+    /// The steps of the fabric in step `slot` of an interval of the gas: takes `impulses`, writes its part of `nodes`.
+    pub fn step(&self, recording: &mut Recording<'_>, slot: u32) {
+        let mut pass = recording.phase(PHASE);
+        let substeps = self.no_step.substeps;
+        for substep in 0..substeps {
+            self.forces_of_elements.dispatch(&mut pass, 0, self.element_groups);
+            self.move_nodes.dispatch(&mut pass, (slot * substeps + substep) * self.stride, self.node_groups);
+        }
+    }
+
+    /// Copies all that the next step depends on, on the device, for an interval that may run again.
+    pub fn save(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_buffer_to_buffer(&self.state, 0, &self.saved_state, 0, self.state.size());
+        encoder.copy_buffer_to_buffer(&self.impulses, 0, &self.saved_impulses, 0, self.impulses.size());
+    }
+
+    /// Back to what was saved.
+    pub fn restore(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_buffer_to_buffer(&self.saved_state, 0, &self.state, 0, self.state.size());
+        encoder.copy_buffer_to_buffer(&self.saved_impulses, 0, &self.impulses, 0, self.impulses.size());
+    }
+
+    /// Waits for the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn read_state(&self, device: &Device) -> Result<MembraneState, GpuError> {
+        let count = self.model.masses.len();
+        Ok(MembraneState {
+            nodes: device.read(&self.state, count)?,
+            impulses: device.read(&self.impulses, count * IMPULSE_WORDS)?,
+        })
+    }
+
+    /// From the next submission on.
+    ///
+    /// # Errors
+    /// If it is none of this membrane.
+    pub fn write_state(&self, device: &Device, state: &MembraneState) -> Result<(), MembraneError> {
+        let (found, expected) = (state.nodes.len(), self.model.masses.len());
+        if found != expected || state.impulses.len() != expected * IMPULSE_WORDS {
+            return Err(MembraneError::State { found, expected });
+        }
+        device.write(&self.state, 0, &state.nodes);
+        device.write(&self.impulses, 0, &state.impulses);
+        Ok(())
+    }
+
+    /// Of each triangle at the start of the last step of the fabric, waiting for the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn read_forces(&self, device: &Device) -> Result<Vec<GpuElementForces>, GpuError> {
+        device.read(&self.element_forces, self.model.triangles.len())
+    }
+
+    /// How often nodes would have left the grid, waiting for the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn read_faults(&self, device: &Device) -> Result<u32, GpuError> {
+        Ok(device.read::<u32>(&self.faults, 1)?[0])
+    }
+
+    /// The account, waiting for the device.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn energies(&self, device: &Device) -> Result<Energies, GpuError> {
+        Ok(Energies::of(&self.model, &device.read::<GpuMembraneNode>(&self.state, self.model.masses.len())?))
+    }
+}
+
+fn step_of_no_length(input: &MembraneInput<'_>, nodes: usize, elements: usize) -> GpuMembraneStep {
+    let grid = input.grid;
+    GpuMembraneStep {
+        dt: 0.0,
+        gas_dt: 0.0,
+        quantum: grid.quantum() as f32,
+        quanta: (1.0 / grid.quantum()) as f32,
+        gravity: input.gravity.map(|g| g as f32),
+        drag: input.drag as f32,
+        limit: grid.cells.map(|cells| cells << grid.cell_bits),
+        nodes: nodes as u32,
+        elements: elements as u32,
+        substeps: input.substeps,
+        impulse_unit: input.impulse_unit as f32,
+        pad: 0,
+    }
+}
+
+fn initial_nodes(input: &MembraneInput<'_>) -> Result<Vec<GpuMembraneNode>, MembraneError> {
+    let (grid, quantum) = (input.grid, input.grid.quantum());
+    let node = |(node, (&place, velocity)): (usize, (&[f64; 3], &[f64; 3]))| {
+        let fixed = grid.to_fixed(place).ok_or(MembraneError::Outside { node, place })?;
+        let exact = |axis: usize| (place[axis] - grid.origin[axis]) / quantum;
+        let velocity = velocity.map(|v| v as f32);
+        Ok(GpuMembraneNode {
+            place: fixed,
+            remainder: std::array::from_fn(|axis| (exact(axis) - f64::from(fixed[axis])) as f32),
+            velocity,
+            seen: velocity,
+            ..GpuMembraneNode::default()
+        })
+    };
+    input.nodes.iter().zip(input.velocities).enumerate().map(node).collect()
+}
+
+/// Of each node its triangles, four times each and which corner it is, by rising triangle; and what does not change.
+fn corners_of_nodes(model: &Model) -> (Vec<u32>, Vec<GpuNodeConstants>) {
+    let mut of_nodes = vec![Vec::new(); model.masses.len()];
+    for (k, triangle) in model.triangles.iter().enumerate() {
+        for (corner, &node) in triangle.nodes.iter().enumerate() {
+            of_nodes[node as usize].push(4 * k as u32 + corner as u32);
+        }
+    }
+    let mut corners = Vec::with_capacity(3 * model.triangles.len());
+    let mut constants = Vec::with_capacity(of_nodes.len());
+    for ((own, &mass), hold) in of_nodes.iter().zip(&model.masses).zip(&model.holds) {
+        let first = corners.len() as u32;
+        corners.extend(own);
+        let held = u32::from(*hold != Hold::Free);
+        constants.push(GpuNodeConstants { mass: mass as f32, held, first, end: corners.len() as u32 });
+    }
+    (corners, constants)
+}
+
+fn held_velocities(holds: &[Hold]) -> Vec<[f32; 4]> {
+    let velocity = |hold: &Hold| match hold {
+        Hold::Free | Hold::Fixed => [0.0; 4],
+        Hold::Prescribed([x, y, z]) => [*x as f32, *y as f32, *z as f32, 0.0],
+    };
+    holds.iter().map(velocity).collect()
+}
+
+fn element(triangle: &Triangle) -> GpuElement {
+    // What the kernel adds to the squares of the edges.
+    let [second2, third2, second_third] = triangle.metric.map(|square| {
+        let opposite = square.wrapping_neg() as u64;
+        [opposite as u32, (opposite >> 32) as u32]
+    });
+    let [second, third] = triangle.gradients.map(|gradient| gradient.map(|g| g as f32));
+    GpuElement {
+        nodes: triangle.nodes,
+        elastic: triangle.material as u32,
+        second,
+        third,
+        second2,
+        third2,
+        second_third,
+        volume: triangle.volume as f32,
+        viscosity: triangle.viscosity as f32,
+        pressure: triangle.pressure as f32,
+        ..GpuElement::default()
+    }
+}
+
+fn elastic(law: &Law) -> GpuElastic {
+    let d = &law.stiffness;
+    GpuElastic {
+        stiffness: [d.along, d.across, d.coupling, d.shear].map(|modulus| modulus as f32),
+        compliance: law.compliance.map(|c| c as f32),
+        young: law.young as f32,
+        share: law.compression as f32,
+        isotropic: u32::from(law.isotropic),
+        ..GpuElastic::default()
+    }
+}
+
+/// The uniform of all substeps of an interval, each at a multiple of `stride`.
+fn substeps(device: &Device, input: &MembraneInput<'_>, stride: u32) -> Result<wgpu::Buffer, GpuError> {
+    let count = input.steps_per_interval * input.substeps;
+    let buffer = device.uniform("substep", u64::from(count) * u64::from(stride))?;
+    let words = stride as usize / 4;
+    let mut table = vec![0_u32; count as usize * words];
+    for (k, entry) in table.chunks_exact_mut(words).enumerate() {
+        entry[0] = k as u32 / input.substeps;
+        entry[1] = k as u32 % input.substeps;
+    }
+    device.write(&buffer, 0, &table);
+    Ok(buffer)
+}

@@ -1,0 +1,30 @@
+//! Fabric on one device: membranes of triangles that bear tension only. Knows devices and the lattice of positions, neither gas nor scenes.
+//!
+//! [`Membrane`] holds a membrane on a device and moves it ([`input`] says what it is made from, [`law`] what its stress is). It is whole on
+//! every rank, and the same to the last bit: one thread adds the forces of a node's triangles in the order of a list. [`model`] is the
+//! same membrane on the host, in f64: what is uploaded is made from it, and energies of strain are read by it.
+
+mod elastic;
+mod energies;
+mod error;
+pub mod input;
+pub mod law;
+mod layout;
+mod membrane;
+pub mod model;
+pub mod registry;
+mod shaders;
+mod state;
+
+pub use elastic::{Elasticity, Material};
+pub use energies::Energies;
+pub use error::MembraneError;
+pub use input::{Element, Hold, MembraneInput, longest_step};
+pub use law::{Law, Stress};
+pub use layout::{
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+};
+pub use membrane::Membrane;
+pub use model::Model;
+pub use shaders::KERNELS;
+pub use state::MembraneState;
