@@ -4,6 +4,9 @@
 use std::collections::BTreeSet;
 use std::mem::offset_of;
 
+use corpuscle::fabric::{
+    self, GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+};
 use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
@@ -88,6 +91,71 @@ fn twins() -> Vec<Twin> {
         twin!("Part", GpuPart, place, volume),
         twin!("StillGas", GpuStillGas, points, volume),
         twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
+        twin!(
+            "MembraneStep",
+            GpuMembraneStep,
+            dt,
+            gas_dt,
+            quantum,
+            quanta,
+            gravity,
+            drag,
+            limit,
+            nodes,
+            elements,
+            substeps,
+            impulse_unit,
+            pad
+        ),
+        twin!("Substep", GpuSubstep, slot, substep),
+        twin!(
+            "MembraneNode",
+            GpuMembraneNode,
+            place,
+            dt,
+            remainder,
+            pad,
+            velocity,
+            pad2,
+            given,
+            pad3,
+            seen,
+            pad4,
+            work
+        ),
+        twin!(
+            "Element",
+            GpuElement,
+            nodes,
+            elastic,
+            second,
+            third,
+            second2,
+            third2,
+            second_third,
+            volume,
+            viscosity,
+            pressure,
+            pad,
+            pad2,
+            pad3
+        ),
+        twin!("Elastic", GpuElastic, stiffness, compliance, young, share, isotropic, pad, pad2),
+        twin!(
+            "ElementForces",
+            GpuElementForces,
+            second,
+            energy,
+            third,
+            state,
+            damped_second,
+            pad,
+            damped_third,
+            pad2,
+            pressed,
+            pad3
+        ),
+        twin!("NodeConstants", GpuNodeConstants, mass, held, first, end),
     ]
 }
 
@@ -113,6 +181,7 @@ fn modules() -> Vec<(&'static str, Module)> {
     let sources = |kernel: &KernelSource| [Some(kernel.source), kernel.variants[0], kernel.variants[1]];
     KERNELS
         .iter()
+        .chain(fabric::KERNELS)
         .flat_map(|kernel| sources(kernel).into_iter().flatten().map(|source| (kernel.name, parse(source))))
         .collect()
 }

@@ -20,7 +20,7 @@ pub use elastic::{Elasticity, Material};
 pub use energies::Energies;
 pub use error::MembraneError;
 pub use input::{Element, Hold, MembraneInput, longest_step};
-pub use law::{Law, Stress};
+pub use law::{Law, Stress, Taut, principal};
 pub use layout::{
     GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
 };

@@ -23,6 +23,7 @@ mod halo;
 mod lists;
 mod local;
 mod match_pairs;
+mod membrane;
 mod moved;
 mod neighbour_lists;
 mod neighbours;
@@ -91,6 +92,8 @@ fn every_kernel_has_its_test() {
     ];
     let known: Vec<&str> = corpuscle::subdomain::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);
+    let of_membranes: Vec<&str> = corpuscle::fabric::KERNELS.iter().map(|kernel| kernel.name).collect();
+    assert_eq!(of_membranes, ["element_forces", "move_nodes"]);
 }
 
 /// Whether there are other devices is asked by kernels of integers alone: with floating point one device would have other

@@ -115,9 +115,9 @@ fn steepest(elastic: Elastic, mean: f32, other: vec2<f32>) -> vec2<f32> {
         } else {
             high = angle;
         }
-        // (Without curvature the quotient is no number, and compares as false.)
+        // (At the end the step is none, and its place an end of the bracket. Without curvature the quotient is no number, and compares as false.)
         let newton = angle - there.x / there.y;
-        angle = select(0.5 * (low + high), newton, there.y < 0.0 && newton > low && newton < high);
+        angle = select(0.5 * (low + high), newton, there.y < 0.0 && newton >= low && newton <= high);
         direction = turned(best, angle);
     }
     return direction;
