@@ -10,7 +10,7 @@ use super::checkpoint::CheckpointError;
 use super::checksum::length_and_crc;
 use super::error::write_atomically;
 use super::names::MESH_FOLDER;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Fabric, Scene, Shape};
 
 /// One file that a scene names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,17 +34,13 @@ pub fn mesh_paths(scene: &Scene) -> Vec<PathBuf> {
     named(scene).cloned().collect()
 }
 
-/// Those of walls, then those of fabric, each with the file of its motion. (Of a series of files that is none: what it names would not be with it.)
+/// Those of walls, then those of fabric, each with its other files.
 fn named(scene: &Scene) -> impl Iterator<Item = &PathBuf> {
     let of_walls = scene.walls.iter().filter_map(|wall| match &wall.shape {
         Shape::Mesh { path, .. } => Some(path),
         _ => None,
     });
-    let kept = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "nodes");
-    let of_fabric = scene.fabrics.iter();
-    of_walls.chain(
-        of_fabric.flat_map(move |fabric| std::iter::once(&fabric.mesh).chain(fabric.motion.as_ref().filter(kept))),
-    )
+    of_walls.chain(scene.fabrics.iter().flat_map(Fabric::files))
 }
 
 impl MeshRecord {

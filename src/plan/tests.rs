@@ -50,6 +50,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         vents: vec![],
         motions: vec![],
         fabrics: vec![],
+        gravity: [0.0; 3],
         model: ModelRequest {
             method: Some(Method::ClosestApproach),
             particles: Some(1_000_000),

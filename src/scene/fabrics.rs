@@ -1,17 +1,26 @@
-//! Fabric: surfaces that deform as a file says.
+//! The keys of fabric: files, and what a scene with fabric cannot have.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::errors::{Problem, quote};
-use super::numbers::positive;
-use super::raw::{RawFabric, RawScene};
+use super::fabric::{Fabric, Fixed, Membrane};
+use super::fabric_material::material;
+use super::numbers::{not_negative, number, positive};
+use super::places::region;
+use super::raw::RawScene;
+use super::raw_fabric::{RawFabric, RawFixed, RawMaterial};
 use super::raw_values::At;
-use super::types::{Fabric, UnitSystem};
+use super::types::UnitSystem;
 use super::units::Quantity;
 use super::walls::existing;
 
 /// Surfaces that deform, at most.
 pub const MOST_FABRICS: usize = 16;
+
+const MESHES: (&[&str], &str) = (&["stl", "obj"], "a file name that ends with .stl or .obj");
+const MOTIONS: (&[&str], &str) =
+    (&["nodes", "pvd", "series"], "a file name that ends with .nodes, .pvd, .vtk.series or .vtu.series");
 
 pub(super) fn fabric(raw: &At<RawFabric>, units: UnitSystem, base_dir: &Path) -> Result<Fabric, Problem> {
     let fabric = &raw.value;
@@ -21,24 +30,88 @@ pub(super) fn fabric(raw: &At<RawFabric>, units: UnitSystem, base_dir: &Path) ->
     };
     Ok(Fabric {
         name: fabric.name.value.clone(),
-        mesh: file(&fabric.file, &["stl", "obj"], "a file name that ends with .stl or .obj", base_dir)?,
+        mesh: file(&fabric.file, MESHES, base_dir)?,
         scale,
-        motion: match &fabric.motion {
-            None => None,
-            Some(motion) => {
-                let allowed = "a file name that ends with .nodes, .pvd, .vtk.series or .vtu.series";
-                Some(file(motion, &["nodes", "pvd", "series"], allowed, base_dir)?)
-            }
+        motion: fabric.motion.as_ref().map(|motion| file(motion, MOTIONS, base_dir)).transpose()?,
+        membrane: match &fabric.material {
+            Some(material) => Some(membrane(fabric, material, units, base_dir)?),
+            None => no_membrane(fabric)?,
         },
+        external_pressure: fabric
+            .external_pressure
+            .as_ref()
+            .map(|at| not_negative(at, Quantity::Pressure, units))
+            .transpose()?,
     })
 }
 
-fn file(named: &At<String>, endings: &[&str], allowed: &str, base_dir: &Path) -> Result<PathBuf, Problem> {
+fn file(named: &At<String>, (endings, allowed): (&[&str], &str), base_dir: &Path) -> Result<PathBuf, Problem> {
     let ending = Path::new(&named.value).extension().map(|ending| ending.to_ascii_lowercase());
     if !ending.is_some_and(|ending| endings.iter().any(|known| ending == *known)) {
         return Err(Problem::value(&named.span, quote(&named.value), allowed));
     }
     existing(named, base_dir)
+}
+
+fn membrane(
+    fabric: &RawFabric,
+    raw: &At<RawMaterial>,
+    units: UnitSystem,
+    base_dir: &Path,
+) -> Result<Membrane, Problem> {
+    if let Some(motion) = &fabric.motion {
+        let found = "`motion` of a fabric with a `material`";
+        let allowed = "one of the two: a file moves its nodes, or the gas does";
+        return Err(Problem::value(&motion.span, found, allowed));
+    }
+    Ok(Membrane {
+        material: material(raw, units)?,
+        reference: fabric.reference.as_ref().map(|at| file(at, MESHES, base_dir)).transpose()?,
+        fixed: fixed(fabric, units)?,
+    })
+}
+
+fn fixed(fabric: &RawFabric, units: UnitSystem) -> Result<Fixed, Problem> {
+    let Some(at) = &fabric.fixed else { return Ok(Fixed::Nothing) };
+    Ok(match &at.value {
+        RawFixed::Edge => Fixed::Edge,
+        RawFixed::Within(regions) if regions.is_empty() => {
+            return Err(Problem::value(&at.span, "an empty list", "\"edge\", or at least one region"));
+        }
+        RawFixed::Within(regions) => {
+            Fixed::Within(regions.iter().map(|own| region(&own.value, units)).collect::<Result<_, _>>()?)
+        }
+    })
+}
+
+/// What only a membrane has.
+fn no_membrane(fabric: &RawFabric) -> Result<Option<Membrane>, Problem> {
+    let given: [(&str, Option<&Range<usize>>); 2] = [
+        ("reference", fabric.reference.as_ref().map(|at| &at.span)),
+        ("fixed", fabric.fixed.as_ref().map(|at| &at.span)),
+    ];
+    match given.into_iter().find_map(|(key, span)| Some((key, span?))) {
+        None => Ok(None),
+        Some((key, span)) => Err(Problem::value(
+            span,
+            format!("`{key}` of a fabric without a `material`"),
+            format!("`{key}` together with `material`: the gas moves fabric of a material only"),
+        )),
+    }
+}
+
+/// Of free fall, m/s2.
+pub(super) fn gravity(raw: &RawScene, units: UnitSystem) -> Result<[f64; 3], Problem> {
+    let Some(at) = &raw.gravity else { return Ok([0.0; 3]) };
+    if raw.fabric.iter().all(|fabric| fabric.value.material.is_none()) {
+        let found = "`gravity` in a scene without a fabric that has a `material`";
+        return Err(Problem::value(&at.span, found, "`gravity` beside such a fabric: it acts on nothing else"));
+    }
+    let mut si = [0.0; 3];
+    for (value, component) in si.iter_mut().zip(&at.value.0) {
+        *value = number(component, Quantity::Acceleration, units)?;
+    }
+    Ok(si)
 }
 
 /// What a scene with fabric cannot have (what the command line may ask for, too, is refused of the model).
@@ -62,6 +135,18 @@ pub(super) fn refuse(raw: &RawScene, problems: &mut Vec<Problem>) {
                 "`inside`, the name of a closed [[fabric]]; the last chamber has the rest",
             )
             .hint("probes may have regions"),
+        );
+    }
+    let without_gas = raw.fabric.iter().find(|fabric| fabric.value.external_pressure.is_some());
+    let outside = raw.chamber.iter().find(|chamber| chamber.value.inside.is_none() && chamber.value.region.is_none());
+    if let (Some(fabric), Some(chamber)) = (without_gas, outside) {
+        let found = format!(
+            "chamber {:?} around fabric {:?}, which has an `external_pressure`",
+            chamber.value.name.value, fabric.value.name.value
+        );
+        problems.push(
+            Problem::value(&chamber.span, found, "no chamber outside: an `external_pressure` is in place of gas there")
+                .hint("give the chamber `inside`, or leave out either of the two"),
         );
     }
 }

@@ -6,6 +6,8 @@
 
 mod entries;
 mod errors;
+mod fabric;
+mod fabric_material;
 mod fabrics;
 mod flows;
 mod gases;
@@ -17,13 +19,17 @@ mod numbers;
 mod parts;
 mod places;
 mod raw;
+mod raw_fabric;
+mod raw_region;
 mod raw_values;
+mod region;
 mod settings;
 mod structure;
 mod surface_model;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod toml_lines;
 pub(super) mod types;
 mod units;
 mod validate;
@@ -32,15 +38,18 @@ mod wall_surface;
 mod walls;
 mod words;
 mod write;
+mod write_fabric;
 
 use std::io::Read;
 use std::path::Path;
 
 pub use errors::{InvalidScene, Problem, SceneError};
+pub use fabric::*;
 pub use flows::FASTEST_JET;
 pub use gases::shown_collision_number;
 pub use lines::Lines;
 pub use motions::MOST_MOTIONS;
+pub use region::Region;
 pub use settings::{LEAST_ACCURACY, MOST_ACCURACY, MOST_DEVICE_RATE};
 pub use surface_model::*;
 pub use types::*;

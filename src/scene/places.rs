@@ -5,9 +5,11 @@ use super::gases::mixture;
 use super::names::Names;
 use super::numbers::{corners, direction, point, positive};
 use super::parts::Parts;
-use super::raw::{RawChamber, RawOpening, RawProbe, RawRegion, RawSurface};
+use super::raw::{RawChamber, RawOpening, RawProbe, RawSurface};
+use super::raw_region::RawRegion;
 use super::raw_values::At;
-use super::types::{Chamber, Opening, Probe, Region, Surface, UnitSystem};
+use super::region::Region;
+use super::types::{Chamber, Opening, Probe, Surface, UnitSystem};
 use super::units::Quantity;
 
 pub(super) fn region(raw: &RawRegion, units: UnitSystem) -> Result<Region, Problem> {

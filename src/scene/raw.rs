@@ -8,6 +8,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::raw_fabric::RawFabric;
+use super::raw_region::RawRegion;
 use super::raw_values::{At, NumberOr, Numbers, RawMixture};
 use super::types::Method;
 
@@ -24,6 +26,8 @@ pub struct RawScene {
     pub end_time: At<f64>,
     /// Seed of all random numbers, 0 to 2^56 - 1; 1 unless given.
     pub seed: Option<At<i64>>,
+    /// Acceleration of free fall of fabric that has a material (SI: m/s2); none unless given.
+    pub gravity: Option<At<Numbers<3>>>,
     /// The gases that occur in the scene, 1 to 16.
     #[serde(default)]
     pub gas: Vec<At<RawGas>>,
@@ -51,7 +55,7 @@ pub struct RawScene {
     /// Walls that move.
     #[serde(default)]
     pub motion: Vec<At<RawMotion>>,
-    /// Surfaces that deform as a file says, with gas on both sides.
+    /// Surfaces with gas on both sides that the gas moves, or that deform as a file says.
     #[serde(default)]
     pub fabric: Vec<At<RawFabric>>,
     /// What the plan otherwise decides.
@@ -226,49 +230,6 @@ pub struct RawHole {
     pub flow_only: Option<At<bool>>,
 }
 
-/// A part of space.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum RawRegion {
-    Box(RawBox),
-    Sphere(RawSphere),
-    Cylinder(RawCylinder),
-}
-
-/// An axis-aligned box.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawBox {
-    /// Corner of least coordinates.
-    pub min: At<Numbers<3>>,
-    /// Corner of greatest coordinates.
-    pub max: At<Numbers<3>>,
-}
-
-/// A ball.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawSphere {
-    /// Centre.
-    pub center: At<Numbers<3>>,
-    /// Radius.
-    pub radius: At<f64>,
-}
-
-/// A cylinder.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawCylinder {
-    /// Centre of the lower end.
-    pub base: At<Numbers<3>>,
-    /// Direction from the lower to the upper end, of any length.
-    pub axis: At<Numbers<3>>,
-    /// Radius.
-    pub radius: At<f64>,
-    /// Distance between the ends.
-    pub height: At<f64>,
-}
-
 /// The initial gas of a region.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -390,21 +351,6 @@ pub struct RawVent {
     pub opening_pressure_absolute: Option<At<f64>>,
     /// External pressure (SI: Pa); 101325 Pa unless given.
     pub external_pressure: Option<At<f64>>,
-}
-
-/// A surface whose nodes go where a file says, with gas on both sides.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawFabric {
-    /// Unique among fabrics and walls.
-    pub name: At<String>,
-    /// Path of an STL or OBJ file, relative to the scene file: the surface at the start.
-    pub file: At<String>,
-    /// Length units of the scene per unit of the files; 1 unless given.
-    pub scale: Option<At<f64>>,
-    /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files. Without it the
-    /// fabric stays as it is at the start.
-    pub motion: Option<At<String>>,
 }
 
 /// The motion of a wall along a straight line, as it is prescribed; exactly one of `velocity`, `displacement`.

@@ -36,8 +36,20 @@ pub(super) fn read(text: &str) -> Result<RawScene, Problem> {
 }
 
 /// The lists of tables of the format.
-const LISTS: [&str; 11] =
-    ["gas", "wall", "chamber", "opening", "orifice", "probe", "surface", "vent", "motion", "wall.hole", "wall.part"];
+const LISTS: [&str; 12] = [
+    "gas",
+    "wall",
+    "chamber",
+    "opening",
+    "orifice",
+    "probe",
+    "surface",
+    "vent",
+    "motion",
+    "fabric",
+    "wall.hole",
+    "wall.part",
+];
 
 /// What was probably meant where the text stops being TOML.
 fn syntax_hint(text: &str, span: &Range<usize>) -> Option<String> {

@@ -6,7 +6,9 @@
 
 use std::path::PathBuf;
 
+use super::fabric::Fabric;
 use super::lines::Lines;
+use super::region::Region;
 use super::surface_model::SurfaceModel;
 
 /// The universal gas constant, J/(mol K) (CODATA 2018, exact).
@@ -31,6 +33,8 @@ pub struct Scene {
     pub vents: Vec<Vent>,
     pub motions: Vec<Motion>,
     pub fabrics: Vec<Fabric>,
+    /// Of free fall, m/s2; it acts on membranes.
+    pub gravity: [f64; 3],
     pub model: ModelRequest,
     pub output: OutputRequest,
     /// Where its entries stand in the file.
@@ -212,13 +216,6 @@ pub enum Outline {
     },
 }
 
-#[derive(Debug, Clone, PartialEq)]
-pub enum Region {
-    Box { min: [f64; 3], max: [f64; 3] },
-    Sphere { center: [f64; 3], radius: f64 },
-    Cylinder { base: [f64; 3], axis: [f64; 3], radius: f64, height: f64 },
-}
-
 /// A part of the gas space with its own initial state; the history has its averages beside the
 /// control-volume reference. Where regions overlap the earlier chamber has the gas.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,17 +230,6 @@ pub struct Chamber {
     /// K.
     pub temperature: f64,
     pub mixture: Mixture,
-}
-
-/// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fabric {
-    pub name: String,
-    /// STL or OBJ, by extension: the surface at the start.
-    pub mesh: PathBuf,
-    pub scale: f64,
-    /// Where its nodes are over time; without it they rest.
-    pub motion: Option<PathBuf>,
 }
 
 /// A hole between two chambers, for the control-volume reference. Holes of boxes and planes are found

@@ -15,8 +15,10 @@ pub enum Quantity {
     Area,
     Volume,
     Mass,
+    Density,
     Time,
     Velocity,
+    Acceleration,
     Temperature,
     Pressure,
     MassFlow,
@@ -55,9 +57,13 @@ impl UnitSystem {
             (KgMmMs | TMmS, Volume) => 1e-9,
             (KgMmMs, Mass) => 1.0,
             (TMmS, Mass) => 1e3,
+            (KgMmMs, Density) => 1e9,
+            (TMmS, Density) => 1e12,
             (KgMmMs, Time) => 1e-3,
             (KgMmMs, Velocity) => 1.0,
             (TMmS, Velocity) => 1e-3,
+            (KgMmMs, Acceleration) => 1e3,
+            (TMmS, Acceleration) => 1e-3,
             (KgMmMs, Pressure) => 1e9,
             (KgMmMs, MassFlow) => 1e3,
             (KgMmMs, MolarMass | MolarHeat) => 1.0,
@@ -83,10 +89,16 @@ impl UnitSystem {
             (KgMmMs | TMmS, Volume) => "mm3",
             (Si | KgMmMs, Mass) => "kg",
             (TMmS, Mass) => "t",
+            (Si, Density) => "kg/m3",
+            (KgMmMs, Density) => "kg/mm3",
+            (TMmS, Density) => "t/mm3",
             (Si | TMmS, Time) => "s",
             (Si, Velocity) => "m/s",
             (KgMmMs, Velocity) => "mm/ms",
             (TMmS, Velocity) => "mm/s",
+            (Si, Acceleration) => "m/s2",
+            (KgMmMs, Acceleration) => "mm/ms2",
+            (TMmS, Acceleration) => "mm/s2",
             (Si, Pressure) => "Pa",
             (Si, MassFlow) => "kg/s",
             (Si | KgMmMs, MolarMass) => "kg/mol",
@@ -129,6 +141,8 @@ mod tests {
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);
             near(Quantity::Velocity, length / time);
+            near(Quantity::Acceleration, length / (time * time));
+            near(Quantity::Density, mass / length.powi(3));
             near(Quantity::HeatTransfer, mass / time.powi(3));
             near(Quantity::MolarMass, mass);
             near(Quantity::MolarHeat, mass * length * length / (time * time));

@@ -58,32 +58,36 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &parts, units));
     let motions = each(&raw.motion, &mut problems, |_, index| motions::motion(raw, index, &wall_names, units));
     let fabrics = each(&raw.fabric, &mut problems, |fabric, _| fabrics::fabric(fabric, units, base_dir));
+    let gravity = keep(fabrics::gravity(raw, units), &mut problems);
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);
     if gases.len() == raw.gas.len() {
         keep(settings::collision_number(&raw.model, &gases, &raw.gas, units), &mut problems);
     }
 
-    match (title, end_time, seed, model, output) {
-        (Some(title), Some(end_time), Some(seed), Some(model), Some(output)) if problems.is_empty() => Ok(Scene {
-            title,
-            units,
-            end_time,
-            seed,
-            gases,
-            walls,
-            chambers,
-            openings,
-            orifices,
-            probes,
-            surfaces,
-            vents,
-            motions,
-            fabrics,
-            model,
-            output,
-            lines: Lines::default(),
-        }),
+    match (title, end_time, seed, gravity, model, output) {
+        (Some(title), Some(end_time), Some(seed), Some(gravity), Some(model), Some(output)) if problems.is_empty() => {
+            Ok(Scene {
+                title,
+                units,
+                end_time,
+                seed,
+                gases,
+                walls,
+                chambers,
+                openings,
+                orifices,
+                probes,
+                surfaces,
+                vents,
+                motions,
+                fabrics,
+                gravity,
+                model,
+                output,
+                lines: Lines::default(),
+            })
+        }
         _ => Err(problems),
     }
 }

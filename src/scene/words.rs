@@ -30,13 +30,23 @@ const KEYS: &[(&[&str], &str, &str)] = &[
     (&["type", "kind"], "shape", ""),
     (&["path", "mesh", "stl", "filename"], "file", ""),
     (&["composition", "species", "mixture", "fractions"], "gas", ""),
+    (&["e", "ea", "modulus", "youngs_modulus", "young_modulus", "elastic_modulus", "eb"], "young", ""),
+    (&["nu", "pr", "prba", "prab", "poisson_ratio"], "poisson", ""),
+    (&["g", "gab", "shear_modulus"], "shear", ""),
+    (&["rho", "ro", "mass_density"], "density", ""),
+    (&["h", "t", "t1", "thick"], "thickness", ""),
+    (&["damp", "xi", "damping_ratio"], "damping", ""),
+    (&["fiber", "warp", "direction", "aopt"], "fibre", ", the direction of the warp"),
+    (&["mat", "mat_fabric", "membrane"], "material", ": [fabric.material], below its [[fabric]]"),
+    (&["spc", "boundary", "held", "fix"], "fixed", ""),
+    (&["reference_geometry", "isrefg", "flat"], "reference", ", a mesh file"),
     (&["p_ext", "ambient_pressure", "atmospheric_pressure", "pressure"], "external_pressure", ""),
 ];
 
 /// Keys and where they stand, where that is one table alone, or before all tables.
 const HOMES: &[(&[&str], &str)] = &[
     (
-        &["end_time", "units", "title", "seed"],
+        &["end_time", "units", "title", "seed", "gravity"],
         "stands before the first table of the file: what follows a header belongs to its table",
     ),
     (
@@ -57,6 +67,10 @@ const HOMES: &[(&[&str], &str)] = &[
     ),
     (&["rows", "snapshots"], "is a key of [output]"),
     (&["hole"], "is a part of a wall: [[wall.hole]], below its [[wall]]"),
+    (
+        &["thickness", "density", "young", "poisson", "shear", "fibre", "damping"],
+        "is a key of a fabric's material: [fabric.material], below its [[fabric]]",
+    ),
     (&["jet"], "is a key of an [[orifice]]"),
     (&["molar_mass", "gamma", "cp", "cv"], "is a key of a [[gas]]"),
 ];

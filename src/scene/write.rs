@@ -1,18 +1,21 @@
 //! A scene as resolved: in SI, every default explicit. Reading it back gives an equal scene (but for
 //! `units`, which says SI then).
 
-use std::fmt::Write;
-
 use super::surface_model::{HeatTransfer, SurfaceModel};
+use super::toml_lines::{TomlLines, quoted, region_table, shown};
 use super::types::*;
+use super::write_fabric::write_fabric;
 
 /// The scene as a TOML text.
 pub fn to_toml(scene: &Scene) -> String {
-    let mut out = Lines(String::new());
+    let mut out = TomlLines::default();
     out.text("title", &scene.title);
     out.text("units", "SI");
     out.number("end_time", scene.end_time);
     out.count("seed", scene.seed);
+    if scene.gravity != [0.0; 3] {
+        out.numbers("gravity", &scene.gravity);
+    }
     for gas in &scene.gases {
         out.header("[[gas]]");
         out.text("name", &gas.name);
@@ -73,7 +76,7 @@ pub fn to_toml(scene: &Scene) -> String {
         out.header("[[surface]]");
         out.text("name", &surface.name);
         out.text("wall", &scene.walls[surface.wall].name);
-        out.face(surface.face, &scene.walls[surface.wall]);
+        write_face(&mut out, surface.face, &scene.walls[surface.wall]);
     }
     for vent in &scene.vents {
         write_vent(&mut out, vent, scene);
@@ -81,20 +84,12 @@ pub fn to_toml(scene: &Scene) -> String {
     for motion in &scene.motions {
         write_motion(&mut out, motion, scene);
     }
-    for fabric in &scene.fabrics {
-        out.header("[[fabric]]");
-        out.text("name", &fabric.name);
-        out.text("file", &fabric.mesh.to_string_lossy());
-        out.number("scale", fabric.scale);
-        if let Some(motion) = &fabric.motion {
-            out.text("motion", &motion.to_string_lossy());
-        }
-    }
+    scene.fabrics.iter().for_each(|fabric| write_fabric(&mut out, fabric));
     write_settings(&mut out, scene);
-    out.0
+    out.into_text()
 }
 
-fn write_wall(out: &mut Lines, wall: &Wall) {
+fn write_wall(out: &mut TomlLines, wall: &Wall) {
     out.header("[[wall]]");
     out.text("name", &wall.name);
     let holes: &[Hole] = match &wall.shape {
@@ -150,7 +145,7 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
     }
     for part in &wall.parts {
         out.header("[[wall.part]]");
-        out.face(Some(part.face), wall);
+        write_face(out, Some(part.face), wall);
         write_heat(out, &part.surface);
         // What is not given is the wall's.
         out.number("friction", part.surface.friction);
@@ -158,7 +153,7 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
     for hole in holes {
         out.header("[[wall.hole]]");
         out.text("name", &hole.name);
-        out.face(Some(hole.face).filter(|face| *face != Face::Plane), wall);
+        write_face(out, Some(hole.face).filter(|face| *face != Face::Plane), wall);
         out.numbers("center", &hole.center);
         match hole.outline {
             Outline::Rectangle { size } => out.numbers("size", &size),
@@ -173,7 +168,7 @@ fn write_wall(out: &mut Lines, wall: &Wall) {
     }
 }
 
-fn write_heat(out: &mut Lines, surface: &SurfaceModel) {
+fn write_heat(out: &mut TomlLines, surface: &SurfaceModel) {
     let Some(heat) = &surface.heat else { return };
     out.number("temperature", heat.temperature);
     match heat.transfer {
@@ -182,11 +177,11 @@ fn write_heat(out: &mut Lines, surface: &SurfaceModel) {
     }
 }
 
-fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
+fn write_vent(out: &mut TomlLines, vent: &Vent, scene: &Scene) {
     out.header("[[vent]]");
     out.text("name", &vent.name);
     out.text("wall", &scene.walls[vent.wall].name);
-    out.face(vent.face, &scene.walls[vent.wall]);
+    write_face(out, vent.face, &scene.walls[vent.wall]);
     if let Some(chamber) = vent.chamber {
         out.text("chamber", &scene.chambers[chamber].name);
     }
@@ -206,7 +201,7 @@ fn write_vent(out: &mut Lines, vent: &Vent, scene: &Scene) {
     out.number("external_pressure", vent.external_pressure);
 }
 
-fn write_motion(out: &mut Lines, motion: &Motion, scene: &Scene) {
+fn write_motion(out: &mut TomlLines, motion: &Motion, scene: &Scene) {
     out.header("[[motion]]");
     out.text("wall", &scene.walls[motion.wall].name);
     out.numbers("direction", &motion.direction);
@@ -216,7 +211,13 @@ fn write_motion(out: &mut Lines, motion: &Motion, scene: &Scene) {
     }
 }
 
-fn write_settings(out: &mut Lines, scene: &Scene) {
+fn write_face(out: &mut TomlLines, face: Option<Face>, wall: &Wall) {
+    if let Some(face) = face {
+        out.text("face", &face.name(wall));
+    }
+}
+
+fn write_settings(out: &mut TomlLines, scene: &Scene) {
     let model = &scene.model.clone().heeded();
     out.header("[model]");
     if let Some(method) = model.method {
@@ -269,58 +270,6 @@ fn write_settings(out: &mut Lines, scene: &Scene) {
     }
 }
 
-struct Lines(String);
-
-impl Lines {
-    fn entry(&mut self, key: &str, value: &str) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(self.0, "{key} = {value}");
-    }
-    fn header(&mut self, header: &str) {
-        let _ = writeln!(self.0, "\n{header}");
-    }
-    fn text(&mut self, key: &str, value: &str) {
-        self.entry(key, &quoted(value));
-    }
-    fn number(&mut self, key: &str, value: f64) {
-        self.entry(key, &shown(value));
-    }
-    fn count(&mut self, key: &str, value: u64) {
-        self.entry(key, &value.to_string());
-    }
-    fn flag(&mut self, key: &str, value: bool) {
-        self.entry(key, &value.to_string());
-    }
-    fn numbers(&mut self, key: &str, values: &[f64]) {
-        self.entry(key, &array(values));
-    }
-    fn curve(&mut self, key: &str, curve: &Curve) {
-        let points: Vec<String> = curve.points.iter().map(|point| array(point)).collect();
-        self.entry(key, &format!("[{}]", points.join(", ")));
-    }
-    fn face(&mut self, face: Option<Face>, wall: &Wall) {
-        if let Some(face) = face {
-            self.text("face", &face.name(wall));
-        }
-    }
-}
-
-fn region_table(region: &Region) -> String {
-    match region {
-        Region::Box { min, max } => format!("{{ box = {{ min = {}, max = {} }} }}", array(min), array(max)),
-        Region::Sphere { center, radius } => {
-            format!("{{ sphere = {{ center = {}, radius = {} }} }}", array(center), shown(*radius))
-        }
-        Region::Cylinder { base, axis, radius, height } => format!(
-            "{{ cylinder = {{ base = {}, axis = {}, radius = {}, height = {} }} }}",
-            array(base),
-            array(axis),
-            shown(*radius),
-            shown(*height)
-        ),
-    }
-}
-
 fn mixture_table(mixture: &Mixture, gases: &[Gas]) -> String {
     let parts: Vec<String> = mixture
         .0
@@ -328,20 +277,6 @@ fn mixture_table(mixture: &Mixture, gases: &[Gas]) -> String {
         .map(|&(gas, fraction)| format!("{} = {}", quoted(&gases[gas].name), shown(fraction)))
         .collect();
     format!("{{ {} }}", parts.join(", "))
-}
-
-/// The shortest decimal that reads back as the same number.
-fn shown(number: f64) -> String {
-    format!("{number:?}")
-}
-
-fn array(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().map(|&v| shown(v)).collect();
-    format!("[{}]", values.join(", "))
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
 }
 
 /// The degrees that read back as just this angle; rounding can move the plain conversion by a unit.

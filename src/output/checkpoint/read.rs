@@ -12,7 +12,7 @@ use super::error::CheckpointError;
 use super::layout::{ID_MASK, ID_OFFSET, MANIFEST, PLAN, RECORD_BYTES, SCENE, STATE, complete, particle_file};
 use super::manifest::{self, Adapter, FileRecord, Manifest};
 use crate::output::checksum::length_and_crc;
-use crate::scene::{Scene, Shape, UnitSystem};
+use crate::scene::{FABRIC_FILES, Fabric, Scene, Shape, UnitSystem, is_one_file};
 
 /// The state is far smaller: it does not grow with the particles.
 const MOST_STATE_BYTES: u64 = 1 << 30;
@@ -91,14 +91,11 @@ impl Checkpoint {
         let mut scene: toml::Table = text.parse().map_err(|error: toml::de::Error| content(error.to_string()))?;
         let mut meshes = meshes.into_iter();
         // In the order of `meshes_of`.
-        for (list, key) in [("wall", "file"), ("fabric", "file")] {
+        for (list, keys) in [("wall", &["file"][..]), ("fabric", &FABRIC_FILES)] {
             let entries = scene.get_mut(list).and_then(toml::Value::as_array_mut);
             for entry in entries.into_iter().flatten() {
-                let files = [Some(key), (list == "fabric").then_some("motion")].into_iter().flatten();
-                for key in files {
-                    let kept = |file: &toml::Value| {
-                        key == "file" || file.as_str().is_some_and(|name| name.ends_with(".nodes"))
-                    };
+                for &key in keys {
+                    let kept = |file: &toml::Value| file.as_str().is_some_and(|name| is_one_file(Path::new(name)));
                     if let Some(file) = entry.get_mut(key)
                         && kept(file)
                         && let Some(mesh) = meshes.next()
@@ -124,10 +121,7 @@ impl Checkpoint {
             Shape::Mesh { path, .. } => Some(path),
             _ => None,
         });
-        let kept = |path: &&mut PathBuf| path.extension().is_some_and(|ending| ending == "nodes");
-        let of_fabric = scene.fabrics.iter_mut();
-        let of_fabric =
-            of_fabric.flat_map(|fabric| std::iter::once(&mut fabric.mesh).chain(fabric.motion.as_mut().filter(kept)));
+        let of_fabric = scene.fabrics.iter_mut().flat_map(Fabric::files_mut);
         for (path, record) in paths.chain(of_fabric).zip(&self.manifest.mesh) {
             path.clone_from(&record.path);
         }

@@ -4,6 +4,7 @@
 //! A scene may mean it, so these are warnings. What is meant now and then is let pass: a chamber of near vacuum beside gas of
 //! ordinary pressure or before an inflow, free flight at any pressure, a vent into vacuum.
 
+mod fabrics;
 mod flows;
 mod heat;
 mod inflators;
@@ -61,6 +62,7 @@ fn of_scene(scene: &Scene) -> Vec<String> {
         let subject = format!("motion of wall `{}`", scene.walls[motion.wall].name);
         named(subject, "velocity").check(Kind::Speed, most(curve))
     }));
+    found.extend(fabrics::doubts(scene));
     found.into_iter().flatten().chain(times::doubts(scene)).chain(shapes::doubts(scene)).collect()
 }
 

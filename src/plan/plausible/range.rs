@@ -18,6 +18,11 @@ pub enum Kind {
     Discharge,
     /// Of what gas flows through.
     Area,
+    /// Of fabric, as its density and modulus.
+    Thickness,
+    Density,
+    Young,
+    Acceleration,
     EndTime,
     Steps,
 }
@@ -59,7 +64,8 @@ const fn range(kind: Kind, dimension: Dimension, [least, most]: [f64; 2], usual:
 
 /// All ranges. From a pressure cell to a gas gun in pressure, from cryogenic hydrogen's neighbours to propellant flames in
 /// temperature; 20 R is more than any gas of an inflator has (hexane: 17 R), an inflator gives a few kg/s, free convection and
-/// jets give 1 to 1e3 W/(m2 K), gas in guns and engines less than 1e4, and no gas here is faster than 1e4 m/s.
+/// jets give 1 to 1e3 W/(m2 K), gas in guns and engines less than 1e4, and no gas here is faster than 1e4 m/s. Fabric of airbags is of .2 to .5 mm, 800 kg/m3 and
+/// some .4 GPa; films are thinner, rubber is softer, and fibres are stiffer.
 pub const RANGES: &[Range] = &[
     range(Kind::Extent, Dimension::Length, [1e-3, 10.0], 0.3),
     range(Kind::Pressure, Dimension::Pressure, [1e3, 1e8], 101_325.0),
@@ -71,6 +77,10 @@ pub const RANGES: &[Range] = &[
     range(Kind::Speed, Dimension::Velocity, [0.0, 1e4], 300.0),
     range(Kind::Discharge, Dimension::Pure, [0.0, 1.0], 0.7),
     range(Kind::Area, Dimension::Area, [1e-8, 1.0], 5e-4),
+    range(Kind::Thickness, Dimension::Length, [1e-5, 5e-3], 3e-4),
+    range(Kind::Density, Dimension::Density, [50.0, 5000.0], 800.0),
+    range(Kind::Young, Dimension::Pressure, [1e6, 5e11], 4e8),
+    range(Kind::Acceleration, Dimension::Acceleration, [0.0, 1000.0], 9.81),
     range(Kind::EndTime, Dimension::Time, [1e-6, 100.0], 0.02),
     range(Kind::Steps, Dimension::Pure, [0.0, 1e8], 1e4),
 ];

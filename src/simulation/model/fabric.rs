@@ -232,6 +232,16 @@ struct Read {
 
 fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
     let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
+    if fabric.membrane.is_some() {
+        return Err(refused(
+            "it has a `material`, and gas does not move fabric yet: give its `motion`, or let it rest".into(),
+        ));
+    }
+    if fabric.external_pressure.is_some() {
+        return Err(refused(
+            "`external_pressure` is not possible yet: leave it out, and gas outside is in a chamber".into(),
+        ));
+    }
     let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
     mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);
     if mesh.triangles.is_empty() {

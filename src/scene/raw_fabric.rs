@@ -1,0 +1,102 @@
+//! Fabric as it is written in the scene file.
+
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+
+use super::raw_region::RawRegion;
+use super::raw_values::{At, NumberOr, Numbers};
+
+/// A surface with gas on both sides: of a `material` the gas moves it, with a `motion` a file does, else it rests.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawFabric {
+    /// Unique among fabrics and walls.
+    pub name: At<String>,
+    /// Path of an STL or OBJ file, relative to the scene file: the surface at the start.
+    pub file: At<String>,
+    /// Length units of the scene per unit of the files; 1 unless given.
+    pub scale: Option<At<f64>>,
+    /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files; not with `material`.
+    pub motion: Option<At<String>>,
+    /// What an elastic membrane is of, which the gas moves; not with `motion`.
+    pub material: Option<At<RawMaterial>>,
+    /// Of a membrane: path of a mesh file with the same triangles, free of stress; the surface at the start unless given.
+    pub reference: Option<At<String>>,
+    /// Of a membrane: the nodes that are held, by regions in which they are at the start, or `"edge"` for those of the
+    /// open edge; none unless given.
+    pub fixed: Option<At<RawFixed>>,
+    /// Of closed fabric: the uniform pressure outside, where no gas is then (SI: Pa).
+    pub external_pressure: Option<At<f64>>,
+}
+
+/// What a membrane is of. One `young` is an isotropic material; two, along the warp and along the weft, are a woven one.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawMaterial {
+    /// Thickness (SI: m).
+    pub thickness: At<f64>,
+    /// Mass per volume (SI: kg/m3).
+    pub density: At<f64>,
+    /// Young's modulus (SI: Pa): a number, or two, along the warp and along the weft.
+    pub young: At<NumberOr<f64>>,
+    /// Poisson's ratio, 0 to 0.5; with two moduli that of a pull along the warp, and without it warp and weft are uncoupled.
+    pub poisson: Option<At<f64>>,
+    /// Shear modulus (SI: Pa), with two moduli.
+    pub shear: Option<At<f64>>,
+    /// Direction of the warp, of any length, with two moduli; in each triangle its part along the stress-free triangle
+    /// counts.
+    pub fibre: Option<At<Numbers<3>>>,
+    /// Share of critical damping of the shortest waves where the fabric is taut, 0 to 1; 0.05 unless given.
+    pub damping: Option<At<f64>>,
+}
+
+/// Which nodes are held.
+#[derive(Debug)]
+pub enum RawFixed {
+    Edge,
+    Within(Vec<At<RawRegion>>),
+}
+
+const FIXED: &str = "\"edge\", or a list of regions such as [{ box = { min = [0, 0, 0], max = [1, 1, 1] } }]";
+
+impl<'de> Deserialize<'de> for RawFixed {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EdgeOrRegions;
+        impl<'de> Visitor<'de> for EdgeOrRegions {
+            type Value = RawFixed;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(FIXED)
+            }
+            fn visit_str<E: Error>(self, word: &str) -> Result<RawFixed, E> {
+                match word {
+                    "edge" => Ok(RawFixed::Edge),
+                    other => Err(E::invalid_value(serde::de::Unexpected::Str(other), &self)),
+                }
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<RawFixed, A::Error> {
+                let mut regions = Vec::new();
+                while let Some(region) = elements.next_element()? {
+                    regions.push(region);
+                }
+                Ok(RawFixed::Within(regions))
+            }
+        }
+        deserializer.deserialize_any(EdgeOrRegions)
+    }
+}
+
+impl JsonSchema for RawFixed {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Fixed".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let region = generator.subschema_for::<RawRegion>();
+        json_schema!({ "anyOf": [{ "const": "edge" }, { "type": "array", "items": region, "minItems": 1 }] })
+    }
+}

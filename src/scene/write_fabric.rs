@@ -1,0 +1,56 @@
+//! The way back of fabric.
+
+use super::fabric::{Elasticity, Fabric, Fixed, Membrane};
+use super::toml_lines::{TomlLines, region_table};
+
+pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
+    out.header("[[fabric]]");
+    out.text("name", &fabric.name);
+    out.text("file", &fabric.mesh.to_string_lossy());
+    out.number("scale", fabric.scale);
+    if let Some(motion) = &fabric.motion {
+        out.text("motion", &motion.to_string_lossy());
+    }
+    if let Some(pressure) = fabric.external_pressure {
+        out.number("external_pressure", pressure);
+    }
+    if let Some(membrane) = &fabric.membrane {
+        write_membrane(out, membrane);
+    }
+}
+
+fn write_membrane(out: &mut TomlLines, membrane: &Membrane) {
+    if let Some(reference) = &membrane.reference {
+        out.text("reference", &reference.to_string_lossy());
+    }
+    match &membrane.fixed {
+        Fixed::Nothing => {}
+        Fixed::Edge => out.text("fixed", "edge"),
+        Fixed::Within(regions) => {
+            let regions: Vec<String> = regions.iter().map(region_table).collect();
+            out.entry("fixed", &format!("[{}]", regions.join(", ")));
+        }
+    }
+    let material = &membrane.material;
+    out.header("[fabric.material]");
+    out.number("thickness", material.thickness);
+    out.number("density", material.density);
+    match &material.elasticity {
+        Elasticity::Isotropic { young, poisson } => {
+            out.number("young", *young);
+            out.number("poisson", *poisson);
+        }
+        Elasticity::Orthotropic { young, poisson, shear, fibre } => {
+            out.numbers("young", young);
+            out.number("poisson", *poisson);
+            out.number("shear", *shear);
+            out.numbers("fibre", fibre);
+        }
+        Elasticity::Woven { young, shear, fibre } => {
+            out.numbers("young", young);
+            out.number("shear", *shear);
+            out.numbers("fibre", fibre);
+        }
+    }
+    out.number("damping", material.damping);
+}
