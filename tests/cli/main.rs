@@ -11,6 +11,7 @@ mod stability;
 mod strict;
 mod sweep;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -81,7 +82,7 @@ fn scene_with(folder: &TempDir, from: &str, to: &str) -> PathBuf {
     path
 }
 
-const VERBS: [&str; 16] = [
+const VERBS: [&str; 18] = [
     "run",
     "resume",
     "refine",
@@ -90,6 +91,8 @@ const VERBS: [&str; 16] = [
     "pareto",
     "stability",
     "bench",
+    "report",
+    "watch",
     "render",
     "plan",
     "check",
@@ -102,7 +105,15 @@ const VERBS: [&str; 16] = [
 
 #[test]
 fn every_verb_has_its_help() {
-    insta::assert_snapshot!("help", printed(&["--help"]));
+    let all = printed(&["--help"]);
+    let listed =
+        all.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1).take_while(|line| !line.is_empty());
+    let listed: BTreeSet<&str> = listed
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "))
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert_eq!(listed, VERBS.into_iter().chain(["help"]).collect(), "each verb has a golden text");
+    insta::assert_snapshot!("help", all);
     for verb in VERBS {
         insta::assert_snapshot!(format!("help_{verb}"), printed(&[verb, "--help"]));
     }

@@ -7,10 +7,12 @@ use std::time::Duration;
 use serde_json::json;
 
 use super::driver::Browser;
-use super::{reported, run, scene};
+use super::{bag, reported, run, scene};
 
 const FIRST: &str = "figure[data-figure='0']";
 const RIGHT: &str = "\u{e014}";
+const TAB: &str = "\u{e004}";
+const SHIFT: char = '\u{e008}';
 
 /// Curves that the first chart shows.
 fn drawn(browser: &Browser) -> u64 {
@@ -106,6 +108,70 @@ fn view_works(browser: &Browser, snapshots: u64) {
     assert_eq!(browser.evaluate(shown), json!(walls - 1));
 }
 
+/// Goes on with the tabulator, back with Shift, until an element has the focus; each one on the way shows that it has it.
+fn tab_to(browser: &Browser, selector: &str, held: Option<char>) {
+    const MOST: usize = 300;
+    let there = format!("return document.activeElement.matches(\"{selector}\")");
+    let is_seen = "const e = document.activeElement; if (e === document.body) return true; const s = getComputedStyle(e); \
+        return e.matches(':focus-visible') && s.outlineStyle !== 'none' && parseFloat(s.outlineWidth) >= 1";
+    for _ in 0..MOST {
+        browser.type_keys(held, TAB);
+        assert_eq!(browser.evaluate(is_seen), json!(true), "no focus to be seen on the way to {selector}");
+        if browser.evaluate(&there) == json!(true) {
+            return;
+        }
+    }
+    panic!("{MOST} tabulators do not lead to {selector}");
+}
+
+/// Without a pointer: a curve is switched off and on, the slider moves the view, the view turns, a wall goes.
+fn keys_alone_work(browser: &Browser) {
+    browser.evaluate("document.activeElement.blur(); scrollTo(0, 0)");
+    let curves = format!("return document.querySelectorAll(\"{FIRST} .scatterlayer .trace\").length");
+    tab_to(browser, &format!("{FIRST} .plot"), None);
+    browser.wait_until(&format!("{curves} > 1"));
+    let before = drawn(browser);
+    tab_to(browser, &format!("{FIRST} input[data-curve='0']"), None);
+    browser.type_keys(None, " ");
+    browser.wait_until(&format!("{curves} === {}", before - 1));
+    browser.type_keys(None, " ");
+    browser.wait_until(&format!("{curves} === {before}"));
+    tab_to(browser, "#frame", None);
+    browser.wait_until("return document.getElementById('moment').textContent.includes('particles')");
+    let first = browser.evaluate("return document.getElementById('moment').textContent");
+    browser.type_keys(None, RIGHT);
+    // What a screen reader is told, too.
+    let told = "const m = document.getElementById('moment').textContent; \
+        return m === document.getElementById('frame').getAttribute('aria-valuetext') && m !== ";
+    browser.wait_until(&format!("{told}{first}"));
+    tab_to(browser, "#view", None);
+    let eye = "return document.getElementById('view').layout.scene.camera.eye.x";
+    let from = browser.evaluate(eye);
+    browser.type_keys(None, RIGHT);
+    browser.wait_until(&format!("{eye} !== {from}"));
+    tab_to(browser, "#walls input[data-wall='0']", None);
+    let was = browser.evaluate("return document.activeElement.checked");
+    browser.type_keys(None, " ");
+    browser.wait_until(&format!("return document.activeElement.checked !== {was}"));
+    // And back.
+    tab_to(browser, "#play", Some(SHIFT));
+}
+
+/// The fabric is where it was at the time of the slider, and can be switched off.
+fn fabric_moves(browser: &Browser) {
+    browser.evaluate("document.getElementById('space').scrollIntoView()");
+    browser.wait_until("return document.getElementById('moment').textContent.includes('particles')");
+    let width = "const bag = document.getElementById('view').data.find(t => t.type === 'mesh3d' && t.name === 'bag'); \
+        return bag.visible ? Math.max(...bag.x) - Math.min(...bag.x) : 0";
+    let wide = browser.evaluate(width).as_f64().unwrap();
+    assert!((wide / 0.09 - 1.0).abs() < 0.02, "{wide}");
+    browser.press("#frame", &RIGHT.repeat(5));
+    let squeezed = browser.evaluate(width).as_f64().unwrap() / wide;
+    assert!((squeezed - 0.6934).abs() < 1e-4, "{squeezed}");
+    browser.click("#walls input[data-wall='1']");
+    assert_eq!(browser.evaluate(width), json!(0));
+}
+
 /// All charts are drawn for the printer, in both themes; nothing was loaded, and nothing failed.
 fn all_is_well(browser: &Browser) {
     browser.evaluate("dispatchEvent(new Event('beforeprint'))");
@@ -140,6 +206,11 @@ fn pages_work_in_a_browser() {
     );
     let ranks = "return document.getElementById('view').data.filter(t => t.type === 'scatter3d').length";
     assert_eq!(browser.evaluate(ranks), json!(2));
+    keys_alone_work(&browser);
+    all_is_well(&browser);
+
+    browser.open(&bag(folder.path()).join("report.html"));
+    fabric_moves(&browser);
     all_is_well(&browser);
 
     let vent = scene(folder.path(), "vent.toml", "4e-3", &[]);

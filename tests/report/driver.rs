@@ -134,6 +134,16 @@ impl Browser {
         self.post(&format!("/element/{element}/value"), &json!({ "text": keys }));
     }
 
+    /// Presses and releases keys one after the other, with another held; whatever has the focus takes them.
+    pub fn type_keys(&self, held: Option<char>, keys: &str) {
+        let stroke = |kind: &str, key: char| json!({ "type": kind, "value": key.to_string() });
+        let strokes = keys.chars().flat_map(|key| [stroke("keyDown", key), stroke("keyUp", key)]);
+        let down = held.map(|key| stroke("keyDown", key));
+        let up = held.map(|key| stroke("keyUp", key));
+        let strokes: Vec<Value> = down.into_iter().chain(strokes).chain(up).collect();
+        self.post("/actions", &json!({ "actions": [{ "type": "key", "id": "keyboard", "actions": strokes }] }));
+    }
+
     /// Moves the pointer to a place from the middle of an element.
     pub fn point(&self, selector: &str, x: i32, y: i32) {
         let element = self.element(selector);

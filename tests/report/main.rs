@@ -65,3 +65,12 @@ fn short_run(out: &Path, more: &[&str]) -> PathBuf {
     let basic = ["--particles", "500", "--steps", "64"];
     run(&Path::new(ROOT).join("scenes/box.toml"), out, &[&basic, more].concat())
 }
+
+/// The bag that is squeezed, with six snapshots.
+fn bag(folder: &Path) -> PathBuf {
+    let beside = |name: &str| format!("\"{ROOT}/scenes/{name}\"");
+    let files = [("\"bag.obj\"", beside("bag.obj")), ("\"bag.nodes\"", beside("bag.nodes"))];
+    let files = files.each_ref().map(|(old, new)| (*old, new.as_str()));
+    let scene = scene(folder, "bag.toml", "5e-3", &files);
+    run(&scene, &folder.join("bag"), &["--particles", "1000", "--report"])
+}

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{reported, run, scene, short_run};
+use super::{bag, reported, run, scene, short_run};
 
 /// The file without the script of another's that draws the charts.
 fn own_part(path: &Path) -> String {
@@ -87,6 +87,27 @@ fn every_column_is_a_curve() {
     // One for the state at the start, and what `--steps` has stopped at.
     assert_eq!(data["view"]["frames"].as_array().unwrap().len(), 2);
     assert_eq!(data["view"]["walls"][0]["name"], "box");
+}
+
+/// The fabric of each snapshot is on the page, where it was then.
+#[test]
+fn fabric_is_in_every_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = bag(folder.path()).join("report.html");
+    let data = data(&path);
+    let frames = data["view"]["frames"].as_array().unwrap();
+    let meshes: Vec<&Value> = frames.iter().map(|frame| &frame["fabric"][0]).collect();
+    assert!(frames.len() == 6 && meshes.iter().all(|mesh| mesh["name"] == "bag"));
+    assert!(meshes.windows(2).all(|pair| pair[0]["vertices"] != pair[1]["vertices"]), "it is squeezed");
+    assert!(meshes.windows(2).all(|pair| pair[0]["triangles"] == pair[1]["triangles"]));
+    let html = own_part(&path);
+    assert!(html.contains("<legend>Walls, fabric</legend>") && !html.contains("drawn coarser"));
+    // One that is cut off leaves its snapshot out, and the page says so.
+    let fabric = folder.path().join("bag/snapshots/fabric_000002.vtp");
+    let bytes = fs::read(&fabric).unwrap();
+    fs::write(&fabric, &bytes[..bytes.len() / 2]).unwrap();
+    let html = own_part(&reported(&[folder.path().join("bag").to_str().unwrap()]));
+    assert!(html.contains("left out: ") && html.contains("fabric_000002.vtp"));
 }
 
 /// A box of air at rest in kg, mm, ms.

@@ -8,7 +8,8 @@ use std::path::Path;
 use super::super::OutputError;
 use super::super::local_temperature::local_temperatures;
 use super::super::snapshot_read::{Snapshot, SnapshotEntry, snapshots_of};
-use super::packed;
+use super::surfaces::Surfaces;
+use super::{extent, packed};
 
 /// Particles of a snapshot that temperatures are made of, about.
 const MOST_MEASURED: u64 = 200_000;
@@ -33,6 +34,8 @@ pub struct Frame {
     pub gas: Vec<u8>,
     /// Empty of a run on one device.
     pub subdomain: Vec<u32>,
+    /// None of a scene without.
+    pub fabric: Surfaces,
 }
 
 /// The samples of a run.
@@ -60,14 +63,17 @@ impl Cloud {
         // The last one has the most, unless gas leaves; of none more is held than is asked for.
         let mut frames: Vec<Sampled> = Vec::new();
         for entry in &chosen {
-            match Snapshot::read(entry) {
-                Ok(snapshot) => {
+            let fabric = Surfaces::fabric(entry, chosen.len());
+            match Snapshot::read(entry).and_then(|snapshot| Ok((snapshot, fabric?))) {
+                Ok((snapshot, fabric)) => {
                     if cloud.gases.is_empty() {
                         cloud.gases.clone_from(&snapshot.gas_names);
                     }
                     let share = share(MOST_SHOWN.min(MOST_OF_ALL / chosen.len() as u64), snapshot.ids.len() as u64);
                     cloud.share = cloud.share.min(share);
-                    frames.push(Sampled::of(&snapshot, entry.time, cloud.share, molar_masses));
+                    let mut sampled = Sampled::of(&snapshot, entry.time, cloud.share, molar_masses);
+                    sampled.frame.fabric = fabric;
+                    frames.push(sampled);
                 }
                 Err(error) => cloud.unreadable.push(error.to_string()),
             }
@@ -83,12 +89,7 @@ impl Cloud {
 
     /// Lowest and highest corner, m; `None` without particles.
     pub fn corners(&self) -> Option<[[f64; 3]; 2]> {
-        let points = || self.frames.iter().flat_map(|frame| &frame.position);
-        points().next()?;
-        let end = |pick: fn(f64, f64) -> f64, start: f64| {
-            points().fold([start; 3], |end, point| std::array::from_fn(|axis| pick(end[axis], point[axis])))
-        };
-        Some([end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)])
+        extent::of(self.frames.iter().flat_map(|frame| &frame.position))
     }
 
     /// The range of a list that leaves out the outermost thousandths, so that single particles do not set it.

@@ -1,12 +1,13 @@
 //! The page of a run, of several runs side by side, or of a study: `report.html`, made from files of results alone.
 //!
 //! [`record`] reads the folder of a run; [`run`], [`compare`] and [`study`] say what stands on a page; [`page`] makes one
-//! file of it. A page has a part of the data: [`series`] joins rows, [`cloud`] takes a sample of the particles, [`walls`]
+//! file of it. A page has a part of the data: [`series`] joins rows, [`cloud`] takes a sample of the particles, [`surfaces`]
 //! makes fine meshes coarser, and the page says so. [`watch`] tells of a run in a terminal.
 
 mod cloud;
 mod columns;
 mod compare;
+mod extent;
 mod figure;
 mod packed;
 mod page;
@@ -15,9 +16,9 @@ mod run;
 mod series;
 mod state;
 mod study;
+mod surfaces;
 mod verdict;
 mod view;
-mod walls;
 mod watch;
 
 use std::path::{Path, PathBuf};

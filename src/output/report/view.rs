@@ -1,4 +1,4 @@
-//! The three-dimensional view of a page: walls and particles in the units of the scene, packed.
+//! The three-dimensional view of a page: walls, fabric and particles in the units of the scene, packed.
 
 use serde::Serialize;
 
@@ -6,9 +6,9 @@ use super::super::error::OutputError;
 use super::super::history::History;
 use super::cloud::{Cloud, steps};
 use super::columns::Unit;
-use super::packed;
 use super::record::Record;
-use super::walls::{WallMesh, Walls};
+use super::surfaces::{SurfaceMesh, Surfaces};
+use super::{extent, packed};
 use crate::scene::{Scene, UnitSystem};
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,12 +24,14 @@ pub struct View {
     temperature: [f64; 2],
     /// None of a run on one device.
     subdomains: u32,
-    walls: Vec<PackedWall>,
+    walls: Vec<PackedSurface>,
+    /// Whether any snapshot has fabric.
+    pub has_fabric: bool,
     frames: Vec<PackedFrame>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct PackedWall {
+struct PackedSurface {
     name: String,
     vertices: String,
     triangles: String,
@@ -37,6 +39,7 @@ struct PackedWall {
     shifts: Vec<[f64; 3]>,
 }
 
+/// A snapshot; what it shows of its fabric has the same names at all times.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct PackedFrame {
     time: f64,
@@ -46,6 +49,7 @@ struct PackedFrame {
     temperature: String,
     gas: String,
     subdomain: String,
+    fabric: Vec<PackedSurface>,
 }
 
 /// A view, or why there is none, and what is to be said of it.
@@ -61,10 +65,11 @@ impl Viewed {
     pub fn of(record: &Record) -> Result<Viewed, OutputError> {
         let molar_masses: Vec<f64> = record.scene.gases.iter().map(|gas| gas.molar_mass).collect();
         let cloud = Cloud::read(&record.path, &molar_masses)?;
-        let walls = Walls::read(&record.path)?;
+        let walls = Surfaces::walls(&record.path)?;
         let mut notes: Vec<String> = cloud.unreadable.iter().map(|why| format!("left out: {why}")).collect();
-        let corners = [cloud.corners(), walls.corners()];
-        let Some([low, high]) = corners.into_iter().flatten().reduce(around) else {
+        let fabric = cloud.frames.iter().map(|frame| frame.fabric.corners());
+        let corners = [cloud.corners(), walls.corners()].into_iter().chain(fabric).flatten();
+        let Some([low, high]) = corners.reduce(extent::around) else {
             notes.push("The folder has no snapshots: `snapshots` in [output] says how many there shall be.".to_owned());
             return Ok(Viewed { view: None, notes });
         };
@@ -78,33 +83,30 @@ impl Viewed {
         if let Some(triangles) = walls.coarser_than {
             notes.push(format!("The walls are drawn coarser than their {triangles} triangles."));
         }
+        if let Some(triangles) = cloud.frames.iter().find_map(|frame| frame.fabric.coarser_than) {
+            notes.push(format!("The fabric is drawn coarser than its {triangles} triangles."));
+        }
         let view = View::new(record, &cloud, &walls, [low, high]);
         Ok(Viewed { view: Some(view), notes })
     }
 }
 
-fn around([low, high]: [[f64; 3]; 2], [other_low, other_high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
-    let of = |pick: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|axis| pick(a[axis], b[axis]));
-    [of(f64::min, low, other_low), of(f64::max, high, other_high)]
-}
-
 impl View {
-    fn new(record: &Record, cloud: &Cloud, walls: &Walls, [low, high]: [[f64; 3]; 2]) -> View {
+    fn new(record: &Record, cloud: &Cloud, walls: &Surfaces, [low, high]: [[f64; 3]; 2]) -> View {
         let system: UnitSystem = record.scene.units;
         let [length, velocity, time] = [Unit::length(system), Unit::velocity(system), Unit::time(system)];
         let in_unit = |range: [f64; 2], unit: Unit| range.map(|end| end / unit.factor);
         let [speed, temperature] = [cloud.range(|frame| &frame.speed), cloud.range(|frame| &frame.temperature)];
         let ranks = cloud.frames.iter().flat_map(|frame| &frame.subdomain).max().map_or(0, |last| last + 1);
         let times: Vec<f64> = cloud.frames.iter().map(|frame| frame.time).collect();
-        let wall = |(index, mesh): (usize, &WallMesh)| PackedWall {
+        let surface = |mesh: &SurfaceMesh, shifts: Vec<[f64; 3]>| PackedSurface {
             name: mesh.name.clone(),
             vertices: packed::floats(mesh.vertices.iter().flatten().map(|x| x / length.factor)),
             triangles: packed::words(mesh.triangles.iter().flatten().copied()),
-            shifts: shifts(&record.scene, &record.history, index, &times)
-                .into_iter()
-                .map(|shift| shift.map(|x| x / length.factor))
-                .collect(),
+            shifts: shifts.into_iter().map(|shift| shift.map(|x| x / length.factor)).collect(),
         };
+        let wall =
+            |(index, mesh): (usize, &SurfaceMesh)| surface(mesh, shifts(&record.scene, &record.history, index, &times));
         let frames = cloud.frames.iter().map(|frame| PackedFrame {
             time: frame.time / time.factor,
             count: frame.count,
@@ -118,6 +120,7 @@ impl View {
             temperature: steps(&frame.temperature, temperature),
             gas: packed::bytes(frame.gas.clone()),
             subdomain: packed::shorts(frame.subdomain.iter().map(|&rank| rank.min(u32::from(u16::MAX)) as u16)),
+            fabric: frame.fabric.meshes.iter().map(|mesh| surface(mesh, Vec::new())).collect(),
         });
         View {
             length: length.symbol,
@@ -130,6 +133,7 @@ impl View {
             temperature,
             subdomains: if cloud.has_subdomains() { ranks } else { 0 },
             walls: walls.meshes.iter().enumerate().map(wall).collect(),
+            has_fabric: cloud.frames.iter().any(|frame| !frame.fabric.meshes.is_empty()),
             frames: frames.collect(),
         }
     }

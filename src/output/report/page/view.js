@@ -30,25 +30,36 @@ function startView(space) {
     }
     return unpacked.get(index);
   };
-  const meshes = space.walls.map(wall => {
+  const every = (list, axis) => list.filter((_, k) => k % 3 === axis);
+  const meshOf = wall => {
     const flat = floatsOf(wall.vertices), corners = wordsOf(wall.triangles);
-    const every = (list, axis) => list.filter((_, k) => k % 3 === axis);
     return { ...wall, x: every(flat, 0), y: every(flat, 1), z: every(flat, 2), i: every(corners, 0), j: every(corners, 1), k: every(corners, 2) };
-  });
-  meshes.forEach((mesh, index) => {
+  };
+  const meshes = space.walls.map(meshOf);
+  const fabrics = new Map();
+  const fabricOf = index => {
+    if (!fabrics.has(index)) fabrics.set(index, (space.frames[index]?.fabric ?? []).map(meshOf));
+    return fabrics.get(index);
+  };
+  const names = [...meshes.map(mesh => mesh.name), ...new Set(space.frames.flatMap(frame => frame.fabric.map(one => one.name)))];
+  names.forEach((name, index) => {
     const label = document.createElement("label");
     const box = document.createElement("input");
     box.type = "checkbox"; box.checked = true; box.dataset.wall = index;
     box.addEventListener("change", () => draw());
-    label.append(box, ` ${mesh.name}`);
+    label.append(box, ` ${name}`);
     walls.append(label);
   });
   const isShown = index => walls.querySelectorAll("input")[index].checked;
   const moved = (values, mesh, axis, frame) => mesh.shifts.length ? values.map(value => value + mesh.shifts[frame][axis]) : values;
-  const wallTraces = frame => meshes.map((mesh, index) => ({
+  const surface = (mesh, frame, visible, look) => ({
     type: "mesh3d", name: mesh.name, x: moved(mesh.x, mesh, 0, frame), y: moved(mesh.y, mesh, 1, frame), z: moved(mesh.z, mesh, 2, frame),
-    i: mesh.i, j: mesh.j, k: mesh.k, color: style("--soft"), opacity: 0.14, flatshading: true, hoverinfo: "name", visible: isShown(index),
-  }));
+    i: mesh.i, j: mesh.j, k: mesh.k, flatshading: true, hoverinfo: "name", visible, ...look,
+  });
+  const wallTraces = frame => [
+    ...meshes.map((mesh, index) => surface(mesh, frame, isShown(index), { color: style("--soft"), opacity: 0.14 })),
+    ...fabricOf(frame).map(mesh => surface(mesh, frame, isShown(names.indexOf(mesh.name, meshes.length)), { color: colour(4), opacity: 0.35 })),
+  ];
   const marks = more => ({ size: Number(size.value), line: { width: 0 }, ...more });
   const pick = (values, kinds, kind) => values.filter((_, k) => kinds[k] === kind);
   const SOLID = ["circle", "square", "diamond", "cross", "x"];

@@ -1,19 +1,21 @@
-//! The walls of a page's three-dimensional view: the triangles of `walls.vtp`, wall by wall.
+//! The surfaces of a page's three-dimensional view: walls as they are drawn, and the fabric at each snapshot.
 //!
-//! Meshes of more than [`MOST_TRIANGLES`] are made coarser: vertices in one cube of a grid become one, and triangles that lose
-//! their area go. The page says so.
+//! Meshes of too many triangles are made coarser: vertices in one cube of a grid become one, and triangles that lose their
+//! area go. The page says so.
 
 use std::collections::HashMap;
 use std::path::Path;
 
 use super::super::OutputError;
-use super::super::snapshot_read::SnapshotSurfaces;
+use super::super::snapshot_read::{SnapshotEntry, SnapshotSurfaces};
+use super::extent;
 
-/// Of all walls together.
+/// Of all walls together, and of the fabric in all snapshots together.
 const MOST_TRIANGLES: usize = 120_000;
+const MOST_FABRIC: usize = 300_000;
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct WallMesh {
+pub struct SurfaceMesh {
     pub name: String,
     /// m.
     pub vertices: Vec<[f64; 3]>,
@@ -21,48 +23,55 @@ pub struct WallMesh {
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Walls {
-    pub meshes: Vec<WallMesh>,
+pub struct Surfaces {
+    pub meshes: Vec<SurfaceMesh>,
     /// Triangles that there were, if there are fewer now.
     pub coarser_than: Option<usize>,
 }
 
-impl Walls {
+impl Surfaces {
     /// Of the folder of a run; none if it has no such file.
     ///
     /// # Errors
     /// If the file is broken.
-    pub fn read(run: &Path) -> Result<Walls, OutputError> {
-        let Some(read) = SnapshotSurfaces::walls(run)? else { return Ok(Walls::default()) };
-        let SnapshotSurfaces { mut vertices, mut triangles, owners: mut walls, names } = read;
+    pub fn walls(run: &Path) -> Result<Surfaces, OutputError> {
+        Ok(SnapshotSurfaces::walls(run)?.map_or_else(Surfaces::default, |read| Surfaces::of(read, MOST_TRIANGLES)))
+    }
+
+    /// The fabric beside one of so many snapshots; none if there is none.
+    ///
+    /// # Errors
+    /// If the file is broken.
+    pub fn fabric(entry: &SnapshotEntry, snapshots: usize) -> Result<Surfaces, OutputError> {
+        let most = MOST_FABRIC / snapshots.max(1);
+        Ok(SnapshotSurfaces::fabric(entry)?.map_or_else(Surfaces::default, |read| Surfaces::of(read, most)))
+    }
+
+    fn of(read: SnapshotSurfaces, most: usize) -> Surfaces {
+        let SnapshotSurfaces { mut vertices, mut triangles, mut owners, names } = read;
         let before = triangles.len();
-        while triangles.len() > MOST_TRIANGLES {
-            (vertices, triangles, walls) = coarser(&vertices, &triangles, &walls);
+        while triangles.len() > most {
+            (vertices, triangles, owners) = coarser(&vertices, &triangles, &owners);
         }
-        let count = walls.iter().max().map_or(0, |last| *last as usize + 1);
+        let count = owners.iter().max().map_or(0, |last| *last as usize + 1);
         let meshes = (0..count).map(|index| {
-            let own = triangles.iter().zip(&walls).filter(|(_, wall)| **wall as usize == index);
-            let name = names.get(index).cloned().unwrap_or_else(|| format!("wall {index}"));
+            let own = triangles.iter().zip(&owners).filter(|(_, owner)| **owner as usize == index);
+            let name = names.get(index).cloned().unwrap_or_else(|| format!("surface {index}"));
             mesh(name, &vertices, own.map(|(triangle, _)| *triangle))
         });
-        Ok(Walls { meshes: meshes.collect(), coarser_than: (triangles.len() < before).then_some(before) })
+        Surfaces { meshes: meshes.collect(), coarser_than: (triangles.len() < before).then_some(before) }
     }
 
     /// Lowest and highest corner, m.
     pub fn corners(&self) -> Option<[[f64; 3]; 2]> {
-        let points = || self.meshes.iter().flat_map(|mesh| &mesh.vertices);
-        points().next()?;
-        let end = |pick: fn(f64, f64) -> f64, start: f64| {
-            points().fold([start; 3], |end, point| std::array::from_fn(|axis| pick(end[axis], point[axis])))
-        };
-        Some([end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)])
+        extent::of(self.meshes.iter().flat_map(|mesh| &mesh.vertices))
     }
 }
 
 /// With the vertices that its triangles have.
-fn mesh(name: String, vertices: &[[f64; 3]], triangles: impl Iterator<Item = [u32; 3]>) -> WallMesh {
+fn mesh(name: String, vertices: &[[f64; 3]], triangles: impl Iterator<Item = [u32; 3]>) -> SurfaceMesh {
     let mut places = HashMap::new();
-    let mut mesh = WallMesh { name, vertices: Vec::new(), triangles: Vec::new() };
+    let mut mesh = SurfaceMesh { name, vertices: Vec::new(), triangles: Vec::new() };
     for triangle in triangles {
         let own = triangle.map(|vertex| {
             *places.entry(vertex).or_insert_with(|| {
@@ -114,7 +123,7 @@ fn coarser(vertices: &[[f64; 3]], triangles: &[[u32; 3]], walls: &[u32]) -> Mesh
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{SnapshotWriter, TriangleSet};
+    use crate::output::{SnapshotWriter, TriangleSet, snapshots_of};
 
     /// A square of n x n squares, each of two triangles.
     fn square(n: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
@@ -130,14 +139,14 @@ mod tests {
         (vertices, (0..n).flat_map(|j| (0..n).map(move |i| (i, j))).flat_map(pair).collect())
     }
 
-    fn written(n: u32) -> Walls {
+    fn written(n: u32) -> Surfaces {
         let dir = tempfile::tempdir().unwrap();
         let (vertices, triangles) = square(n);
         let walls: Vec<u32> = (0..triangles.len()).map(|k| u32::from(k > triangles.len() / 2)).collect();
         let names = ["left", "right"].map(str::to_owned);
         let set = TriangleSet { vertices: &vertices, triangles: &triangles, owners: &walls, names: &names };
         SnapshotWriter::create(dir.path()).unwrap().write_walls(set).unwrap();
-        Walls::read(dir.path()).unwrap()
+        Surfaces::walls(dir.path()).unwrap()
     }
 
     #[test]
@@ -157,6 +166,27 @@ mod tests {
         assert!((20_000..=MOST_TRIANGLES).contains(&triangles), "{triangles}");
         let [low, high] = walls.corners().unwrap();
         assert!(low.iter().all(|x| x.abs() < 0.02) && high[0] > 0.98 && high[1] > 0.98);
-        assert_eq!(Walls::read(tempfile::tempdir().unwrap().path()).unwrap(), Walls::default());
+        assert_eq!(Surfaces::walls(tempfile::tempdir().unwrap().path()).unwrap(), Surfaces::default());
+    }
+    /// All snapshots together have a bound: of many each has fewer.
+    #[test]
+    fn fabric_of_many_snapshots_is_coarser_and_keeps_its_fold() {
+        let dir = tempfile::tempdir().unwrap();
+        let (mut vertices, triangles) = square(80);
+        vertices.iter_mut().for_each(|vertex| vertex[2] = (vertex[0] - 0.5).abs());
+        let names = ["cloth".to_owned()];
+        let owners = vec![0; triangles.len()];
+        let set = TriangleSet { vertices: &vertices, triangles: &triangles, owners: &owners, names: &names };
+        let mut writer = SnapshotWriter::create(dir.path()).unwrap();
+        writer.write(0.0, &[]).unwrap();
+        writer.write_fabric(set).unwrap();
+        let entry = snapshots_of(dir.path()).unwrap().remove(0);
+        let few = Surfaces::fabric(&entry, 20).unwrap();
+        assert_eq!((few.coarser_than, few.meshes[0].triangles.len()), (None, 12_800));
+        let many = Surfaces::fabric(&entry, 60).unwrap();
+        let left = many.meshes[0].triangles.len();
+        assert!(many.coarser_than == Some(12_800) && (1000..=5000).contains(&left), "{left}");
+        let [low, high] = many.corners().unwrap();
+        assert!(low[2] < 0.05 && high[2] > 0.45 && many.meshes[0].name == "cloth");
     }
 }
