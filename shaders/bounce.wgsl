@@ -16,6 +16,8 @@ override SPIN: bool = true;
 override SURFACES: bool = true;
 override SURFACE_MODELS: bool = true;
 override VENTS: bool = true;
+// The scene has elastic fabric, whose nodes take the impulses of hits.
+override MEMBRANE: bool = false;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
 // Impulse over reference mass to tally units.
@@ -42,6 +44,8 @@ var<storage, read_write> particles: array<Packed>;
 var<storage, read> sorted: array<Packed>;
 var<storage, read> bouncing: array<u32>;
 var<storage, read_write> sums: array<atomic<u32>>;
+// Of each node of elastic fabric the impulse of the step, over the reference mass, in units of tallies (src/fabric/).
+var<storage, read_write> node_impulses: array<atomic<u32>>;
 
 // Where the copy of this thread's workgroup starts.
 var<private> copy: u32;
@@ -58,6 +62,33 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
         add64(copy + surface * SURFACE_WORDS + SURFACE_IMPULSE + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
     add64(copy + surface * SURFACE_WORDS + SURFACE_HITS, 1u, 0u);
+}
+
+// Adds to one component of a node's impulse.
+fn push_node(word: u32, units: i32) {
+    let low = bitcast<u32>(units);
+    let old = atomicAdd(&node_impulses[word], low);
+    let high = select(0u, 0xffffffffu, units < 0) + select(0u, 1u, old + low < old);
+    if (high != 0u) {
+        atomicAdd(&node_impulses[word + 1u], high);
+    }
+}
+
+// Shares an impulse (over the reference mass) out among the nodes of a triangle of fabric.
+fn push_nodes(wall: Struck, impulse: vec3<f32>) {
+    let sheet = fabric[wall.sheet];
+    let corners = array<u32, 3>(sheet.a, sheet.b, sheet.c);
+    for (var k = 0u; k < 3u; k++) {
+        let scaled = impulse * wall.weights[k] * IMPULSE_SCALE;
+        if (any(abs(scaled) >= vec3<f32>(1073741824.0))) {
+            atomicAdd(&counters[TALLY_OVERFLOW], 1u);
+            return;
+        }
+        let whole = vec3<i32>(round(scaled));
+        for (var axis = 0u; axis < 3u; axis++) {
+            push_node(corners[k] * NODE_IMPULSE_WORDS + 2u * axis, whole[axis]);
+        }
+    }
 }
 
 // Adds an energy (over the reference mass), and what the tallies of the zones to come will miss of it.
@@ -203,6 +234,9 @@ fn bounce(thread: Thread) {
         }
         if (SURFACES && wall.surface != NOBODY) {
             tally_impulse(wall.surface, wall.normal, gas.mass * (old - turned));
+        }
+        if (MEMBRANE && wall.sheet != NOBODY) {
+            push_nodes(wall, gas.mass * (old - turned));
         }
         var place = shifted(particle.position, old, hit.time);
         if (FABRIC && wall.lift > 0.0) {

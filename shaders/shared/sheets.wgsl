@@ -200,6 +200,9 @@ struct Struck {
     work: u32,
     // How far from the surface the particle is left, m: of a wall, on it.
     lift: f32,
+    // Of fabric: the triangle, or NOBODY, and the weights of its nodes at that place.
+    sheet: u32,
+    weights: vec3<f32>,
 }
 
 // A flight of x0 + v t from `start` on, at the time at which it meets a triangle of fabric.
@@ -215,7 +218,8 @@ fn struck_sheet(index: u32, x0: vec3<u32>, v: vec3<f32>, start: f32, time: f32, 
         + node_velocity(sheet.c) * place.weights.z;
     // The side that the normal points to first.
     let surface = select(sheet.surface + select(1u, 0u, side > 0.0), NOBODY, sheet.surface == NOBODY);
-    return Struck(normal, surface, velocity, sheet.surface_model, sheet.work, SHEET_GAP + dot(here.a, normal));
+    let lift = SHEET_GAP + dot(here.a, normal);
+    return Struck(normal, surface, velocity, sheet.surface_model, sheet.work, lift, index, place.weights);
 }
 
 fn first_of_cell(c: vec3<u32>) -> u32 {

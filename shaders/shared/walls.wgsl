@@ -331,7 +331,7 @@ fn struck(hit: Hit, x0: vec3<u32>, v: vec3<f32>, start: f32, inside: bool) -> St
     if (MOVING && triangle.motion != NOBODY) {
         velocity = motion_of(triangle.motion).velocity;
     }
-    return Struck(triangle.normal, triangle.surface, velocity, triangle.surface_model, triangle.motion, 0.0);
+    return Struck(triangle.normal, triangle.surface, velocity, triangle.surface_model, triangle.motion, 0.0, NOBODY, vec3<f32>(0.0));
 }
 
 // Whether a flight may meet a wall. One that does not leave its cell's neighbours meets none if the cell is clear, or if it stays

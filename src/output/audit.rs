@@ -14,6 +14,10 @@
 //!
 //! Every comparison is written so that a NaN fails it.
 
+mod elastic_fabric;
+
+pub use elastic_fabric::FabricAccount;
+
 use super::table::{aligned, grouped};
 
 /// What a run counted and measured, SI.
@@ -47,6 +51,8 @@ pub struct Audit {
     pub enthalpy_vented: f64,
     /// J, on the gas; `None` where no wall moves.
     pub work_by_walls: Option<f64>,
+    /// `None` where no fabric is elastic.
+    pub fabric: Option<FabricAccount>,
     /// J; `None` where no wall exchanges heat.
     pub heat_to_walls: Option<f64>,
     pub energy_end: f64,
@@ -91,6 +97,8 @@ pub struct AuditLimits {
     pub truncated_flights: u64,
     /// Above it a warning (docs/explanation/method.md, "Collisions": 3 %).
     pub lost_collision_fraction: f64,
+    /// Of the account of elastic fabric; above it a warning.
+    pub fabric_error: f64,
     /// Above it a warning.
     pub clipped_fraction: f64,
 }
@@ -104,6 +112,7 @@ impl Default for AuditLimits {
             wall_overshoot: 1e-6,
             truncated_flights: 0,
             lost_collision_fraction: 0.03,
+            fabric_error: 0.02,
             clipped_fraction: 0.01,
         }
     }
@@ -209,6 +218,16 @@ impl Audit {
                 100.0 * limits.lost_collision_fraction
             ));
         }
+        if let Some(account) = &self.fabric
+            && !within(account.error().abs(), limits.fabric_error)
+        {
+            warnings.push(format!(
+                "the energy of elastic fabric is off by {:+.1} % of the largest amount of its account (more than {:.0} %): its steps \
+                 are too long for how it moves",
+                100.0 * account.error(),
+                100.0 * limits.fabric_error
+            ));
+        }
         for (vent, share) in &self.clipped_vents {
             if !within(*share, limits.clipped_fraction) {
                 warnings.push(format!(
@@ -284,6 +303,7 @@ impl Audit {
             ("  error", momentum_error),
         ]);
         facts.splice(1..1, collisions);
+        facts.extend(self.fabric.iter().flat_map(FabricAccount::facts));
         if let Some(work) = self.work_by_walls {
             facts.insert(0, ("in energy: work of moving walls, J", format!("{work:.6e}")));
         }

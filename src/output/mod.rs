@@ -36,7 +36,7 @@ mod vtk;
 mod vtk_read;
 
 pub use appended::{AppendedFile, AppendedState};
-pub use audit::{Audit, AuditLimits, CollisionCells};
+pub use audit::{Audit, AuditLimits, CollisionCells, FabricAccount};
 pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{

@@ -44,6 +44,8 @@ pub struct RunState {
     pub switch: SwitchState,
     /// What was seen of each vent of the scene.
     pub vents: Vec<VentWatch>,
+    /// Of elastic fabric.
+    pub fabric: Option<FabricState>,
     /// Intervals so far.
     pub submitted: u64,
     /// s.
@@ -53,6 +55,19 @@ pub struct RunState {
     pub read_until: f64,
     /// How often steps were run again.
     pub repeated: u32,
+}
+
+/// Elastic fabric between intervals.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FabricState {
+    /// What the device has of its nodes and triangles.
+    pub membrane: Vec<u32>,
+    /// What the gas gave each node in the last step, on all ranks.
+    pub impulses: Vec<u64>,
+    /// Its open window: how many steps, and the volumes and areas of its surfaces summed over them.
+    pub window: (u64, Vec<[f64; 2]>),
+    /// Kinetic and strain energy at the start of the run, J.
+    pub start: [f64; 2],
 }
 
 /// What the state at the end of an interval asks of one to come.
@@ -225,6 +240,12 @@ mod tests {
                 decided: Some(Decided { window: [0.1, 0.3], noise: 1.0 / 3.0 }),
             },
             vents: vec![VentWatch { opened: Some([0.1 + 0.2, 1e5]), ..VentWatch::default() }],
+            fabric: Some(FabricState {
+                membrane: vec![1, u32::MAX],
+                impulses: vec![u64::MAX, 3],
+                window: (32, vec![[0.1 + 0.2, 1e-300]]),
+                start: [0.0, 1.0 / 3.0],
+            }),
             surfaces: SurfaceMemory::default(),
             guards: GuardState::default(),
             submitted: 5,

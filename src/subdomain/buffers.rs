@@ -344,6 +344,7 @@ impl<'a> Buffers<'a> {
             "fabric" => &domain.fabric,
             "fabric_cells" => &fabric.cells,
             "fabric_planes" => &fabric.planes,
+            "node_impulses" => &fabric.impulses,
             "cell_volume" => &domain.cell_volume,
             "cell_parts" => &domain.cell_parts,
             "still_gas" => &domain.still_gas,

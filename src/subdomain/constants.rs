@@ -50,6 +50,8 @@ pub struct Features {
     pub moving: bool,
     /// Surfaces that deform.
     pub fabric: bool,
+    /// And are elastic.
+    pub membrane: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
 }
@@ -112,6 +114,8 @@ pub struct Patches {
     pub motions: usize,
     /// Surfaces that deform.
     pub fabrics: usize,
+    /// Whether they are elastic.
+    pub membrane: bool,
 }
 
 impl Patches {
@@ -153,6 +157,7 @@ impl Features {
             vents: patches.vents > 0,
             moving: patches.motions > 0,
             fabric: patches.fabrics > 0,
+            membrane: patches.membrane,
             halo: among_others && plan.method != Method::None,
         }
     }
@@ -249,6 +254,7 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("MOVING", flag(features.moving)),
         ("MOTIONS", patches.motions as f64),
         ("FABRIC", flag(features.fabric)),
+        ("MEMBRANE", flag(features.membrane)),
         ("NODES", fabric.nodes as f64),
         ("SHEET_GAP", fabric.gap),
         ("MOST_BOUNCES", MOST_BOUNCES),

@@ -76,7 +76,8 @@ impl Subdomain {
         let cell = CellBuffers::new(device, bins)?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
-        let fabric = FabricBuffers::new(device, &plan.grid, &domain.fabric, plan.steps_per_interval, 0)?;
+        let room = domain.fabric.elastic.unwrap_or(0);
+        let fabric = FabricBuffers::new(device, &plan.grid, &domain.fabric, plan.steps_per_interval, room)?;
         let buffers = Buffers {
             domain: &domain.buffers,
             fixed: &fixed,

@@ -7,7 +7,7 @@ use crate::geometry::Grid;
 use crate::gpu::{Device, GpuError};
 
 use super::layout::GpuSheet;
-use super::registry::{FABRIC_FIRST, SHEET_MARGIN};
+use super::registry::{FABRIC_FIRST, NODE_IMPULSE_WORDS, SHEET_MARGIN};
 
 /// How near a flight comes to a sheet, as a share of the longest edge of a triangle and a cell: f32 sums of distances of that size err
 /// by a tenth of it.
@@ -23,6 +23,8 @@ pub struct Fabric {
     pub sheets: Vec<GpuSheet>,
     /// How near a flight comes to a sheet, m.
     pub gap: f64,
+    /// Of elastic fabric, whose nodes move by forces: the entries of lists that there is room for. Else it is known from the places of nodes.
+    pub elastic: Option<u64>,
 }
 
 impl Fabric {
@@ -38,6 +40,8 @@ pub struct FabricBuffers {
     pub cells: wgpu::Buffer,
     /// Of each triangle: the normal at the start of the step, and how far from that plane it comes.
     pub planes: wgpu::Buffer,
+    /// What the gas gives to each node of elastic fabric in a step.
+    pub impulses: wgpu::Buffer,
     /// Entries of lists that there is room for.
     pub room: u64,
 }
@@ -58,11 +62,13 @@ impl FabricBuffers {
         steps: u32,
         room: u64,
     ) -> Result<FabricBuffers, GpuError> {
+        let pushed = if fabric.elastic.is_some() { fabric.nodes as u64 } else { 0 };
         let words = if fabric.nodes > 0 { words_of_cells(grid) + ENTRY_WORDS * room } else { 1 };
         Ok(FabricBuffers {
             nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
             cells: device.storage::<u32>("fabric_cells", words)?,
             planes: device.storage::<[f32; 4]>("fabric_planes", (fabric.sheets.len() as u64).max(1))?,
+            impulses: device.storage::<[u32; NODE_IMPULSE_WORDS as usize]>("node_impulses", pushed.max(1))?,
             room,
         })
     }

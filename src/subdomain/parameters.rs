@@ -191,6 +191,21 @@ impl Subdomain {
         Ok(())
     }
 
+    /// From now on nodes are where others put them, in a buffer as that of this subdomain, and these take the impulses of hits.
+    ///
+    /// # Errors
+    /// If the device refuses the buffers.
+    pub fn follow_fabric(
+        &mut self,
+        device: &Device,
+        nodes: &wgpu::Buffer,
+        impulses: &wgpu::Buffer,
+    ) -> Result<(), GpuError> {
+        self.fabric.nodes = nodes.clone();
+        self.fabric.impulses = impulses.clone();
+        self.rebind(device)
+    }
+
     /// The particles as they are, for tallies outside a step.
     pub fn at_rest(&self, device: &Device) -> StepSlot {
         // (What is left of the last step, as the cells of its particles, is numbered as in that.)

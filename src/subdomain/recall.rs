@@ -44,8 +44,9 @@ impl Subdomain {
     /// # Errors
     /// If the device has no memory for the copy.
     pub fn remember(&mut self, device: &Device, spare: Option<wgpu::Buffer>) -> Result<Remembered, GpuError> {
-        let Features { rounds, halo, .. } = self.domain.features;
-        let backup = if halo {
+        let Features { rounds, halo, membrane, .. } = self.domain.features;
+        // (Elastic fabric goes on where the gas has stalled, so that both go back to the start of the interval.)
+        let backup = if halo || rounds && membrane {
             let bytes = u64::from(self.count) * size_of::<GpuParticle>() as u64;
             let copy = match spare.filter(|buffer| buffer.size() >= bytes) {
                 Some(buffer) => buffer,

@@ -180,6 +180,8 @@ registry! {
         /// Words of `fabric_cells`: how many entries there are, and where the cells begin.
         FABRIC_ENTRIES = 0,
         FABRIC_FIRST = 1,
+        /// Of a node of elastic fabric: three components of the impulse that the gas gives it in a step, of two words each.
+        NODE_IMPULSE_WORDS = 6,
     }
 }
 
@@ -220,6 +222,7 @@ pub const BUFFERS: &[&str] = &[
     "fabric",
     "fabric_cells",
     "fabric_planes",
+    "node_impulses",
     "cell_volume",
     "cell_parts",
     "still_gas",

@@ -78,6 +78,14 @@ fn a_bag_goes_on_from_any_step() {
     assert_eq!(copies, 2, "the mesh and its motion");
 }
 
+/// Where its nodes are, and how fast, is in the checkpoint.
+#[test]
+fn an_elastic_bag_goes_on_from_any_step() {
+    let mut scene = published("teabag.toml", 1500, 1e-3);
+    scene.model.time_step = Some(scene.end_time / 240.0);
+    restarts(&scene, 14, [2, 1, 3, 2]);
+}
+
 /// What it remembers of the rows, and what it has decided, is in the checkpoint.
 #[test]
 fn a_run_that_switches_goes_on_from_any_step() {

@@ -10,7 +10,7 @@ use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
-    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, pistons, plate, shaken_bag, tank, venting,
+    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, pistons, plate, inflated_bag, shaken_bag, tank, venting,
     venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
@@ -197,6 +197,13 @@ fn half_turns_have_the_same_bits_in_every_way() {
 fn a_shaken_bag_has_the_same_bits_in_every_way() {
     for method in [Method::HalfTurn, Method::ClosestApproach] {
         every_way(&shaken_bag(method));
+    }
+}
+
+#[test]
+fn an_inflated_bag_has_the_same_bits_in_every_way() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        every_way(&inflated_bag(method));
     }
 }
 

@@ -11,7 +11,7 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, shaken_bag, switching, tank, thin,
+    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, inflated_bag, shaken_bag, switching, tank, thin,
     tube, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
@@ -238,6 +238,18 @@ fn a_shaken_bag_has_the_same_bits_on_any_number_of_ranks() {
         assert!((100..1400).contains(&inside), "{inside} inside");
     }
     same(&shaken_bag(Method::None), &[Way::new(3, Off, 1).over_places()]);
+}
+
+/// What the gas gives the nodes is summed over the ranks in integers.
+#[test]
+fn an_inflated_bag_has_the_same_bits_on_any_number_of_ranks() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+        let runs = same(&inflated_bag(method), &ways);
+        let [first, last] = [0, runs[0].rows.len() - 1].map(|row| runs[0].rows[row].fabrics[0].volume);
+        assert!(last > 1.01 * first, "the bag has {last} m3 after {first}");
+    }
+    same(&inflated_bag(Method::None), &[Way::new(3, Off, 1).over_places()]);
 }
 
 #[test]

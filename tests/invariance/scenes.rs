@@ -228,3 +228,27 @@ pub fn shaken_bag(method: Method) -> Model {
         folder.path(),
     )
 }
+
+/// An elastic bag that the gas inflates, with gas around it and gas that flows into it.
+pub fn inflated_bag(method: Method) -> Model {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let mesh = MeshShape::Cushion { radius: 0.04, rings: 4, gap: 0.018 }.mesh([0.05, 0.05, 0.04]).expect("a cushion");
+    mesh.write(&folder.path().join("bag.obj"), 1.0).expect("a mesh file");
+    model_in(
+        &format!(
+            "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+             [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
+             [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.08]\ngas = \"inside\"\n\
+             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n\
+             [fabric.material]\nthickness = 3e-4\ndensity = 800.0\nyoung = 1e8\npoisson = 0.3\n\
+             [[chamber]]\nname = \"in\"\ninside = \"bag\"\npressure = 3e5\ntemperature = 400.0\ngas = {{ air = 0.5, helium = 0.5 }}\n\
+             [[chamber]]\nname = \"out\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+             [[orifice]]\nname = \"inlet\"\nposition = [0.05, 0.05, 0.04]\ndirection = [1.0, 0.0, 0.0]\narea = 0.0001\n\
+             gas = \"helium\"\ntemperature = 500.0\nmass_flow = [[0.0, 0.05], [2e-3, 0.05]]\n\
+             [[surface]]\nname = \"walls\"\nwall = \"box\"\n\
+             [model]\nmethod = \"{}\"\nparticles = 1500\ntime_step = 1.8e-6\n[output]\nrows = 8\nsnapshots = 0\n",
+            method.name()
+        ),
+        folder.path(),
+    )
+}

@@ -25,6 +25,8 @@ pub struct Recorder<'a> {
     checkpoints: Option<Checkpoints<'a>>,
     /// `None` on a rank alone.
     among: Option<Among>,
+    /// Where the nodes of fabric are at the next snapshot, m.
+    fabric: Vec<[f64; 3]>,
     /// A line for each vent; empty until the end.
     vents: Vec<VentWatch>,
 }
@@ -101,7 +103,17 @@ impl<'a> Recorder<'a> {
 
     fn of(model: &'a Model, reference: Reference, files: Files) -> Recorder<'a> {
         let Files { history, snapshots, progress } = files;
-        Recorder { model, reference, history, snapshots, progress, checkpoints: None, among: None, vents: Vec::new() }
+        Recorder {
+            model,
+            reference,
+            history,
+            snapshots,
+            progress,
+            checkpoints: None,
+            among: None,
+            fabric: Vec::new(),
+            vents: Vec::new(),
+        }
     }
 
     /// Also writes checkpoints.
@@ -161,6 +173,7 @@ impl<'a> Recorder<'a> {
                 // Those of the snapshot before may no longer be right.
                 among.boxes.clear();
             }
+            self.fabric.clone_from(&outcome.fabric);
             self.write_snapshot(outcome.time, &outcome.particles, &outcome.owners)?;
         }
         match &self.among {
@@ -207,7 +220,7 @@ impl<'a> Recorder<'a> {
             (0..).zip(&fabric.all).flat_map(|(k, own)| own.triangles.clone().map(move |_| k)).collect();
         let names: Vec<String> = fabric.all.iter().map(|own| own.name.clone()).collect();
         writer.write_fabric(TriangleSet {
-            vertices: &fabric.places(time),
+            vertices: &self.fabric,
             triangles: &fabric.triangles,
             owners: &owners,
             names: &names,
@@ -297,6 +310,10 @@ impl RowObserver for Recorder<'_> {
 impl Observer for Recorder<'_> {
     fn snapshot(&mut self, time: f64, particles: &[GpuParticle], owners: &[u32]) -> Result<(), SimulationError> {
         self.write_snapshot(time, particles, owners).map_err(stop)
+    }
+
+    fn fabric(&mut self, nodes: &[[f64; 3]]) {
+        self.fabric = nodes.to_vec();
     }
 
     fn boxes(&mut self, boxes: &[[[f64; 3]; 2]]) {

@@ -60,6 +60,9 @@ pub fn time_column() -> Column {
     Column::new("time", "s")
 }
 
+/// Of elastic fabric.
+const ENERGIES: [&str; 3] = ["kinetic", "strain", "damped"];
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 pub fn columns(scene: &Scene) -> Vec<Column> {
@@ -110,6 +113,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.push(Column::new(format!("{owner}:inner_pressure"), "pa"));
         columns.push(Column::new(format!("{owner}:work"), "j"));
         columns.push(Column::new(format!("{owner}:power"), "w"));
+        if scene.fabrics.iter().any(|fabric| fabric.membrane.is_some()) {
+            columns.extend(ENERGIES.map(|energy| Column::new(format!("{owner}:{energy}_energy"), "j")));
+        }
     }
     columns
 }
@@ -152,6 +158,7 @@ pub fn values(row: &Row, reference: &Reference) -> Vec<f64> {
     }
     for fabric in &row.fabrics {
         values.extend([fabric.volume, fabric.area, fabric.pressure[0], fabric.pressure[1], fabric.work, fabric.power]);
+        values.extend(fabric.energies.iter().flat_map(|own| [own.kinetic, own.strain, own.damped]));
     }
     values
 }

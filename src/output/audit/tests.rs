@@ -21,6 +21,7 @@ fn clean() -> Audit {
         enthalpy_vented: 2_000.0,
         heat_to_walls: None,
         work_by_walls: None,
+        fabric: None,
         clipped_vents: Vec::new(),
         clipped_walls: Vec::new(),
         energy_end: 70_000.5,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::averages::Averages;
 use crate::gas::Inflow;
 use crate::geometry::{Bag, Vessel};
-use crate::output::{Audit, AuditLimits, CollisionCells, PhaseTable};
+use crate::output::{Audit, AuditLimits, CollisionCells, FabricAccount, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::simulation::accounting::phases::{once_an_interval, order_of};
@@ -37,6 +37,8 @@ pub struct AtEnd<'a> {
     pub outside: u64,
     /// And on the wrong side of closed fabric, if there is any.
     pub passed: Option<u64>,
+    /// Of elastic fabric, if there is any, but for what it has from the gas.
+    pub fabric: Option<FabricAccount>,
     pub averages: &'a Averages,
     pub surface_states: &'a SurfaceStates<'a>,
 }
@@ -332,7 +334,7 @@ impl Account {
 
     /// The account at the end.
     pub fn close(&self, model: &Model, at_end: &AtEnd<'_>) -> Audit {
-        let &AtEnd { tallies, inflow, outside, passed, averages, surface_states } = at_end;
+        let &AtEnd { tallies, inflow, outside, passed, fabric, averages, surface_states } = at_end;
         let end = self.totals(tallies);
         let plan = &model.plan;
         let (entered, before) = (self.entered(inflow), self.counted.before);
@@ -359,6 +361,8 @@ impl Account {
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
             work_by_walls: (!model.moving.is_empty() || !model.fabric.is_empty()).then(|| averages.total_work()),
+            // (All that moves in a scene with fabric is fabric.)
+            fabric: fabric.map(|account| FabricAccount { from_gas: -averages.total_work(), ..account }),
             heat_to_walls: model.scene.has_heat().then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))

@@ -104,6 +104,17 @@ pub struct FabricState {
     pub work: f64,
     /// The same per time in the window, W.
     pub power: f64,
+    /// Of an elastic one, at the end of the window, J.
+    pub energies: Option<FabricEnergies>,
+}
+
+/// Of an elastic surface, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FabricEnergies {
+    pub kinetic: f64,
+    pub strain: f64,
+    /// Damped since the start of the run.
+    pub damped: f64,
 }
 
 /// The scene's side of the averages.

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::error::ModelError;
 use crate::geometry::{Bag, GeometryError, Grid, NodeFrames, TriangleMesh};
-use crate::scene::{Dimension, Scene, UnitSystem};
+use crate::scene::{Chamber, Dimension, Scene, UnitSystem};
 use crate::subdomain::{Fabric, GpuSheet};
 
 /// A mirror.
@@ -21,6 +21,8 @@ const MOMENTS: u32 = 64;
 const MOST_FRAMES: usize = 4096;
 /// m/s: nodes that are faster have jumped.
 const FASTEST_NODE: f64 = 3000.0;
+/// How far an edge of elastic fabric is thought to stretch at most.
+const STRETCHED: f64 = 1.25;
 
 /// Where all nodes are at a time, s, in m.
 type Places = dyn Fn(f64) -> Vec<[f64; 3]> + Send + Sync;
@@ -54,8 +56,10 @@ pub struct Surfaces {
     /// Times in order at which surfaces are measured, s.
     pub moments: Vec<f64>,
     longest_edge: f64,
-    /// The corners of what each sweeps in the run, m.
+    /// The corners of what each sweeps in the run, m; of elastic ones, of what they are at the start.
     swept: Vec<[DVec3; 2]>,
+    /// Their nodes move by forces: where they are only a run knows.
+    elastic: bool,
     /// What is doubtful of the files.
     pub notes: Vec<String>,
 }
@@ -80,7 +84,17 @@ impl Surfaces {
                 *swept = corners.fold(*swept, |[low, high], corner| [low.min(corner), high.max(corner)]);
             }
         }
-        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, notes: Vec::new() }
+        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, elastic: false, notes: Vec::new() }
+    }
+
+    /// The same, moved by forces from where they are at the start.
+    #[must_use]
+    pub fn elastic(self) -> Surfaces {
+        Surfaces { elastic: true, longest_edge: STRETCHED * self.longest_edge, ..self }
+    }
+
+    pub fn is_elastic(&self) -> bool {
+        self.elastic
     }
 
     /// Those of a scene; their files are read here.
@@ -139,8 +153,11 @@ impl Surfaces {
         (low.to_array(), high.to_array())
     }
 
-    /// The corners of what one of them sweeps in the run, m.
+    /// The corners of what one of them sweeps in the run, m; without end of an elastic one.
     pub fn swept(&self, index: usize) -> ([f64; 3], [f64; 3]) {
+        if self.elastic {
+            return ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        }
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
     }
 
@@ -150,6 +167,10 @@ impl Surfaces {
     /// If two closed surfaces pass through places near each other.
     pub fn refuse_neighbours(&self) -> Result<(), ModelError> {
         let closed: Vec<usize> = (0..self.all.len()).filter(|&index| self.all[index].closed).collect();
+        if self.elastic && let [one, other, ..] = closed[..] {
+            let problem = format!("is elastic and closed, as \"{}\" is: there can be one such", self.all[other].name);
+            return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
+        }
         for (k, &one) in closed.iter().enumerate() {
             for &other in &closed[k + 1..] {
                 let ([low, high], [other_low, other_high]) = (self.swept[one], self.swept[other]);
@@ -181,20 +202,41 @@ impl Surfaces {
                 pad: 0,
             }));
         }
-        Fabric { nodes: self.places(0.0).len(), sheets, gap: Fabric::gap_of(grid, self.longest_edge) }
+        let nodes = self.places(0.0);
+        let elastic = self.elastic.then(|| {
+            let corner = |node: u32| DVec3::from(nodes[node as usize]);
+            let edges = self.triangles.iter().map(|&[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(corner);
+                a.distance(b).max(b.distance(c)).max(c.distance(a))
+            });
+            // Of a box as large as the edge stretched, and what it flies in a step.
+            edges.map(|edge| (((STRETCHED * edge + grid.cell) / grid.cell).ceil() as u64 + 1).pow(3)).sum()
+        });
+        Fabric { nodes: nodes.len(), sheets, gap: Fabric::gap_of(grid, self.longest_edge), elastic }
     }
 
     /// Where the nodes are at the start of each of the steps of an interval and at the end of the last, quanta.
     pub fn steps(&self, grid: &Grid, start: f64, dt: f64, steps: u32) -> Vec<[u32; 4]> {
         let quanta = |place: f64, axis: usize| ((place - grid.origin[axis]) / grid.quantum()).round() as i64 as u32;
-        let moments = if self.is_empty() { 0 } else { steps + 1 };
+        let moments = if self.is_empty() || self.elastic { 0 } else { steps + 1 };
         let nodes = (0..moments).flat_map(|k| self.places(start + f64::from(k) * dt));
         nodes.map(|place| [quanta(place[0], 0), quanta(place[1], 1), quanta(place[2], 2), 0]).collect()
     }
 
+    /// What chambers and probes gain where surfaces enclose so much more, m3: bags gain it, and the chamber around them loses it.
+    pub fn gained(scene: &Scene, grown: &[f64]) -> Vec<f64> {
+        let inside: f64 = scene.chambers.iter().filter_map(|chamber| chamber.inside).map(|bag| grown[bag]).sum();
+        let of = |chamber: &Chamber| chamber.inside.map_or(-inside, |bag| grown[bag]);
+        scene.chambers.iter().map(of).chain(scene.probes.iter().map(|_| 0.0)).collect()
+    }
+
     /// The volume that each surface encloses at a time, m3 (of an open one it has no meaning), and its area, m2.
     pub fn measures(&self, time: f64) -> Vec<[f64; 2]> {
-        let nodes = self.places(time);
+        self.measures_of(&self.places(time))
+    }
+
+    /// The same of nodes at these places, m.
+    pub fn measures_of(&self, nodes: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let corner = |node: u32| DVec3::from(nodes[node as usize]);
         let of = |surface: &Surface| {
             let own = &self.triangles[surface.triangles.clone()];
@@ -214,10 +256,17 @@ impl Surfaces {
     /// # Errors
     /// If one is not closed after all.
     pub fn bags(&self, time: f64) -> Result<Vec<Option<Bag>>, GeometryError> {
-        let nodes = self.places(time);
+        self.bags_of(&self.places(time))
+    }
+
+    /// The same of nodes at these places, m.
+    ///
+    /// # Errors
+    /// If one is not closed after all.
+    pub fn bags_of(&self, nodes: &[[f64; 3]]) -> Result<Vec<Option<Bag>>, GeometryError> {
         let bag = |surface: &Surface| {
             let own = &self.triangles[surface.triangles.clone()];
-            Bag::new(&nodes, own, &format!("fabric `{}`", surface.name))
+            Bag::new(nodes, own, &format!("fabric `{}`", surface.name))
         };
         self.all.iter().map(|surface| Ok(if surface.closed { Some(bag(surface)?) } else { None })).collect()
     }

@@ -117,9 +117,7 @@ impl Moving {
         let change = |time: f64| -> Vec<f64> {
             let now = fabric.measures(time);
             let grown: Vec<f64> = now.iter().zip(&initial).map(|([now, _], [initial, _])| now - initial).collect();
-            let inside: f64 = scene.chambers.iter().filter_map(|chamber| chamber.inside).map(|bag| grown[bag]).sum();
-            let of = |chamber: &Chamber| chamber.inside.map_or(-inside, |bag| grown[bag]);
-            scene.chambers.iter().map(of).chain(scene.probes.iter().map(|_| 0.0)).collect()
+            Surfaces::gained(scene, &grown)
         };
         self.swept.push(Swept {
             // Displaced by a metre a second: volumes are by time.

@@ -96,6 +96,8 @@ pub struct Exchange<'a> {
     /// Ranks in the order of the place's peers.
     peers: Vec<usize>,
     near: usize,
+    /// Of impulses on fabric.
+    staging: Option<wgpu::Buffer>,
     traffic: Traffic,
     reported: Traffic,
 }
@@ -107,7 +109,14 @@ impl<'a> Exchange<'a> {
 
     /// On a rank alone.
     pub fn none() -> Exchange<'a> {
-        Exchange { comm: None, peers: Vec::new(), near: 0, traffic: Traffic::default(), reported: Traffic::default() }
+        Exchange {
+            comm: None,
+            peers: Vec::new(),
+            near: 0,
+            staging: None,
+            traffic: Traffic::default(),
+            reported: Traffic::default(),
+        }
     }
 
     /// The ranks of the peers of a place, the near ones first.
@@ -182,6 +191,33 @@ impl<'a> Exchange<'a> {
         let messages = self.timed(|| subdomain.packed_updates(rec, slot, round - 1, outgoing))?;
         let received = self.swap(messages, self.near, Subject { step: slot.index(), round })?;
         subdomain.receive(rec, slot, round - 1, &received)?;
+        Ok(())
+    }
+
+    /// Sums over the ranks what the gas has given to the nodes of elastic fabric, two words for each sum.
+    ///
+    /// # Errors
+    /// If a device or another rank fails.
+    pub fn impulses(&mut self, rec: &mut Recording<'_>, impulses: &wgpu::Buffer) -> Result<(), SimulationError> {
+        let Some(comm) = self.comm.filter(|comm| comm.size() > 1) else {
+            return Ok(());
+        };
+        let device = rec.device();
+        let staging = match self.staging.take() {
+            Some(staging) => staging,
+            None => device.staging(impulses.size())?,
+        };
+        rec.encoder().copy_buffer_to_buffer(impulses, 0, &staging, 0, impulses.size());
+        let submission = rec.submit();
+        let readback = device.read_later(staging, submission);
+        let (own, staging) = self.timed(|| readback.finish(device, bytemuck::pod_collect_to_vec::<u8, u64>))?;
+        self.staging = Some(staging);
+        let start = Instant::now();
+        self.traffic.messages += 1;
+        self.traffic.bytes += impulses.size();
+        let sums = comm.sum(own)?;
+        self.traffic.waiting_seconds += start.elapsed().as_secs_f64();
+        device.write(impulses, 0, &sums);
         Ok(())
     }
 

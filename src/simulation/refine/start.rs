@@ -51,6 +51,7 @@ pub fn state(
         feedback: Vec::new(),
         switch: SwitchState::default(),
         vents: parent.vents.clone(),
+        fabric: None,
         surfaces: parent.surfaces.clone(),
         guards: GuardState::default(),
         submitted: 0,

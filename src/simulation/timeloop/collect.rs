@@ -2,7 +2,8 @@
 //! ranks, go into the account, the averages, the step size and the balance.
 
 use super::simulation::Simulation;
-use super::submit::{InFlight, Pending};
+use super::elastic_fabric::{ElasticFabric, SavedFabric};
+use super::submit::{FabricInFlight, InFlight, Pending};
 use crate::simulation::SimulationError;
 use crate::simulation::accounting::averages::Sampled;
 use crate::simulation::accounting::guards::{GuardWarning, Shown};
@@ -10,6 +11,7 @@ use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
 use crate::simulation::accounting::row::Row;
 use crate::simulation::control::interval::Interval;
 use crate::simulation::control::surface_states::{SeenGas, Window};
+use crate::simulation::model::fabric::Surfaces;
 use crate::simulation::parallel::exchange::Traffic;
 use crate::simulation::parallel::load::Load;
 use crate::simulation::run_state::Feedback;
@@ -79,15 +81,21 @@ impl Simulation<'_> {
         if self.ranks.comm().size() > 1 {
             flight = self.reduce(flight)?;
         }
-        let InFlight { mut interval, before, tallies, phases, .. } = flight;
+        let InFlight { mut interval, before, tallies, phases, fabric, .. } = flight;
         let (mut tallies, stamps, loads) = self.collect(tallies)?;
         if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 {
-            return self.run_again(interval, before, tallies);
+            return self.run_again(interval, Before { gas: before, fabric: fabric.map(|fabric| fabric.before) }, tallies);
         }
         if let Some((_, earlier)) = interval.done.take() {
             tallies = tallies.and_before(&earlier).ok_or_else(misshapen)?;
         }
         self.submissions.spare.extend(before.spare());
+        if let (Some(elastic), Some(FabricInFlight { after, .. })) = (&mut self.fabric, fabric) {
+            let grown = elastic.read(self.device, after, &interval.tallied)?;
+            let gained = Surfaces::gained(&self.model.scene, &grown);
+            let initial = self.books.averages.initial_volumes();
+            interval.volumes = initial.iter().zip(gained).map(|(initial, gained)| initial + gained).collect();
+        }
         self.progress.read_until += interval.dt * f64::from(interval.steps);
         let timed = self.submissions.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();
         let drift = self.enter_into_account(&interval, &tallies, &timed)?;
@@ -196,10 +204,17 @@ impl Simulation<'_> {
         for (state, [moved, velocity]) in row.motions.iter_mut().zip(self.model.moving.courses(row.time)) {
             (state.displacement, state.velocity) = (moved, velocity);
         }
-        let measures = if row.fabrics.is_empty() { Vec::new() } else { self.model.fabric.measures(row.time) };
+        let measures = match &mut self.fabric {
+            Some(elastic) => elastic.mean_measures(),
+            None if row.fabrics.is_empty() => Vec::new(),
+            None => self.model.fabric.measures(row.time),
+        };
         for ((state, surface), [volume, area]) in row.fabrics.iter_mut().zip(&self.model.fabric.all).zip(measures) {
             state.pressure = state.pressure.map(|force| force / area);
             (state.volume, state.area) = (if surface.closed { volume } else { 0.0 }, area);
+        }
+        for (state, energies) in row.fabrics.iter_mut().zip(self.fabric.iter().flat_map(ElasticFabric::energies)) {
+            state.energies = Some(energies);
         }
         let told = self.books.guards.row(&row);
         let spacing = self.model.plan.end_time / f64::from(self.model.scene.output.rows.max(1));
@@ -255,7 +270,7 @@ impl Simulation<'_> {
     fn run_again(
         &mut self,
         mut first: Interval,
-        before: Remembered,
+        Before { gas: before, fabric }: Before,
         mut tallies: Tallies,
     ) -> Result<(), SimulationError> {
         self.progress.repeated += 1;
@@ -270,6 +285,9 @@ impl Simulation<'_> {
             "tails of neighbour lists grow to {wanted}, strays: {strayed}; an interval of {} steps is run again from step {step}",
             first.steps
         );
+        if let (Some(elastic), Some(before)) = (&self.fabric, &fabric) {
+            elastic.restore(self.device, before);
+        }
         if step > 0 {
             if let Some((_, earlier)) = &first.done {
                 tallies = tallies.and_before(earlier).ok_or_else(misshapen)?;
@@ -294,6 +312,12 @@ impl Simulation<'_> {
         }
         Ok(())
     }
+}
+
+/// What there was before an interval.
+struct Before {
+    gas: Remembered,
+    fabric: Option<SavedFabric>,
 }
 
 /// Tallies of two ranks, or of two parts of an interval, that cannot be added.

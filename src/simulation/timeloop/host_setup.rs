@@ -51,6 +51,7 @@ impl HostSetup {
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
             fabrics: model.fabric.all.len(),
+            membrane: model.fabric.is_elastic(),
         };
         Ok(HostSetup {
             walls,

@@ -1,6 +1,7 @@
 //! The run of a rank: set-up, steps in intervals, what is read of them late, rows, snapshots and checkpoints.
 
 pub(super) mod collect;
+pub(super) mod elastic_fabric;
 pub(super) mod handover;
 pub(super) mod host_setup;
 pub(super) mod inspect;

@@ -51,6 +51,9 @@ pub trait Observer: RowObserver {
         Ok(())
     }
 
+    /// Where the nodes of fabric are, m: at a snapshot, before it.
+    fn fabric(&mut self, _nodes: &[[f64; 3]]) {}
+
     /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
     fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
 
@@ -117,6 +120,8 @@ pub struct Outcome {
     pub particles: Vec<GpuParticle>,
     /// The rank that owned each of them.
     pub owners: Vec<u32>,
+    /// Where the nodes of fabric are, m.
+    pub fabric: Vec<[f64; 3]>,
     pub audit: Audit,
     /// What a control volume did after the particles.
     pub continued: Option<Continued>,

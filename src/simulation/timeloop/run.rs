@@ -136,6 +136,7 @@ impl Simulation<'_> {
             continued,
             warnings: self.books.guards.told().to_vec(),
             phases: self.books.account.phases(),
+            fabric: self.fabric_nodes(),
             steps: self.control.clock.steps,
             particle_steps: self.books.account.state().particle_steps,
             collisions: self.books.account.state().collisions,
@@ -166,7 +167,7 @@ impl Simulation<'_> {
             time: self.control.clock.time(),
             particles: self.books.account.state().particles,
             ids: self.model.plan.initial_particles + entered,
-            state: &self.state(),
+            state: &self.state()?,
             own: &own,
             comm: self.ranks.comm(),
             stopping: self.requests.stopping,
@@ -182,13 +183,21 @@ impl Simulation<'_> {
         self.submissions.submitted >= AHEAD
     }
 
+    /// Where the nodes of fabric are at the time of the clock, with nothing under way, m.
+    pub(super) fn fabric_nodes(&self) -> Vec<[f64; 3]> {
+        match &self.fabric {
+            Some(elastic) => elastic.nodes().to_vec(),
+            None => self.model.fabric.places(self.control.clock.time()),
+        }
+    }
+
     /// Particles of all ranks on the wrong side of closed fabric, if there is any. Collective.
     fn passed(&self, own: &[GpuParticle]) -> Result<Option<u64>, SimulationError> {
         let fabric = &self.model.fabric;
         if !fabric.all.iter().any(|surface| surface.closed) {
             return Ok(None);
         }
-        let bags = fabric.bags(self.control.clock.time())?;
+        let bags = fabric.bags_of(&self.fabric_nodes())?;
         Ok(Some(self.ranks.comm().sum(vec![count_passed(&bags, &self.model.plan, own)])?[0]))
     }
 
@@ -273,6 +282,7 @@ impl Simulation<'_> {
             subdomain: &mut self.subdomain,
             exchange: &mut self.parallel.exchange,
             decomposition: self.parallel.decomposition.as_mut(),
+            fabric: self.fabric.as_ref(),
             timer: self.submissions.timer.as_ref(),
             batch,
             fit_lists,

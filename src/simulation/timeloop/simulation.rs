@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
+use super::elastic_fabric::ElasticFabric;
 use super::interrupt::Request;
 use super::observer::Options;
 use super::setup::Setup;
@@ -50,6 +51,8 @@ pub struct Simulation<'a> {
     pub(super) options: Options<'a>,
     pub(super) ranks: Ranks<'a>,
     pub(super) subdomain: Subdomain,
+    /// Elastic fabric.
+    pub(super) fabric: Option<ElasticFabric>,
     pub(super) inflow: Inflow,
     pub(super) parallel: Parallel<'a>,
     pub(super) control: Control<'a>,
@@ -178,6 +181,7 @@ impl<'a> Simulation<'a> {
         if options.dispatch_by_lengths {
             subdomain.dispatch_by_lengths();
         }
+        let fabric = ElasticFabric::new(model, device, &mut subdomain)?;
         let scene = &model.scene;
         let inflow = model.inflow();
         let parallel = Parallel {
@@ -211,6 +215,7 @@ impl<'a> Simulation<'a> {
         let next_row = plan.end_time / f64::from(scene.output.rows.max(1));
         Ok(Simulation {
             subdomain,
+            fabric,
             inflow,
             parallel,
             control,
@@ -252,6 +257,9 @@ impl<'a> Simulation<'a> {
             return Err(RunStateError::differs("vents", found, expected).into());
         }
         self.books.vents.clone_from(&state.vents);
+        if let (Some(fabric), Some(known)) = (&mut self.fabric, &state.fabric) {
+            fabric.put(self.device, known, self.ranks.comm().rank() == 0)?;
+        }
         self.submissions.submitted = state.submitted as usize;
         self.progress.next_row = state.next_row;
         self.progress.next_snapshot = state.next_snapshot;
@@ -261,8 +269,11 @@ impl<'a> Simulation<'a> {
         Ok(self)
     }
 
-    pub(super) fn state(&self) -> RunState {
-        RunState {
+    /// With nothing under way. Collective.
+    pub(super) fn state(&self) -> Result<RunState, SimulationError> {
+        let fabric = self.fabric.as_ref().map(|fabric| fabric.state(self.device, self.ranks.comm())).transpose()?;
+        Ok(RunState {
+            fabric,
             clock: self.control.clock.state(),
             ladder: self.control.ladder.state(),
             averages: self.books.averages.state(),
@@ -278,6 +289,6 @@ impl<'a> Simulation<'a> {
             next_snapshot: self.progress.next_snapshot,
             read_until: self.progress.read_until,
             repeated: self.progress.repeated,
-        }
+        })
     }
 }

@@ -25,6 +25,9 @@ impl Simulation<'_> {
             if let Some(decomposition) = &self.parallel.decomposition {
                 observer.boxes(&decomposition.boxes(&self.model.plan.grid));
             }
+            if !self.model.fabric.is_empty() {
+                observer.fabric(&self.fabric_nodes());
+            }
             observer.snapshot(self.control.clock.time(), &particles, &owners)?;
         }
         while self.snapshot_due() && self.progress.next_snapshot <= asked {

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::elastic_fabric::{ElasticFabric, SavedFabric};
 use super::step::{Sampling, step};
 use crate::gpu::{Device, PhaseTimer, Readback, Recording};
 use crate::ranks::Reduction;
@@ -25,6 +26,16 @@ pub struct InFlight {
     pub cells: GridCells,
     /// What went between the ranks in it.
     pub traffic: Traffic,
+    /// Of elastic fabric.
+    pub fabric: Option<FabricInFlight>,
+}
+
+/// Elastic fabric of an interval on its way.
+pub struct FabricInFlight {
+    /// As it was before.
+    pub before: SavedFabric,
+    /// As it becomes.
+    pub after: Readback,
 }
 
 /// Tallies on their way to the host and through the ranks.
@@ -40,6 +51,7 @@ pub struct Machine<'a, 'b> {
     pub subdomain: &'a mut Subdomain,
     pub exchange: &'a mut Exchange<'b>,
     pub decomposition: Option<&'a mut Decomposition>,
+    pub fabric: Option<&'a ElasticFabric>,
     pub timer: Option<&'a PhaseTimer>,
     /// Steps per submission.
     pub batch: u32,
@@ -84,6 +96,7 @@ impl Machine<'_, '_> {
             }
         };
         let mut rec = Recording::new(device);
+        let fabric_before = self.fabric.map(|fabric| fabric.begin_interval(&mut rec, interval.dt)).transpose()?;
         let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in (done..).zip(slots) {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };
@@ -93,6 +106,10 @@ impl Machine<'_, '_> {
                 rec.time_alone(self.timer.filter(|_| !alone(k).is_empty()), alone(k));
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
+            if let Some(fabric) = self.fabric {
+                self.exchange.impulses(&mut rec, fabric.impulses())?;
+                fabric.step(&mut rec, k);
+            }
             step(self.subdomain, self.exchange, &mut rec, &mut slot, sampling)?;
             if k == last {
                 self.subdomain.tally_blocks(&mut rec, &slot);
@@ -110,10 +127,16 @@ impl Machine<'_, '_> {
         let phases = rec.timed().to_vec();
         let timed = self.timer.map(|timer| (timer, phases.len()));
         let staging = self.subdomain.encode_readback(&mut rec, timed)?;
+        let staging_of_fabric =
+            self.fabric.map(|fabric| fabric.encode_readback(&mut rec, &interval.tallied)).transpose()?;
         let submission = rec.submit();
+        let fabric = fabric_before.zip(staging_of_fabric).map(|(before, staging)| FabricInFlight {
+            before,
+            after: device.read_later(staging, submission.clone()),
+        });
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
         self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();
-        Ok(InFlight { before, tallies, phases, present, cells, traffic, interval })
+        Ok(InFlight { before, tallies, phases, present, cells, traffic, fabric, interval })
     }
 }

@@ -136,6 +136,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             vents: model.scene.vents.len(),
             motions: model.moving.count(),
             fabrics: 0,
+            membrane: false,
         };
         let features = Features::of(&model.plan, patches, false, false);
         let flags = [
