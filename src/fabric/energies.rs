@@ -5,6 +5,8 @@
 //!
 //! kinetic + strain + damped = (both at the start) + pressure + gravity + holds + gas, and gas + ledger = what the gas gave.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::layout::GpuMembraneNode;
@@ -34,6 +36,16 @@ pub struct Energies {
 
 impl Energies {
     pub fn of(model: &Model, nodes: &[GpuMembraneNode]) -> Energies {
+        Energies::of_part(model, nodes, 0..model.triangles.len(), 0..nodes.len())
+    }
+
+    /// Of these triangles and nodes alone.
+    pub fn of_part(
+        model: &Model,
+        nodes: &[GpuMembraneNode],
+        triangles: Range<usize>,
+        part: Range<usize>,
+    ) -> Energies {
         let middle = |node: &GpuMembraneNode| {
             let velocity = DVec3::from_array(node.velocity.map(f64::from));
             place(node, model) - 0.5 * f64::from(node.dt) * velocity
@@ -42,13 +54,14 @@ impl Energies {
         let kinetic = |(node, mass): (&GpuMembraneNode, &f64)| {
             0.5 * mass * node.velocity.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>()
         };
+        let own = &nodes[part.clone()];
         let work = |which: u32| -> f64 {
-            let sums = nodes.iter().map(|node| node.work[which as usize]);
+            let sums = own.iter().map(|node| node.work[which as usize]);
             sums.map(|[sum, excess]| f64::from(sum) - f64::from(excess)).sum()
         };
         Energies {
-            kinetic: nodes.iter().zip(&model.masses).map(kinetic).sum(),
-            strain: model.strain_energy(&middles),
+            kinetic: own.iter().zip(&model.masses[part]).map(kinetic).sum(),
+            strain: model.strain_energy_of(triangles, &middles),
             damped: -work(WORK_DAMPING),
             pressure: work(WORK_PRESSURE),
             gravity: work(WORK_GRAVITY),

@@ -29,8 +29,6 @@ pub struct Membrane {
     pub state: wgpu::Buffer,
     /// A word: how often a node would have left the grid, or was nowhere. A run with any is wrong.
     pub faults: wgpu::Buffer,
-    saved_state: wgpu::Buffer,
-    saved_impulses: wgpu::Buffer,
     element_forces: wgpu::Buffer,
     membrane_step: wgpu::Buffer,
     prescribed: wgpu::Buffer,
@@ -88,8 +86,6 @@ impl Membrane {
         let (forces_of_elements, move_nodes) = (bind("element_forces")?, bind("move_nodes")?);
         let groups = |items: usize| fold(items as u64, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
         Ok(Membrane {
-            saved_state: device.storage::<GpuMembraneNode>("saved_membrane", count as u64)?,
-            saved_impulses: device.storage::<u32>("saved_impulses", (count * IMPULSE_WORDS) as u64)?,
             no_step: step_of_no_length(input, count, elements),
             element_groups: groups(elements),
             node_groups: groups(count),
@@ -151,15 +147,22 @@ impl Membrane {
     }
 
     /// Copies all that the next step depends on, on the device, for an interval that may run again.
-    pub fn save(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.copy_buffer_to_buffer(&self.state, 0, &self.saved_state, 0, self.state.size());
-        encoder.copy_buffer_to_buffer(&self.impulses, 0, &self.saved_impulses, 0, self.impulses.size());
+    ///
+    /// # Errors
+    /// If the device has no memory for the copy.
+    pub fn save(&self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<wgpu::Buffer, GpuError> {
+        let (state, impulses) = (self.state.size(), self.impulses.size());
+        let saved = device.storage::<u32>("saved_membrane", (state + impulses) / 4)?;
+        encoder.copy_buffer_to_buffer(&self.state, 0, &saved, 0, state);
+        encoder.copy_buffer_to_buffer(&self.impulses, 0, &saved, state, impulses);
+        Ok(saved)
     }
 
     /// Back to what was saved.
-    pub fn restore(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.copy_buffer_to_buffer(&self.saved_state, 0, &self.state, 0, self.state.size());
-        encoder.copy_buffer_to_buffer(&self.saved_impulses, 0, &self.impulses, 0, self.impulses.size());
+    pub fn restore(&self, encoder: &mut wgpu::CommandEncoder, saved: &wgpu::Buffer) {
+        let (state, impulses) = (self.state.size(), self.impulses.size());
+        encoder.copy_buffer_to_buffer(saved, 0, &self.state, 0, state);
+        encoder.copy_buffer_to_buffer(saved, state, &self.impulses, 0, impulses);
     }
 
     /// Waits for the device.

@@ -5,6 +5,8 @@
 //! Damping adds S = 2 eta dE/dt along what bears tension, eta = xi rho c h/2 with the wave speed c and the least height h. Pressure p puts p A n/3 on each
 //! corner. Masses are lumped: a third of a triangle's on each corner.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::elastic::Material;
@@ -133,10 +135,15 @@ impl Model {
 
     /// Of all triangles with nodes at these places (m), J.
     pub fn strain_energy(&self, places: &[DVec3]) -> f64 {
+        self.strain_energy_of(0..self.triangles.len(), places)
+    }
+
+    /// Of these triangles.
+    pub fn strain_energy_of(&self, triangles: Range<usize>, places: &[DVec3]) -> f64 {
         let energy = |triangle: &Triangle| {
             triangle.volume * self.stress(triangle, triangle.nodes.map(|node| places[node as usize])).energy
         };
-        self.triangles.iter().map(energy).sum()
+        self.triangles[triangles].iter().map(energy).sum()
     }
 }
 

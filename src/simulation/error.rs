@@ -3,6 +3,7 @@
 use super::accounting::guards::GuardWarning;
 use super::control::ladder::LadderError;
 use super::model::error::NoChamber;
+use crate::fabric::MembraneError;
 use crate::gas::FillError;
 use crate::geometry::GeometryError;
 use crate::gpu::GpuError;
@@ -26,6 +27,11 @@ pub enum SimulationError {
     Cells(#[from] TooManyParts),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error("elastic fabric is none that can be computed: {0}")]
+    Membrane(#[from] MembraneError),
+    #[error("nodes of elastic fabric would have left the grid of the walls, or were nowhere, {times} times")]
+    #[diagnostic(help("give the bag room within its walls; where it has, its steps are too long or its gas too coarse"))]
+    LostNodes { times: u32 },
     #[error(transparent)]
     Partition(#[from] PartitionError),
     #[error(transparent)]

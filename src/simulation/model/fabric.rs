@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::ModelError;
+use super::membranes::Membranes;
 use crate::geometry::{Bag, GeometryError, Grid, NodeFrames, TriangleMesh};
 use crate::scene::{Chamber, Dimension, Scene, UnitSystem};
 use crate::subdomain::{Fabric, GpuSheet};
@@ -58,8 +59,8 @@ pub struct Surfaces {
     longest_edge: f64,
     /// The corners of what each sweeps in the run, m; of elastic ones, of what they are at the start.
     swept: Vec<[DVec3; 2]>,
-    /// Their nodes move by forces: where they are only a run knows.
-    elastic: bool,
+    /// Of elastic ones, whose nodes move by forces: where they are only a run knows.
+    pub membranes: Option<Membranes>,
     /// What is doubtful of the files.
     pub notes: Vec<String>,
 }
@@ -84,17 +85,25 @@ impl Surfaces {
                 *swept = corners.fold(*swept, |[low, high], corner| [low.min(corner), high.max(corner)]);
             }
         }
-        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, elastic: false, notes: Vec::new() }
+        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, membranes: None, notes: Vec::new() }
     }
 
     /// The same, moved by forces from where they are at the start.
     #[must_use]
-    pub fn elastic(self) -> Surfaces {
-        Surfaces { elastic: true, longest_edge: STRETCHED * self.longest_edge, ..self }
+    fn elastic(self, membranes: Membranes) -> Surfaces {
+        Surfaces { membranes: Some(membranes), longest_edge: STRETCHED * self.longest_edge, ..self }
     }
 
     pub fn is_elastic(&self) -> bool {
-        self.elastic
+        self.membranes.is_some()
+    }
+
+    /// The triangles of a surface, and its nodes.
+    pub fn parts(&self, surface: usize) -> (Range<usize>, Range<usize>) {
+        let triangles = self.all[surface].triangles.clone();
+        let nodes = || self.triangles[triangles.clone()].iter().flatten().map(|&node| node as usize);
+        let nodes = nodes().min().unwrap_or(0)..nodes().max().map_or(0, |last| last + 1);
+        (triangles, nodes)
     }
 
     /// Those of a scene; their files are read here.
@@ -107,8 +116,17 @@ impl Surfaces {
         }
         let (mut all, mut triangles, mut frames, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut first_node = 0;
+        let mut membranes = Membranes::new();
+        let is_elastic = scene.fabrics.iter().any(|fabric| fabric.membrane.is_some());
         for fabric in &scene.fabrics {
             let read = read(fabric, scene.units)?;
+            if is_elastic {
+                if fabric.motion.is_some() {
+                    let problem = "it has a `motion`, and another has a `material`: a scene has either".to_owned();
+                    return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
+                }
+                membranes.add(fabric, &read.mesh)?;
+            }
             notes.extend(read.notes);
             let first = triangles.len();
             triangles.extend(read.mesh.triangles.iter().map(|corners| corners.map(|node| node + first_node)));
@@ -127,7 +145,8 @@ impl Surfaces {
         let fastest = frames.iter().map(NodeFrames::top_speed).fold(0.0, f64::max);
         let places = move |time: f64| frames.iter().flat_map(|own| own.at(time)).collect();
         let course = Course { places: Arc::new(places), bends, fastest };
-        Ok(Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) })
+        let surfaces = Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) };
+        Ok(if is_elastic { surfaces.elastic(membranes) } else { surfaces })
     }
 
     pub fn is_empty(&self) -> bool {
@@ -155,7 +174,7 @@ impl Surfaces {
 
     /// The corners of what one of them sweeps in the run, m; without end of an elastic one.
     pub fn swept(&self, index: usize) -> ([f64; 3], [f64; 3]) {
-        if self.elastic {
+        if self.is_elastic() {
             return ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
         }
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
@@ -167,7 +186,7 @@ impl Surfaces {
     /// If two closed surfaces pass through places near each other.
     pub fn refuse_neighbours(&self) -> Result<(), ModelError> {
         let closed: Vec<usize> = (0..self.all.len()).filter(|&index| self.all[index].closed).collect();
-        if self.elastic && let [one, other, ..] = closed[..] {
+        if self.is_elastic() && let [one, other, ..] = closed[..] {
             let problem = format!("is elastic and closed, as \"{}\" is: there can be one such", self.all[other].name);
             return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
         }
@@ -203,7 +222,7 @@ impl Surfaces {
             }));
         }
         let nodes = self.places(0.0);
-        let elastic = self.elastic.then(|| {
+        let elastic = self.is_elastic().then(|| {
             let corner = |node: u32| DVec3::from(nodes[node as usize]);
             let edges = self.triangles.iter().map(|&[a, b, c]| {
                 let [a, b, c] = [a, b, c].map(corner);
@@ -218,7 +237,7 @@ impl Surfaces {
     /// Where the nodes are at the start of each of the steps of an interval and at the end of the last, quanta.
     pub fn steps(&self, grid: &Grid, start: f64, dt: f64, steps: u32) -> Vec<[u32; 4]> {
         let quanta = |place: f64, axis: usize| ((place - grid.origin[axis]) / grid.quantum()).round() as i64 as u32;
-        let moments = if self.is_empty() || self.elastic { 0 } else { steps + 1 };
+        let moments = if self.is_empty() || self.is_elastic() { 0 } else { steps + 1 };
         let nodes = (0..moments).flat_map(|k| self.places(start + f64::from(k) * dt));
         nodes.map(|place| [quanta(place[0], 0), quanta(place[1], 1), quanta(place[2], 2), 0]).collect()
     }

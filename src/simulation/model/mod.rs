@@ -12,6 +12,7 @@ pub(super) mod flow_only;
 mod fronts;
 mod holes;
 pub(super) mod measure;
+mod membranes;
 pub(super) mod moving;
 pub(super) mod open_sections;
 mod orifices;

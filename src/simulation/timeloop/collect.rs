@@ -2,7 +2,7 @@
 //! ranks, go into the account, the averages, the step size and the balance.
 
 use super::simulation::Simulation;
-use super::elastic_fabric::{ElasticFabric, SavedFabric};
+use super::elastic_fabric::SavedFabric;
 use super::submit::{FabricInFlight, InFlight, Pending};
 use crate::simulation::SimulationError;
 use crate::simulation::accounting::averages::Sampled;
@@ -91,7 +91,7 @@ impl Simulation<'_> {
         }
         self.submissions.spare.extend(before.spare());
         if let (Some(elastic), Some(FabricInFlight { after, .. })) = (&mut self.fabric, fabric) {
-            let grown = elastic.read(self.device, after, &interval.tallied)?;
+            let grown = elastic.read(self.device, after)?;
             let gained = Surfaces::gained(&self.model.scene, &grown);
             let initial = self.books.averages.initial_volumes();
             interval.volumes = initial.iter().zip(gained).map(|(initial, gained)| initial + gained).collect();
@@ -213,7 +213,7 @@ impl Simulation<'_> {
             state.pressure = state.pressure.map(|force| force / area);
             (state.volume, state.area) = (if surface.closed { volume } else { 0.0 }, area);
         }
-        for (state, energies) in row.fabrics.iter_mut().zip(self.fabric.iter().flat_map(ElasticFabric::energies)) {
+        for (state, energies) in row.fabrics.iter_mut().zip(self.fabric.iter().flat_map(|elastic| elastic.energies())) {
             state.energies = Some(energies);
         }
         let told = self.books.guards.row(&row);

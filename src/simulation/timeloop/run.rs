@@ -112,7 +112,12 @@ impl Simulation<'_> {
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
         let passed = self.passed(&own)?;
+        let fabric = match &self.fabric {
+            Some(elastic) => Some(elastic.account(self.device, self.ranks.comm())?),
+            None => None,
+        };
         let closing = AtEnd {
+            fabric,
             tallies: &at_end,
             inflow: &self.inflow,
             outside,

@@ -52,7 +52,7 @@ pub struct Simulation<'a> {
     pub(super) ranks: Ranks<'a>,
     pub(super) subdomain: Subdomain,
     /// Elastic fabric.
-    pub(super) fabric: Option<ElasticFabric>,
+    pub(super) fabric: Option<ElasticFabric<'a>>,
     pub(super) inflow: Inflow,
     pub(super) parallel: Parallel<'a>,
     pub(super) control: Control<'a>,

@@ -51,7 +51,7 @@ pub struct Machine<'a, 'b> {
     pub subdomain: &'a mut Subdomain,
     pub exchange: &'a mut Exchange<'b>,
     pub decomposition: Option<&'a mut Decomposition>,
-    pub fabric: Option<&'a ElasticFabric>,
+    pub fabric: Option<&'a ElasticFabric<'b>>,
     pub timer: Option<&'a PhaseTimer>,
     /// Steps per submission.
     pub batch: u32,

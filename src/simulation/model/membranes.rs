@@ -1,0 +1,141 @@
+//! What elastic fabric is made of: of each triangle its stress-free shape and material, of each node whether it is held.
+
+use glam::DVec3;
+
+use super::error::ModelError;
+use crate::fabric::{Elasticity, Element, Hold, Material, longest_step};
+use crate::geometry::TriangleMesh;
+use crate::scene::{self, Fixed};
+
+/// Of all surfaces of a scene, in their order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Membranes {
+    pub elements: Vec<Element>,
+    pub materials: Vec<Material>,
+    pub holds: Vec<Hold>,
+    /// The longest step of the fabric, s; infinite if none is elastic.
+    pub longest_step: f64,
+}
+
+/// Of surfaces at rest beside elastic ones: their nodes are held, and whatever they are of has no stress.
+const AT_REST: Material =
+    Material { elasticity: Elasticity::Isotropic { young: 1.0, poisson: 0.0 }, density: 1.0, damping: 0.0 };
+const THICKNESS_AT_REST: f64 = 1e-3;
+
+impl Membranes {
+    pub fn new() -> Membranes {
+        Membranes { longest_step: f64::INFINITY, ..Membranes::default() }
+    }
+
+    /// Adds a surface; its mesh is in m.
+    ///
+    /// # Errors
+    /// If its reference is another mesh, or nothing is free to move.
+    pub fn add(&mut self, fabric: &scene::Fabric, mesh: &TriangleMesh) -> Result<(), ModelError> {
+        let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
+        let material = self.materials.len();
+        let Some(membrane) = &fabric.membrane else {
+            self.materials.push(AT_REST);
+            let corners = |triangle: &[u32; 3]| triangle.map(|node| mesh.nodes[node as usize]);
+            let element = |triangle| Element::of_places(corners(triangle), THICKNESS_AT_REST, material);
+            self.elements.extend(mesh.triangles.iter().map(element));
+            self.holds.extend(vec![Hold::Fixed; mesh.nodes.len()]);
+            return Ok(());
+        };
+        let reference = match &membrane.reference {
+            None => mesh.nodes.clone(),
+            Some(path) => reference(path, fabric.scale, mesh).map_err(refused)?,
+        };
+        let own = elements(&membrane.material, mesh, &reference, material);
+        if let Some(flat) = own.iter().position(|element| element.area() <= 0.0) {
+            return Err(refused(format!("triangle {} of what it is free of stress has no area", flat + 1)));
+        }
+        let of = &membrane.material;
+        let known = Material { elasticity: elasticity(&of.elasticity), density: of.density, damping: of.damping };
+        self.materials.push(known);
+        self.longest_step = self.longest_step.min(longest_step(&own, &self.materials));
+        self.elements.extend(own);
+        let holds = holds(&membrane.fixed, mesh);
+        if holds.iter().all(|hold| *hold == Hold::Fixed) {
+            return Err(refused("all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into()));
+        }
+        self.holds.extend(holds);
+        Ok(())
+    }
+}
+
+fn elasticity(of: &scene::Elasticity) -> Elasticity {
+    match *of {
+        scene::Elasticity::Isotropic { young, poisson } => Elasticity::Isotropic { young, poisson },
+        scene::Elasticity::Orthotropic { young, poisson, shear, .. } => {
+            Elasticity::Orthotropic { young, poisson, shear }
+        }
+        scene::Elasticity::Woven { young, shear, .. } => Elasticity::Woven { young, shear },
+    }
+}
+
+/// The triangles with nodes at the places of a reference, m.
+fn elements(
+    of: &scene::FabricMaterial,
+    mesh: &TriangleMesh,
+    reference: &[[f64; 3]],
+    material: usize,
+) -> Vec<Element> {
+    let fibre = match of.elasticity {
+        scene::Elasticity::Isotropic { .. } => None,
+        scene::Elasticity::Orthotropic { fibre, .. } | scene::Elasticity::Woven { fibre, .. } => {
+            Some(DVec3::from(fibre))
+        }
+    };
+    let element = |triangle: &[u32; 3]| {
+        let corners = triangle.map(|node| reference[node as usize]);
+        let [a, b, c] = corners.map(DVec3::from);
+        let along = (b - a).normalize_or_zero();
+        let across = (b - a).cross(c - a).cross(b - a).normalize_or_zero();
+        let angle = fibre.map_or(0.0, |fibre| libm::atan2(fibre.dot(across), fibre.dot(along)));
+        Element { fibre: angle, ..Element::of_places(corners, of.thickness, material) }
+    };
+    mesh.triangles.iter().map(element).collect()
+}
+
+/// Where the nodes of a mesh are free of stress, m.
+fn reference(path: &std::path::Path, scale: f64, mesh: &TriangleMesh) -> Result<Vec<[f64; 3]>, String> {
+    let mut read = TriangleMesh::read(path).map_err(|error| error.to_string())?;
+    read.nodes.iter_mut().flatten().for_each(|x| *x *= scale);
+    if (read.nodes.len(), &read.triangles) != (mesh.nodes.len(), &mesh.triangles) {
+        return Err(format!(
+            "its reference {} has {} nodes and {} triangles, and its mesh {} and {}: they must be one mesh, in one order",
+            path.display(),
+            read.nodes.len(),
+            read.triangles.len(),
+            mesh.nodes.len(),
+            mesh.triangles.len()
+        ));
+    }
+    Ok(read.nodes)
+}
+
+fn holds(fixed: &Fixed, mesh: &TriangleMesh) -> Vec<Hold> {
+    let mut holds = vec![Hold::Free; mesh.nodes.len()];
+    match fixed {
+        Fixed::Nothing => {}
+        Fixed::Edge => {
+            let mut edges = std::collections::HashMap::new();
+            for &[a, b, c] in &mesh.triangles {
+                for [one, other] in [[a, b], [b, c], [c, a]] {
+                    *edges.entry([one.min(other), one.max(other)]).or_insert(0) += 1;
+                }
+            }
+            let open = edges.into_iter().filter(|(_, triangles)| *triangles == 1);
+            open.flat_map(|(edge, _)| edge).for_each(|node| holds[node as usize] = Hold::Fixed);
+        }
+        Fixed::Within(regions) => {
+            for (hold, &place) in holds.iter_mut().zip(&mesh.nodes) {
+                if regions.iter().any(|region| region.contains(place)) {
+                    *hold = Hold::Fixed;
+                }
+            }
+        }
+    }
+    holds
+}
