@@ -216,13 +216,17 @@ impl CliError {
             | CliError::RunWarnings { .. }
             | CliError::Verification { .. }
             | CliError::Simulation(
-                SimulationError::Lost { .. } | SimulationError::Ladder { .. } | SimulationError::Guard { .. },
+                SimulationError::Lost { .. }
+                | SimulationError::LostNodes { .. }
+                | SimulationError::Ladder { .. }
+                | SimulationError::Guard { .. },
             ) => AUDIT_FAILED,
             CliError::Simulation(
                 SimulationError::Geometry(_)
                 | SimulationError::Fill(_)
                 | SimulationError::State(_)
                 | SimulationError::Cells(_)
+                | SimulationError::Membrane(_)
                 | SimulationError::Partition(_)
                 | SimulationError::Checkpoint(_)
                 | SimulationError::Resume(_)

@@ -117,6 +117,7 @@ impl Surfaces {
         let (mut all, mut triangles, mut frames, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut first_node = 0;
         let mut membranes = Membranes::new();
+        refuse_gas_outside(scene)?;
         let is_elastic = scene.fabrics.iter().any(|fabric| fabric.membrane.is_some());
         for fabric in &scene.fabrics {
             let read = read(fabric, scene.units)?;
@@ -291,6 +292,17 @@ impl Surfaces {
     }
 }
 
+/// Where a pressure is given in place of gas there is none.
+fn refuse_gas_outside(scene: &Scene) -> Result<(), ModelError> {
+    let pressed = scene.fabrics.iter().find(|fabric| fabric.external_pressure.is_some());
+    let around = scene.chambers.iter().find(|chamber| chamber.inside.is_none());
+    if let (Some(fabric), Some(chamber)) = (pressed, around) {
+        let problem = format!("it has an `external_pressure`, and around it is the gas of chamber \"{}\": leave out one", chamber.name);
+        return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
+    }
+    Ok(())
+}
+
 /// A fabric's files, SI.
 struct Read {
     mesh: TriangleMesh,
@@ -300,15 +312,8 @@ struct Read {
 
 fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
     let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
-    if fabric.membrane.is_some() {
-        return Err(refused(
-            "it has a `material`, and gas does not move fabric yet: give its `motion`, or let it rest".into(),
-        ));
-    }
-    if fabric.external_pressure.is_some() {
-        return Err(refused(
-            "`external_pressure` is not possible yet: leave it out, and gas outside is in a chamber".into(),
-        ));
+    if fabric.external_pressure.is_some() && fabric.membrane.is_none() {
+        return Err(refused("it has an `external_pressure`, and no `material`: where its nodes are no pressure changes".into()));
     }
     let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
     mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::error::ModelError;
 use crate::fabric::{Elasticity, Element, Hold, Material, longest_step};
-use crate::geometry::TriangleMesh;
+use crate::geometry::{TriangleMesh, region_contains};
 use crate::scene::{self, Fixed};
 
 /// Of all surfaces of a scene, in their order.
@@ -46,10 +46,13 @@ impl Membranes {
             None => mesh.nodes.clone(),
             Some(path) => reference(path, fabric.scale, mesh).map_err(refused)?,
         };
-        let own = elements(&membrane.material, mesh, &reference, material);
+        let mut own = elements(&membrane.material, mesh, &reference, material);
         if let Some(flat) = own.iter().position(|element| element.area() <= 0.0) {
             return Err(refused(format!("triangle {} of what it is free of stress has no area", flat + 1)));
         }
+        // Along the normal, which points outwards.
+        let pressure = -fabric.external_pressure.unwrap_or(0.0);
+        own.iter_mut().for_each(|element| element.pressure = pressure);
         let of = &membrane.material;
         let known = Material { elasticity: elasticity(&of.elasticity), density: of.density, damping: of.damping };
         self.materials.push(known);
@@ -102,7 +105,15 @@ fn elements(
 fn reference(path: &std::path::Path, scale: f64, mesh: &TriangleMesh) -> Result<Vec<[f64; 3]>, String> {
     let mut read = TriangleMesh::read(path).map_err(|error| error.to_string())?;
     read.nodes.iter_mut().flatten().for_each(|x| *x *= scale);
-    if (read.nodes.len(), &read.triangles) != (mesh.nodes.len(), &mesh.triangles) {
+    // (The mesh may have been turned outwards.)
+    let sorted = |triangles: &[[u32; 3]]| -> Vec<[u32; 3]> {
+        let sorted = |mut corners: [u32; 3]| {
+            corners.sort_unstable();
+            corners
+        };
+        triangles.iter().copied().map(sorted).collect()
+    };
+    if read.nodes.len() != mesh.nodes.len() || sorted(&read.triangles) != sorted(&mesh.triangles) {
         return Err(format!(
             "its reference {} has {} nodes and {} triangles, and its mesh {} and {}: they must be one mesh, in one order",
             path.display(),
@@ -131,7 +142,7 @@ fn holds(fixed: &Fixed, mesh: &TriangleMesh) -> Vec<Hold> {
         }
         Fixed::Within(regions) => {
             for (hold, &place) in holds.iter_mut().zip(&mesh.nodes) {
-                if regions.iter().any(|region| region.contains(place)) {
+                if regions.iter().any(|region| region_contains(region, place)) {
                     *hold = Hold::Fixed;
                 }
             }

@@ -8,15 +8,14 @@
 
 use glam::DVec3;
 
-use crate::fabric::{Energies, GpuMembraneNode, Membrane, MembraneError, MembraneInput, MembraneState};
-use crate::gpu::{Device, GpuError, Readback, Recording};
+use crate::fabric::{Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState};
+use crate::gpu::{Device, Readback, Recording};
 use crate::output::FabricAccount;
 use crate::ranks::Communicator;
 use crate::simulation::accounting::row::FabricEnergies;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
-use crate::simulation::model::fabric::Surfaces;
 use crate::simulation::run_state::FabricState;
 use crate::subdomain::{Scales, Subdomain};
 
