@@ -134,7 +134,10 @@ fn tension(elastic: Elastic, strain: vec3<f32>) -> Tension {
     var direction = vec2<f32>(1.0, 0.0);
     if (elastic.isotropic == 1u) {
         // Under compression that is not the same along both axes, or under one that has no tension.
-        direction = select(direction, other / length(other), any(other != vec2<f32>(0.0)));
+        // (Scaled first: squares of tiny strains are zero.)
+        let size = max(abs(other.x), abs(other.y));
+        let scaled = other / size;
+        direction = select(direction, scaled / length(scaled), size > 0.0);
     } else {
         direction = steepest(elastic, mean, other);
     }
