@@ -40,12 +40,7 @@ impl Energies {
     }
 
     /// Of these triangles and nodes alone.
-    pub fn of_part(
-        model: &Model,
-        nodes: &[GpuMembraneNode],
-        triangles: Range<usize>,
-        part: Range<usize>,
-    ) -> Energies {
+    pub fn of_part(model: &Model, nodes: &[GpuMembraneNode], triangles: Range<usize>, part: Range<usize>) -> Energies {
         let middle = |node: &GpuMembraneNode| {
             let velocity = DVec3::from_array(node.velocity.map(f64::from));
             place(node, model) - 0.5 * f64::from(node.dt) * velocity

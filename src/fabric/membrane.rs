@@ -114,8 +114,13 @@ impl Membrane {
 
     /// The length of the gas's steps from the next submission on, s: before the first step, and where it changes.
     pub fn set_step(&self, device: &Device, dt: f64) {
-        let step =
-            GpuMembraneStep { dt: (dt / f64::from(self.no_step.substeps)) as f32, gas_dt: dt as f32, ..self.no_step };
+        self.divide_step(device, dt, self.no_step.substeps);
+    }
+
+    /// The same, in this power of two steps of the fabric, no more than the input's.
+    pub fn divide_step(&self, device: &Device, dt: f64, substeps: u32) {
+        let of_fabric = (dt / f64::from(substeps)) as f32;
+        let step = GpuMembraneStep { dt: of_fabric, gas_dt: dt as f32, substeps, ..self.no_step };
         device.write(&self.membrane_step, 0, &[step]);
     }
 
@@ -138,11 +143,16 @@ impl Membrane {
 
     /// The steps of the fabric in step `slot` of an interval of the gas: takes `impulses`, writes its part of `nodes`.
     pub fn step(&self, recording: &mut Recording<'_>, slot: u32) {
+        self.divided_step(recording, slot, self.no_step.substeps);
+    }
+
+    /// The same, after [`Membrane::divide_step`] in as many.
+    pub fn divided_step(&self, recording: &mut Recording<'_>, slot: u32, substeps: u32) {
         let mut pass = recording.phase(PHASE);
-        let substeps = self.no_step.substeps;
+        let first = slot * self.no_step.substeps;
         for substep in 0..substeps {
             self.forces_of_elements.dispatch(&mut pass, 0, self.element_groups);
-            self.move_nodes.dispatch(&mut pass, (slot * substeps + substep) * self.stride, self.node_groups);
+            self.move_nodes.dispatch(&mut pass, (first + substep) * self.stride, self.node_groups);
         }
     }
 

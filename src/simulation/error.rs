@@ -30,7 +30,9 @@ pub enum SimulationError {
     #[error("elastic fabric is none that can be computed: {0}")]
     Membrane(#[from] MembraneError),
     #[error("nodes of elastic fabric would have left the grid of the walls, or were nowhere, {times} times")]
-    #[diagnostic(help("give the bag room within its walls; where it has, its steps are too long or its gas too coarse"))]
+    #[diagnostic(help(
+        "give the bag room within its walls; where it has, its steps are too long or its gas too coarse"
+    ))]
     LostNodes { times: u32 },
     #[error(transparent)]
     Partition(#[from] PartitionError),

@@ -50,7 +50,7 @@ pub use timeloop::schedule::{CheckpointEvery, Schedule, WallTime, WallTimeError,
 pub use timeloop::setup::{Setup, Shuffle};
 pub use timeloop::simulation::Simulation;
 pub use timeloop::step::Sampling;
-pub use zero_d::reference::reference;
+pub use zero_d::reference::{reference, reference_of_volumes};
 pub use zero_d::rows::RowObserver;
 pub use zero_d::switch::{Decided, Deviations, SwitchState};
 pub use zero_d::uniform::run_uniform;

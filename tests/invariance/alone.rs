@@ -10,8 +10,8 @@ use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
-    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, pistons, plate, inflated_bag, shaken_bag, tank, venting,
-    venting_freely,
+    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, inflated_bag, pistons, plate, shaken_bag, tank,
+    venting, venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
 

@@ -11,8 +11,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, first, gas_box, pistons, plate, inflated_bag, shaken_bag, switching, tank, thin,
-    tube, venting, venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, first, gas_box, inflated_bag, pistons, plate, shaken_bag,
+    switching, tank, thin, tube, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 

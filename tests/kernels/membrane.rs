@@ -433,12 +433,12 @@ fn a_membrane_goes_on_from_what_was_saved() {
     run(&membrane, 0..3);
     let state = membrane.read_state(device()).expect("a state");
     let mut encoder = device().encoder();
-    membrane.save(&mut encoder);
+    let saved = membrane.save(device(), &mut encoder).expect("a copy");
     device().submit(encoder);
     run(&membrane, 0..4);
     let expected = membrane.read_state(device()).expect("a state");
     let mut encoder = device().encoder();
-    membrane.restore(&mut encoder);
+    membrane.restore(&mut encoder, &saved);
     device().submit(encoder);
     run(&membrane, 0..4);
     assert_eq!(membrane.read_state(device()).expect("a state").bytes(), expected.bytes());

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::checkpoints::Checkpoints;
 use super::reference::Reference;
-use super::table::{columns, values};
+use super::table::{Owners, columns, time_column, values, volume_column};
 use crate::output::{
-    BalanceRow, BalanceWriter, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
+    BalanceRow, BalanceWriter, Column, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
     SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, TriangleSet, over_mean, subdomain_chart,
 };
 use crate::simulation::{
@@ -87,6 +87,8 @@ impl<'a> Recorder<'a> {
     ) -> Result<Recorder<'a>, OutputError> {
         let Reached { output, totals } = from;
         let history = HistoryWriter::resume(dir, &columns(&model.scene), &output.history)?;
+        let mut reference = reference;
+        seen_volumes(model, history.history()).into_iter().for_each(|(time, volumes)| reference.see(time, volumes));
         let snapshots = match &output.snapshots {
             None => None,
             Some(snapshots) => {
@@ -253,6 +255,15 @@ fn write_walls(writer: &SnapshotWriter, model: &Model) -> Result<(), OutputError
     writer.write_walls(walls).map(|_| ())
 }
 
+/// The times of rows, s, and the volumes of chambers then, m3.
+fn seen_volumes(model: &Model, history: &History) -> Vec<(f64, Vec<f64>)> {
+    let column = |column: Column| history.column(&column.header()).unwrap_or_default();
+    let owners = Owners::of(&model.scene).chambers;
+    let volumes: Vec<Vec<f64>> = owners.iter().map(|owner| column(volume_column(owner))).collect();
+    let at = |row: usize| volumes.iter().filter_map(|own| own.get(row).copied()).collect();
+    column(time_column()).into_iter().enumerate().map(|(row, time)| (time, at(row))).collect()
+}
+
 fn gas_names(model: &Model) -> Vec<String> {
     model.scene.gases.iter().map(|gas| gas.name.clone()).collect()
 }
@@ -285,6 +296,7 @@ impl RowObserver for Recorder<'_> {
             // The window that the checkpoint cuts in two: the run that goes on has the whole of it.
             return Ok(());
         }
+        self.reference.follow(self.model, row);
         self.history.row(&values(row, &self.reference)).map_err(stop)
     }
 

@@ -63,6 +63,11 @@ pub fn time_column() -> Column {
 /// Of elastic fabric.
 const ENERGIES: [&str; 3] = ["kinetic", "strain", "damped"];
 
+/// Of a chamber, in scenes in which it changes.
+pub fn volume_column(owner: &str) -> Column {
+    Column::new(format!("{owner}:volume"), "m3")
+}
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 pub fn columns(scene: &Scene) -> Vec<Column> {
@@ -74,7 +79,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.push(Column::new(format!("{owner}:temperature"), "k"));
         columns.push(Column::new(format!("{owner}:reference_temperature"), "k"));
         if !scene.motions.is_empty() || !scene.fabrics.is_empty() {
-            columns.push(Column::new(format!("{owner}:volume"), "m3"));
+            columns.push(volume_column(owner));
         }
         flow_columns(&mut columns, owner, scene);
     }

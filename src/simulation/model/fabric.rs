@@ -85,7 +85,16 @@ impl Surfaces {
                 *swept = corners.fold(*swept, |[low, high], corner| [low.min(corner), high.max(corner)]);
             }
         }
-        Surfaces { all, triangles, course: Some(course), moments, longest_edge, swept, membranes: None, notes: Vec::new() }
+        Surfaces {
+            all,
+            triangles,
+            course: Some(course),
+            moments,
+            longest_edge,
+            swept,
+            membranes: None,
+            notes: Vec::new(),
+        }
     }
 
     /// The same, moved by forces from where they are at the start.
@@ -187,7 +196,9 @@ impl Surfaces {
     /// If two closed surfaces pass through places near each other.
     pub fn refuse_neighbours(&self) -> Result<(), ModelError> {
         let closed: Vec<usize> = (0..self.all.len()).filter(|&index| self.all[index].closed).collect();
-        if self.is_elastic() && let [one, other, ..] = closed[..] {
+        if self.is_elastic()
+            && let [one, other, ..] = closed[..]
+        {
             let problem = format!("is elastic and closed, as \"{}\" is: there can be one such", self.all[other].name);
             return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
         }
@@ -297,7 +308,10 @@ fn refuse_gas_outside(scene: &Scene) -> Result<(), ModelError> {
     let pressed = scene.fabrics.iter().find(|fabric| fabric.external_pressure.is_some());
     let around = scene.chambers.iter().find(|chamber| chamber.inside.is_none());
     if let (Some(fabric), Some(chamber)) = (pressed, around) {
-        let problem = format!("it has an `external_pressure`, and around it is the gas of chamber \"{}\": leave out one", chamber.name);
+        let problem = format!(
+            "it has an `external_pressure`, and around it is the gas of chamber \"{}\": leave out one",
+            chamber.name
+        );
         return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
     }
     Ok(())
@@ -313,7 +327,9 @@ struct Read {
 fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
     let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
     if fabric.external_pressure.is_some() && fabric.membrane.is_none() {
-        return Err(refused("it has an `external_pressure`, and no `material`: where its nodes are no pressure changes".into()));
+        return Err(refused(
+            "it has an `external_pressure`, and no `material`: where its nodes are no pressure changes".into(),
+        ));
     }
     let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
     mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);

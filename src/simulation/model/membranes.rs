@@ -60,7 +60,9 @@ impl Membranes {
         self.elements.extend(own);
         let holds = holds(&membrane.fixed, mesh);
         if holds.iter().all(|hold| *hold == Hold::Fixed) {
-            return Err(refused("all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into()));
+            return Err(refused(
+                "all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into(),
+            ));
         }
         self.holds.extend(holds);
         Ok(())
@@ -78,12 +80,7 @@ fn elasticity(of: &scene::Elasticity) -> Elasticity {
 }
 
 /// The triangles with nodes at the places of a reference, m.
-fn elements(
-    of: &scene::FabricMaterial,
-    mesh: &TriangleMesh,
-    reference: &[[f64; 3]],
-    material: usize,
-) -> Vec<Element> {
+fn elements(of: &scene::FabricMaterial, mesh: &TriangleMesh, reference: &[[f64; 3]], material: usize) -> Vec<Element> {
     let fibre = match of.elasticity {
         scene::Elasticity::Isotropic { .. } => None,
         scene::Elasticity::Orthotropic { fibre, .. } | scene::Elasticity::Woven { fibre, .. } => {

@@ -1,8 +1,8 @@
 //! What a rank reads of the intervals that it submitted, one or two of them late: their tallies, summed over the
 //! ranks, go into the account, the averages, the step size and the balance.
 
-use super::simulation::Simulation;
 use super::elastic_fabric::SavedFabric;
+use super::simulation::Simulation;
 use super::submit::{FabricInFlight, InFlight, Pending};
 use crate::simulation::SimulationError;
 use crate::simulation::accounting::averages::Sampled;
@@ -84,7 +84,11 @@ impl Simulation<'_> {
         let InFlight { mut interval, before, tallies, phases, fabric, .. } = flight;
         let (mut tallies, stamps, loads) = self.collect(tallies)?;
         if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 {
-            return self.run_again(interval, Before { gas: before, fabric: fabric.map(|fabric| fabric.before) }, tallies);
+            return self.run_again(
+                interval,
+                Before { gas: before, fabric: fabric.map(|fabric| fabric.before) },
+                tallies,
+            );
         }
         if let Some((_, earlier)) = interval.done.take() {
             tallies = tallies.and_before(&earlier).ok_or_else(misshapen)?;

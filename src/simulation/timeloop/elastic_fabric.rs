@@ -25,6 +25,8 @@ const PLACE: u64 = size_of::<[u32; 4]>() as u64;
 pub struct ElasticFabric<'a> {
     model: &'a Model,
     membrane: Membrane,
+    /// Of the fabric, s.
+    longest_step: f64,
     /// kg m/s.
     impulse_unit: f64,
     /// The state at the end of the last interval read.
@@ -40,7 +42,11 @@ pub struct ElasticFabric<'a> {
 }
 
 /// As it was before an interval.
-pub struct SavedFabric(wgpu::Buffer);
+pub struct SavedFabric {
+    state: wgpu::Buffer,
+    /// Of the fabric in each step of the interval.
+    substeps: u32,
+}
 
 impl<'a> ElasticFabric<'a> {
     /// That of a scene, if it has any; the subdomain follows it.
@@ -56,7 +62,6 @@ impl<'a> ElasticFabric<'a> {
         let (plan, scales) = (&model.plan, Scales::new(&model.plan));
         let places = model.fabric.places(0.0);
         let impulse_unit = scales.reference_mass / scales.velocity;
-        let most = (plan.time_step / membranes.longest_step).ceil().max(1.0) as u32;
         let input = MembraneInput {
             grid: &plan.grid,
             nodes: &places,
@@ -67,7 +72,7 @@ impl<'a> ElasticFabric<'a> {
             added_masses: &vec![0.0; places.len()],
             holds: &membranes.holds,
             gravity: model.scene.gravity,
-            substeps: most.next_power_of_two(),
+            substeps: substeps(plan.time_step, membranes.longest_step),
             steps_per_interval: plan.steps_per_interval,
             impulse_unit,
             drag: 0.0,
@@ -81,6 +86,7 @@ impl<'a> ElasticFabric<'a> {
         Ok(Some(ElasticFabric {
             model,
             impulse_unit,
+            longest_step: membranes.longest_step,
             start: [energies.kinetic, energies.strain],
             initial_volumes: measures.iter().map(|[volume, _]| *volume).collect(),
             window: (0, vec![[0.0; 2]; measures.len()]),
@@ -106,19 +112,20 @@ impl<'a> ElasticFabric<'a> {
     /// If the device has no memory for that.
     pub fn begin_interval(&self, rec: &mut Recording<'_>, dt: f64) -> Result<SavedFabric, SimulationError> {
         let device = rec.device();
-        self.membrane.set_step(device, dt);
-        Ok(SavedFabric(self.membrane.save(device, rec.encoder())?))
+        let substeps = substeps(dt, self.longest_step);
+        self.membrane.divide_step(device, dt, substeps);
+        Ok(SavedFabric { state: self.membrane.save(device, rec.encoder())?, substeps })
     }
 
-    /// Moves it through a step of the gas, the one at this place of the interval.
-    pub fn step(&self, rec: &mut Recording<'_>, slot: u32) {
-        self.membrane.step(rec, slot);
+    /// Moves it through a step of the gas, the one at this place of an interval that began so.
+    pub fn step(&self, rec: &mut Recording<'_>, slot: u32, begun: &SavedFabric) {
+        self.membrane.divided_step(rec, slot, begun.substeps);
     }
 
     /// Back to what was kept before an interval.
     pub fn restore(&self, device: &Device, saved: &SavedFabric) {
         let mut encoder = device.encoder();
-        self.membrane.restore(&mut encoder, &saved.0);
+        self.membrane.restore(&mut encoder, &saved.state);
         device.submit(encoder);
     }
 
@@ -268,6 +275,11 @@ impl<'a> ElasticFabric<'a> {
         self.start = known.start;
         Ok(())
     }
+}
+
+/// Steps of the fabric in one of the gas, s.
+fn substeps(dt: f64, longest: f64) -> u32 {
+    ((dt / longest).ceil().max(1.0) as u32).next_power_of_two()
 }
 
 /// Where the gas sees them, m.

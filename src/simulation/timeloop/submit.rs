@@ -106,9 +106,9 @@ impl Machine<'_, '_> {
                 rec.time_alone(self.timer.filter(|_| !alone(k).is_empty()), alone(k));
             }
             self.subdomain.begin_step(&mut rec, &mut slot)?;
-            if let Some(fabric) = self.fabric {
+            if let (Some(fabric), Some(begun)) = (self.fabric, &fabric_before) {
                 self.exchange.impulses(&mut rec, fabric.impulses())?;
-                fabric.step(&mut rec, k);
+                fabric.step(&mut rec, k, begun);
             }
             step(self.subdomain, self.exchange, &mut rec, &mut slot, sampling)?;
             if k == last {
@@ -130,10 +130,9 @@ impl Machine<'_, '_> {
         let staging_of_fabric =
             self.fabric.map(|fabric| fabric.encode_readback(&mut rec, &interval.tallied)).transpose()?;
         let submission = rec.submit();
-        let fabric = fabric_before.zip(staging_of_fabric).map(|(before, staging)| FabricInFlight {
-            before,
-            after: device.read_later(staging, submission.clone()),
-        });
+        let fabric = fabric_before
+            .zip(staging_of_fabric)
+            .map(|(before, staging)| FabricInFlight { before, after: device.read_later(staging, submission.clone()) });
         let tallies = Pending::OnDevice(device.read_later(staging, submission));
         self.exchange.ran(start.elapsed().as_secs_f64());
         let traffic = self.exchange.recent();

@@ -3,16 +3,32 @@
 
 use crate::gas::kinetics::HALF_TURN_PATHS;
 use crate::gas::{
-    Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, moles_at,
+    Beginning, Collisions, ControlVolume, HeatedWall, Lost, OpenVent, Reservoir, Source, State, Swept, moles_at,
 };
 use crate::plan::{OpeningPlan, Plan};
-use crate::scene::{Method, Opening, Scene, SurfaceId};
+use crate::scene::{Course, Curve, Method, Opening, Scene, SurfaceId};
 use crate::simulation::model::build::Model;
 use crate::simulation::model::places::chamber_of;
 
 /// The reference states of the chambers at `times` (s, ascending); outer index time.
 pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
     volume(model).solve(&initial(&model.scene, &model.plan), times)
+}
+
+/// The reference states of the chambers at the last of these moments (s, ascending), where their volumes, m3, are known: of a scene whose fabric
+/// the gas moves, as it was seen to move until then.
+pub fn reference_of_volumes(model: &Model, moments: &[f64], volumes: &[Vec<f64>]) -> Vec<State> {
+    let of_chambers = volume(model);
+    let change = |now: &Vec<f64>| now.iter().zip(&of_chambers.volumes).map(|(now, start)| now - start).collect();
+    let (start, end) = (vec![0.0; of_chambers.volumes.len()], moments.last().copied().unwrap_or(0.0));
+    let swept = Swept {
+        // Displaced by a metre a second: volumes are by time.
+        course: Course::Displacement(Curve { points: vec![[0.0, 0.0], [end, end]] }),
+        at: std::iter::once(0.0).chain(moments.iter().copied()).collect(),
+        change: std::iter::once(start).chain(volumes.iter().map(change)).collect(),
+    };
+    let followed = ControlVolume { swept: vec![swept], ..of_chambers };
+    followed.solve(&initial(&model.scene, &model.plan), &[end]).pop().unwrap_or_default()
 }
 
 /// As [`reference`], and what has left through walls that keep a temperature (those of [`heated_walls`]) and vents.
