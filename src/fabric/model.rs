@@ -125,8 +125,8 @@ impl Model {
         ];
         let rate = in_tension(found.taut, by_gradients(triangle, metric_rate));
         Forces {
-            strain: on_corners(triangle, edges, found.stress),
-            damping: on_corners(triangle, edges, rate.map(|rate| 2.0 * triangle.viscosity * rate)),
+            strain: triangle.pull(edges, found.stress),
+            damping: triangle.pull(edges, rate.map(|rate| 2.0 * triangle.viscosity * rate)),
             pressure: edges[0].cross(edges[1]) * (triangle.pressure / 6.0),
             energy: triangle.volume * found.energy,
             taut: found.taut,
@@ -220,17 +220,25 @@ fn by_gradients(triangle: &Triangle, metric: [f64; 3]) -> Symmetric {
     [0.5 * sum(0, 0), 0.5 * sum(1, 1), 0.5 * sum(0, 1)]
 }
 
-/// -V F S g of the second corner and the third.
-fn on_corners(triangle: &Triangle, edges: [DVec3; 2], stress: Symmetric) -> [DVec3; 2] {
-    let by = |p: [f64; 2], q: [f64; 2]| {
-        p[0] * (stress[0] * q[0] + stress[2] * q[1]) + p[1] * (stress[2] * q[0] + stress[1] * q[1])
-    };
-    let [p, q] = triangle.gradients;
-    let mixed = by(p, q);
-    [
-        -triangle.volume * (by(p, p) * edges[0] + mixed * edges[1]),
-        -triangle.volume * (mixed * edges[0] + by(q, q) * edges[1]),
-    ]
+impl Triangle {
+    /// -V F S g: what a stress puts on the second corner and on the third.
+    pub fn pull(&self, edges: [DVec3; 2], stress: Symmetric) -> [DVec3; 2] {
+        let by = |p: [f64; 2], q: [f64; 2]| {
+            p[0] * (stress[0] * q[0] + stress[2] * q[1]) + p[1] * (stress[2] * q[0] + stress[1] * q[1])
+        };
+        let [p, q] = self.gradients;
+        let mixed = by(p, q);
+        [
+            -self.volume * (by(p, p) * edges[0] + mixed * edges[1]),
+            -self.volume * (mixed * edges[0] + by(q, q) * edges[1]),
+        ]
+    }
+
+    /// The columns of F, of the axes of the fibre.
+    pub fn deformation(&self, edges: [DVec3; 2]) -> [DVec3; 2] {
+        let [p, q] = self.gradients;
+        [p[0] * edges[0] + q[0] * edges[1], p[1] * edges[0] + q[1] * edges[1]]
+    }
 }
 
 /// The part of a rate of strain that is along what bears tension.

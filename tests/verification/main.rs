@@ -16,6 +16,7 @@ mod half_turn_rows;
 mod hard_sphere;
 mod heat_curve;
 mod long_steps;
+mod membranes;
 mod mixing;
 mod orifice;
 mod piston;

@@ -22,6 +22,7 @@ pub mod gas_box;
 pub mod half_turn;
 pub mod holes;
 pub mod losses;
+pub mod membrane;
 pub mod mixing;
 pub mod noh;
 pub mod page;
@@ -174,6 +175,56 @@ pub const CASES: &[Case] = &[
         name: "piston",
         law: "slow compression 2:1: T over (V0/V)^(gamma-1); fast pistons: pressure behind their shock (Rankine-Hugoniot)",
         run: piston::pistons,
+    },
+    Case {
+        name: "membrane-patch",
+        law: "a membrane of irregular triangles whose rim is strained uniformly (patch test)",
+        run: membrane::stretched::patch,
+    },
+    Case {
+        name: "membrane-strip",
+        law: "a membrane that wrinkles bears tension along, S = E e, and nothing across (tension field)",
+        run: membrane::stretched::strip,
+    },
+    Case {
+        name: "membrane-loop",
+        law: "a closed loop of strains through taut, wrinkled and slack states leaves no work (hyperelasticity)",
+        run: membrane::stretched::loops,
+    },
+    Case {
+        name: "membrane-wave",
+        law: "frequency of a standing wave of stretching over that at root(E/rho)",
+        run: membrane::moving::waves,
+    },
+    Case {
+        name: "membrane-sheet",
+        law: "energy of a free sheet that springs back and crumples, without damping",
+        run: membrane::moving::crumple,
+    },
+    Case {
+        name: "membrane-taut",
+        law: "energy of a taut sheet that swings for 20,000 steps, without damping",
+        run: membrane::moving::taut,
+    },
+    Case {
+        name: "membrane-bag",
+        law: "volume of a square bag under pressure (.2055 L^3 if inextensible, Kepert)",
+        run: membrane::shapes::squares,
+    },
+    Case {
+        name: "membrane-height",
+        law: "height of a square bag of 1200 mm from corner to corner at 5 kPa (217 mm, literature of wrinkled membranes)",
+        run: membrane::shapes::half_heights,
+    },
+    Case {
+        name: "membrane-discs",
+        law: "two discs sewn at their rim, under pressure (Paulsen 1994)",
+        run: membrane::shapes::discs,
+    },
+    Case {
+        name: "membrane-round",
+        law: "tension of a cylinder and a sphere under pressure, p r and p r/2",
+        run: membrane::shapes::round,
     },
 ];
 
