@@ -84,7 +84,7 @@ impl Sheet {
             (0..=m).flat_map(|j| (0..=n).map(move |i| [f64::from(i) * edge, f64::from(j) * edge, 0.0])).collect();
         let two = |i: u32, j: u32| {
             let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
-            if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+            if (i + j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
         };
         let triangles: Vec<[u32; 3]> = (0..m).flat_map(|j| (0..n).flat_map(move |i| two(i, j))).collect();
         let parts = vec![None; triangles.len()];
