@@ -7,7 +7,7 @@
 // a whole tile.
 //
 // Reads `cell_start`, `parting` and `motions`; appends collision cells of two particles and more to `collision_cells`, or where a wall may stand between
-// two of them to `cut_cells`, each with its first particle and the end. One thread per bin; that of a collision cell's first bin does it. The order of the lists is no matter:
+// two of them to `cut_cells`, each with its first particle and the end, and what cuts it. One thread per bin; that of a collision cell's first bin does it. The order of the lists is no matter:
 // each entry has particles of its own.
 
 // Collision cells of more particles are halved.
@@ -20,22 +20,30 @@ var<storage, read> cell_start: array<u32>;
 var<storage, read_write> collision_cells: array<vec2<u32>>;
 var<storage, read_write> cut_cells: array<vec2<u32>>;
 
-// Whether a wall may stand between two particles of these bins. What `may_part` says of a cell is of those around it, too: of cells
+// What may stand between two particles of these bins. What `may_part` says of a cell is of those around it, too: of cells
 // that are four wide two are asked along each axis.
-fn may_be_cut(first: u32, bins: u32) -> bool {
+fn cut_by(first: u32, bins: u32) -> u32 {
     let low = cell_of(first);
     let high = cell_of(first + bins - 1u);
     let last = vec3<u32>(CELLS_X, CELLS_Y, CELLS_Z) - 1u;
+    var is_near = false;
+    var found = 0u;
     for (var z = low.z; z <= high.z; z += 2u) {
         for (var y = low.y; y <= high.y; y += 2u) {
             for (var x = low.x; x <= high.x; x += 2u) {
-                if (may_part(min(vec3<u32>(x, y, z), last))) {
-                    return true;
+                let c = min(vec3<u32>(x, y, z), last);
+                if (wall_may_part(c)) {
+                    found = CUT_BY_WALLS;
                 }
+                is_near = is_near || (FABRIC && near_fabric(c));
             }
         }
     }
-    return false;
+    // (Of fabric it is enough to ask these cells.)
+    if (is_near && any_fabric(Cells(low, min(high, last)))) {
+        found |= CUT_BY_FABRIC;
+    }
+    return found;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -64,8 +72,14 @@ fn collision_cells_of(thread: Thread) {
     }
     if (end - begin == 1u) {
         atomicAdd(&counters[FREE_FLIGHTS], 1u);
-    } else if ((DIVIDED_GAS || MOVING || FABRIC) && may_be_cut(first, bins)) {
-        cut_cells[append(LIST_CUT_CELLS)] = vec2<u32>(begin, end);
+        return;
+    }
+    var cut = 0u;
+    if (DIVIDED_GAS || MOVING || FABRIC) {
+        cut = cut_by(first, bins);
+    }
+    if (cut != 0u) {
+        cut_cells[append(LIST_CUT_CELLS)] = vec2<u32>(begin, end | cut);
     } else {
         collision_cells[append(LIST_COLLISION_CELLS)] = vec2<u32>(begin, end);
     }

@@ -11,7 +11,7 @@ use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
 use corpuscle::subdomain::{
     CROWD, GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuSheet, GpuStep,
-    GpuStillGas, GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
+    GpuStillGas, GpuSurfaceModel, GpuSwept, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone, KERNELS, MEMBERS,
 };
 use naga::{Expression, Literal, Module, TypeInner};
 
@@ -80,6 +80,7 @@ fn twins() -> Vec<Twin> {
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
         twin!("Sheet", GpuSheet, a, b, c, closed, surface, surface_model, work, pad),
+        twin!("Swept", GpuSwept, normal, away, corner, pad),
         twin!("Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, body_low, pad3, body_size, pad4),
         twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent, zone, next),
         twin!("Vent", GpuVent, center, radius2, beta, index, pad, pad2),

@@ -2,9 +2,10 @@
 // Surfaces that deform: triangles between nodes that fly straight at one velocity each within a step. Where the nodes are at the start
 // and the end of each step of an interval comes from the host, on the lattice of positions.
 //
-// `fabric_cells` has which triangles are where in a step (list_fabric.wgsl): a word that counts the entries; of each cell of
-// the grid the number of its first entry, from 1, or 0; of each cell a bit, set where a triangle may touch one of the 27 cells around; the
-// entries, of two words: a triangle, and the number of the cell's next entry, or 0.
+// Which triangles are where in a step (list_fabric.wgsl, bound_fabric.wgsl): `fabric_cells` counts the entries, and the cells that have some; of each
+// cell of the grid it has the number of its record, from 1, or 0; and a bit, set where a triangle may touch one of the 27 cells around.
+// `fabric_entries` has first the entries: a triangle, the number of the cell's next entry, from 1, or 0, and a box around what the triangle sweeps in
+// the cell; and behind them, of each cell that has some, the record: the planes between which all of its fabric is, the number of its first entry, and the cell.
 
 struct Sheet {
     // Its nodes, counter-clockwise seen from the side that its normal points to: of closed fabric the outer one.
@@ -19,6 +20,17 @@ struct Sheet {
     surface_model: u32,
     // The tally of its work.
     work: u32,
+    pad: u32,
+}
+
+// What a triangle sweeps in the step, and a margin of SHEET_MARGIN gaps.
+struct Swept {
+    // The unit normal at the start, or zero.
+    normal: vec3<f32>,
+    // How far from the plane at the start it comes, quanta.
+    away: f32,
+    // A point of that plane.
+    corner: vec3<u32>,
     pad: u32,
 }
 
@@ -51,7 +63,42 @@ fn fabric_bits() -> u32 {
     return FABRIC_FIRST + grid_cells();
 }
 
-// Where the entries begin.
-fn fabric_entries() -> u32 {
-    return fabric_bits() + (grid_cells() + 31u) / 32u;
+// Four numbers of -128 to 127, in bytes.
+fn bytes_of(word: u32) -> vec4<f32> {
+    return vec4<f32>(bitcast<vec4<i32>>(vec4<u32>(word << 24u, word << 16u, word << 8u, word)) >> vec4<u32>(24u));
+}
+
+fn packed_bytes(v: vec4<f32>) -> u32 {
+    let b = bitcast<vec4<u32>>(vec4<i32>(v)) & vec4<u32>(255u);
+    return b.x | (b.y << 8u) | (b.z << 16u) | (b.w << 24u);
+}
+
+// Half a cell in the steps of an entry's box, whose corners are seen from the middle. (A box that reaches farther ends there.)
+const BOX_STEPS: f32 = 127.0;
+
+// A normal's longest component, and steps of a slab's planes in a cell along it.
+const SLAB_NORMAL: f32 = 127.0;
+const SLAB_STEPS: f32 = 16384.0;
+
+struct Slab {
+    normal: vec3<f32>,
+    // How far the planes are from the middle, in cells.
+    low: f32,
+    high: f32,
+}
+
+fn slab_of(words: vec2<u32>) -> Slab {
+    let ends = vec2<f32>(vec2<i32>(extractBits(i32(words.y), 0u, 16u), i32(words.y) >> 16u)) / SLAB_STEPS;
+    return Slab(bytes_of(words.x).xyz / SLAB_NORMAL, ends.x, ends.y);
+}
+
+// How far around what a triangle sweeps it counts as being, quanta.
+fn sheet_margin() -> f32 {
+    return f32(SHEET_MARGIN) * SHEET_GAP * QUANTA;
+}
+
+// A point seen from the middle of a cell, in cells.
+fn from_middle(c: vec3<u32>, p: vec3<u32>) -> vec3<f32> {
+    let middle = (c << vec3<u32>(CELL_BITS)) + (1u << (CELL_BITS - 1u));
+    return vec3<f32>(bitcast<vec3<i32>>(p - middle)) / f32(1u << CELL_BITS);
 }

@@ -18,6 +18,11 @@ fn cell_index(c: vec3<u32>) -> u32 {
     return (c.z * CELLS_Y + c.y) * CELLS_X + c.x;
 }
 
+fn cell_at(index: u32) -> vec3<u32> {
+    let row = index / CELLS_X;
+    return vec3<u32>(index % CELLS_X, row % CELLS_Y, row / CELLS_Y);
+}
+
 fn in_grid(c: vec3<u32>) -> bool {
     return c.x < CELLS_X && c.y < CELLS_Y && c.z < CELLS_Z;
 }

@@ -10,8 +10,8 @@
 // edges by SHEET_REACH gaps, over the sine of the flight's angle to them. Of several hits the earliest counts, ties by triangle.
 
 var<storage, read> fabric_cells: array<u32>;
-// The unit normal of each triangle at the start of the step, and how far from that plane it comes in the step, m (list_fabric.wgsl).
-var<storage, read> fabric_planes: array<vec4<f32>>;
+var<storage, read> fabric_entries: array<vec4<u32>>;
+var<storage, read> fabric_swept: array<Swept>;
 
 // In place of a triangle's number: that of fabric.
 const OF_FABRIC: u32 = 0x80000000;
@@ -33,38 +33,49 @@ struct OnSheet {
     within: bool,
 }
 
-// Whether a flight, of which two points are given that it flies between, stays on one side of all that a triangle sweeps in the step.
-fn stays_off(triangle: u32, node: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
-    let plane = fabric_planes[triangle];
-    let corner = node_before(node);
-    let ends = vec2<f32>(dot(plane.xyz, between(corner, p)), dot(plane.xyz, between(corner, q)));
-    return min(ends.x, ends.y) > plane.w || max(ends.x, ends.y) < -plane.w;
+// Whether the way between two points stays on one side of all that a triangle sweeps in the step.
+fn stays_off(triangle: u32, p: vec3<u32>, q: vec3<u32>) -> bool {
+    let swept = fabric_swept[triangle];
+    let a = dot(swept.normal, vec3<f32>(bitcast<vec3<i32>>(p - swept.corner)));
+    let b = dot(swept.normal, vec3<f32>(bitcast<vec3<i32>>(q - swept.corner)));
+    return min(a, b) > swept.away || max(a, b) < -swept.away;
 }
 
-// How far a node comes in the step, m.
-fn node_way(node: u32) -> vec3<f32> {
-    return between(node_before(node), node_after(node));
+// A node in the step: where it is at the start, and its velocity, m/s.
+struct Node {
+    place: vec3<u32>,
+    velocity: vec3<f32>,
 }
 
-// The velocity of a node, m/s.
-fn node_velocity(node: u32) -> vec3<f32> {
-    return node_way(node) / step.dt;
+fn node_of(node: u32) -> Node {
+    let place = node_before(node);
+    return Node(place, between(place, node_after(node)) / step.dt);
+}
+
+struct Nodes {
+    a: Node,
+    b: Node,
+    c: Node,
+}
+
+fn nodes_of(sheet: Sheet) -> Nodes {
+    return Nodes(node_of(sheet.a), node_of(sheet.b), node_of(sheet.c));
 }
 
 // Where a node is at a time of the step, seen from a point.
-fn node_from(node: u32, p: vec3<u32>, time: f32) -> vec3<f32> {
-    return between(p, node_before(node)) + node_velocity(node) * time;
+fn node_from(node: Node, p: vec3<u32>, time: f32) -> vec3<f32> {
+    return between(p, node.place) + node.velocity * time;
 }
 
-fn corners_of(sheet: Sheet, p: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Corners {
+fn corners_of(nodes: Nodes, p: vec3<u32>, v: vec3<f32>, start: f32, end: f32) -> Corners {
     let span = end - start;
     return Corners(
-        node_from(sheet.a, p, start),
-        node_from(sheet.b, p, start),
-        node_from(sheet.c, p, start),
-        (node_velocity(sheet.a) - v) * span,
-        (node_velocity(sheet.b) - v) * span,
-        (node_velocity(sheet.c) - v) * span,
+        node_from(nodes.a, p, start),
+        node_from(nodes.b, p, start),
+        node_from(nodes.c, p, start),
+        (nodes.a.velocity - v) * span,
+        (nodes.b.velocity - v) * span,
+        (nodes.c.velocity - v) * span,
     );
 }
 
@@ -92,45 +103,57 @@ fn cubic(g: vec4<f32>, u: f32) -> f32 {
     return g.x + u * (g.y + u * (g.z + u * g.w));
 }
 
-// The first u in 0 .. 1 at which a cubic falls below zero, or 2. Between the zeros of its slope it rises or falls throughout; there it is
-// bracketed and halved.
-fn first_fall(g: vec4<f32>) -> f32 {
-    // Zeros of g.y + 2 g.z u + 3 g.w u^2, in order.
-    var bends = vec2<f32>(2.0);
+// The zeros of a cubic's slope, g.y + 2 g.z u + 3 g.w u^2, in order; beyond 1 where there are none.
+fn bends_of(g: vec4<f32>) -> vec2<f32> {
     let discriminant = g.z * g.z - 3.0 * g.w * g.y;
-    if (discriminant >= 0.0) {
-        let root = sqrt(discriminant);
-        let q = -(g.z + select(-root, root, g.z >= 0.0));
-        let one = select(q / (3.0 * g.w), 2.0, g.w == 0.0);
-        let other = select(g.y / q, 2.0, q == 0.0);
-        bends = vec2<f32>(min(one, other), max(one, other));
+    if (discriminant < 0.0) {
+        return vec2<f32>(2.0);
     }
-    var low = 0.0;
-    var at_low = g.x;
-    for (var stretch = 0u; stretch < 3u; stretch++) {
-        var high = 1.0;
-        if (stretch < 2u) {
-            high = bends[stretch];
-            if (!(high > low && high < 1.0)) {
-                continue;
+    let root = sqrt(discriminant);
+    let q = -(g.z + select(-root, root, g.z >= 0.0));
+    let one = select(q / (3.0 * g.w), 2.0, g.w == 0.0);
+    let other = select(g.y / q, 2.0, q == 0.0);
+    return vec2<f32>(min(one, other), max(one, other));
+}
+
+// As near a zero is found.
+const NEAR_ZERO: f32 = 1.2e-7;
+
+// Where a cubic falls to zero between two places between which it has no bend, above zero at the first: a place behind it. A straight line between both tells
+// nearly where; that is tried on both sides. However it bends, the stretch is halved as well.
+fn fall_between(g: vec4<f32>, from_u: f32, to_u: f32) -> f32 {
+    var low = vec2<f32>(from_u, cubic(g, from_u));
+    var high = vec2<f32>(to_u, cubic(g, to_u));
+    for (var k = 0u; k < 24u && high.x - low.x > NEAR_ZERO; k++) {
+        let guess = low.x + (high.x - low.x) * (low.y / (low.y - high.y));
+        let tried = vec3<f32>(max(guess - 0.5 * NEAR_ZERO, low.x), min(guess + 0.5 * NEAR_ZERO, high.x), 0.5 * (low.x + high.x));
+        for (var place = 0u; place < 3u; place++) {
+            let u = tried[place];
+            let value = vec2<f32>(u, cubic(g, u));
+            if (u > low.x && u < high.x) {
+                low = select(low, value, value.y > 0.0);
+                high = select(value, high, value.y > 0.0);
             }
         }
-        let at_high = cubic(g, high);
-        if (at_low > 0.0 && at_high <= 0.0) {
-            for (var k = 0u; k < 24u; k++) {
-                let middle = 0.5 * (low + high);
-                if (cubic(g, middle) > 0.0) {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            return high;
-        }
-        low = high;
-        at_low = at_high;
     }
-    return 2.0;
+    return high.x;
+}
+
+// The first u in 0 .. 1 at which a cubic falls below zero, or 2. Between its bends it rises or falls throughout.
+fn first_fall(g: vec4<f32>) -> f32 {
+    let bends = bends_of(g);
+    let first = select(0.0, bends.x, bends.x > 0.0 && bends.x < 1.0);
+    let second = select(first, bends.y, bends.y > first && bends.y < 1.0);
+    let values = vec4<f32>(g.x, cubic(g, first), cubic(g, second), cubic(g, 1.0));
+    var stretch = vec2<f32>(second, 1.0);
+    if (values.x > 0.0 && values.y <= 0.0) {
+        stretch = vec2<f32>(0.0, first);
+    } else if (values.y > 0.0 && values.z <= 0.0) {
+        stretch = vec2<f32>(first, second);
+    } else if (values.z <= 0.0 || values.w > 0.0) {
+        return 2.0;
+    }
+    return fall_between(g, stretch.x, stretch.y);
 }
 
 // The signed volume's coefficients.
@@ -156,6 +179,27 @@ fn own_side(sheet: Sheet, inside: bool, volume: f32) -> f32 {
         return select(1.0, -1.0, inside);
     }
     return select(-1.0, 1.0, volume >= 0.0);
+}
+
+// Whether all corners stay on one side of the particle along a direction, and farther than fabric is listed or f32 may be wrong by.
+fn apart(corners: Corners, direction: vec3<f32>) -> bool {
+    let before = vec3<f32>(dot(corners.a, direction), dot(corners.b, direction), dot(corners.c, direction));
+    let after = before + vec3<f32>(dot(corners.wa, direction), dot(corners.wb, direction), dot(corners.wc, direction));
+    let margin = length(direction) * (f32(SHEET_MARGIN) * SHEET_GAP + 1e-6 * (manhattan(corners.a) + manhattan(corners.wa)));
+    let least = min(before, after);
+    let most = max(before, after);
+    return min(min(least.x, least.y), least.z) > margin || max(max(most.x, most.y), most.z) < -margin;
+}
+
+// Whether a triangle passes beside the particle: along its normal at the start, or across one of its edges.
+fn passes_beside(corners: Corners) -> bool {
+    let ab = corners.b - corners.a;
+    let ac = corners.c - corners.a;
+    let normal = cross(ab, ac);
+    return apart(corners, normal)
+        || apart(corners, cross(normal, ab))
+        || apart(corners, cross(normal, ac))
+        || apart(corners, cross(normal, ac - ab));
 }
 
 // What share of a flight is done when it meets a triangle, or 2.
@@ -208,28 +252,81 @@ struct Struck {
 // A flight of x0 + v t from `start` on, at the time at which it meets a triangle of fabric.
 fn struck_sheet(index: u32, x0: vec3<u32>, v: vec3<f32>, start: f32, time: f32, inside: bool) -> Struck {
     let sheet = fabric[index];
-    let flight = corners_of(sheet, shifted(x0, v, start), v, start, step.dt);
+    let moving = nodes_of(sheet);
+    let flight = corners_of(moving, shifted(x0, v, start), v, start, step.dt);
     let side = own_side(sheet, inside, signed_volume(flight).x);
-    let here = corners_of(sheet, shifted(x0, v, time), v, time, time + step.dt);
+    let here = corners_of(moving, shifted(x0, v, time), v, time, time + step.dt);
     let place = on_sheet(here, 0.0);
     let normal = side * normalize(place.normal);
-    let velocity = node_velocity(sheet.a) * place.weights.x
-        + node_velocity(sheet.b) * place.weights.y
-        + node_velocity(sheet.c) * place.weights.z;
+    let velocity = moving.a.velocity * place.weights.x
+        + moving.b.velocity * place.weights.y
+        + moving.c.velocity * place.weights.z;
     // The side that the normal points to first.
     let surface = select(sheet.surface + select(1u, 0u, side > 0.0), NOBODY, sheet.surface == NOBODY);
     let lift = SHEET_GAP + dot(here.a, normal);
     return Struck(normal, surface, velocity, sheet.surface_model, sheet.work, lift, index, place.weights);
 }
 
-fn first_of_cell(c: vec3<u32>) -> u32 {
+// The record of a cell, from 1, or 0: it has no fabric.
+fn fabric_record(c: vec3<u32>) -> u32 {
     return fabric_cells[FABRIC_FIRST + cell_index(c)];
 }
 
-// An entry: a triangle, and the next entry.
-fn fabric_entry(entry: u32) -> vec2<u32> {
-    let place = fabric_entries() + 2u * (entry - 1u);
-    return vec2<u32>(fabric_cells[place], fabric_cells[place + 1u]);
+fn manhattan(v: vec3<f32>) -> f32 {
+    return abs(v.x) + abs(v.y) + abs(v.z);
+}
+
+// A way between two points, seen from the middle of a cell, in cells.
+struct Way {
+    from_end: vec3<f32>,
+    to_end: vec3<f32>,
+}
+
+fn way_in(c: vec3<u32>, p: vec3<u32>, q: vec3<u32>) -> Way {
+    return Way(from_middle(c, p), from_middle(c, q));
+}
+
+// What f32 may be wrong by in places of a way, and the margin in which fabric is listed.
+fn way_margin(way: Way) -> f32 {
+    return 1e-6 * (manhattan(way.from_end) + manhattan(way.to_end)) + sheet_margin() / f32(1u << CELL_BITS);
+}
+
+// Whether a way, whose box touches the cell, does: else the cross product with it of its middle is too large.
+fn touches_cell(way: Way) -> bool {
+    let along = way.to_end - way.from_end;
+    let moment = abs(cross(0.5 * (way.from_end + way.to_end), along));
+    let margin = way_margin(way);
+    let far = manhattan(way.from_end) + manhattan(way.to_end);
+    return all(moment <= (0.5 + margin) * (vec3<f32>(manhattan(along)) - abs(along)) + margin * far);
+}
+
+fn record_at(listed: u32) -> vec4<u32> {
+    return fabric_entries[arrayLength(&fabric_entries) / 2u + listed - 1u];
+}
+
+// The first entry of a cell, from 1, that a way may meet, or 0: also where it stays on one side of the cell's slab.
+fn first_on_way(c: vec3<u32>, way: Way) -> u32 {
+    if (!touches_cell(way)) {
+        return 0u;
+    }
+    let listed = fabric_record(c);
+    if (listed == 0u) {
+        return 0u;
+    }
+    let record = record_at(listed);
+    let slab = slab_of(record.xy);
+    let ends = vec2<f32>(dot(slab.normal, way.from_end), dot(slab.normal, way.to_end));
+    let margin = way_margin(way);
+    let passes = min(ends.x, ends.y) <= slab.high + margin && max(ends.x, ends.y) >= slab.low - margin;
+    return select(0u, record.z, passes);
+}
+
+// Whether a way passes an entry's box.
+fn passes_box(entry: vec4<u32>, way: Way) -> bool {
+    let low = bytes_of(entry.z).xyz * (0.5 / BOX_STEPS);
+    let high = bytes_of(entry.w).xyz * (0.5 / BOX_STEPS);
+    let margin = vec3<f32>(way_margin(way));
+    return all(max(way.from_end, way.to_end) + margin >= low) && all(min(way.from_end, way.to_end) - margin <= high);
 }
 
 // Whether fabric may be in one of the 27 cells around.
@@ -240,10 +337,10 @@ fn near_fabric(c: vec3<u32>) -> bool {
 
 // Whether a triangle of fabric, from either side, lies between two points at a time of the step.
 fn sheet_between(index: u32, p: vec3<u32>, along: vec3<f32>, time: f32) -> bool {
-    let sheet = fabric[index];
-    let a = node_from(sheet.a, p, time);
-    let b = node_from(sheet.b, p, time);
-    let c = node_from(sheet.c, p, time);
+    let moving = nodes_of(fabric[index]);
+    let a = node_from(moving.a, p, time);
+    let b = node_from(moving.b, p, time);
+    let c = node_from(moving.c, p, time);
     let normal = cross(b - a, c - a);
     let before = dot(a, normal);
     let after = dot(a - along, normal);

@@ -72,18 +72,25 @@ var<storage, read> cell_class: array<vec2<u32>>;
 // (The surface of a convex cavity cannot.)
 var<storage, read> parting: array<u32>;
 
-fn may_part(c: vec3<u32>) -> bool {
+// Whether a wall, at rest or moving, may part two points of the 27 cells around.
+fn wall_may_part(c: vec3<u32>) -> bool {
     let cell = cell_index(c);
     if (((parting[cell >> 5u] >> (cell & 31u)) & 1u) != 0u) {
-        return true;
-    }
-    if (FABRIC && near_fabric(c)) {
         return true;
     }
     if (MOVING) {
         return near_moving(c);
     }
     return false;
+}
+
+// Marks of a collision cell: what may stand between two of its particles.
+const CUT_BY_WALLS: u32 = 0x80000000;
+const CUT_BY_FABRIC: u32 = 0x40000000;
+
+// Whether a wall or fabric may.
+fn may_part(c: vec3<u32>) -> bool {
+    return wall_may_part(c) || (FABRIC && near_fabric(c));
 }
 
 fn class_of(cell: u32) -> u32 {
@@ -223,7 +230,7 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32, inside: bool) ->
         }
     }
     if (FABRIC) {
-        first_sheet(&hit, cells, from_point, v, vec2<f32>(start, end), inside);
+        first_sheet(&hit, cells, Leg(from_point, shifted(from_point, v, end - start), v, start, end, inside));
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {
@@ -250,48 +257,144 @@ fn first_hit(x0: vec3<u32>, v: vec3<f32>, start: f32, end: f32, inside: bool) ->
     return hit;
 }
 
-// Takes a triangle of fabric into account.
-fn meet_sheet(hit: ptr<function, Hit>, triangle: u32, sheet: Sheet, corners: Corners, times: vec2<f32>, inside: bool) {
-    let met = meeting(sheet, corners, inside);
-    let time = times.x + met * (times.y - times.x);
-    let index = OF_FABRIC | triangle;
-    if (met <= 1.0 && (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle))) {
-        (*hit).time = time;
-        (*hit).triangle = index;
-    }
+// Lists of fabric that a flight may meet something of, and triangles. They are gathered before they are looked at: threads that run together
+// then walk all their lists at once, and test their triangles at once.
+const MOST_GATHERED: u32 = 8;
+
+struct Gathered {
+    count: u32,
+    // The first entry of a list and its cell.
+    lists: array<vec2<u32>, MOST_GATHERED>,
 }
 
-// Takes the fabric in some cells into account; the flight is at `from_point` at the first of two times, and ends at the second.
-fn first_sheet(hit: ptr<function, Hit>, cells: Cells, from_point: vec3<u32>, v: vec3<f32>, times: vec2<f32>, inside: bool) {
-    let to_point = shifted(from_point, v, times.y - times.x);
-    // bench: plane of cells
-    for (var z = cells.low.z; z <= cells.high.z; z++) {
-        // bench: row of cells
-        for (var y = cells.low.y; y <= cells.high.y; y++) {
-            for (var x = cells.low.x; x <= cells.high.x; x++) {
-                var next = first_of_cell(vec3<u32>(x, y, z));
-                // bench: triangle
-                while (next != 0u) {
-                    let entry = fabric_entry(next);
-                    let sheet = fabric[entry.x];
-                    if (!stays_off(entry.x, sheet.a, from_point, to_point)) {
-                        meet_sheet(hit, entry.x, sheet, corners_of(sheet, from_point, v, times.x, times.y), times, inside);
-                    }
-                    next = entry.y;
-                }
-                through(0u, next);
-            }
+struct Candidates {
+    count: u32,
+    triangles: array<u32, MOST_GATHERED>,
+}
+
+// A flight during a part of the step.
+struct Leg {
+    from_point: vec3<u32>,
+    to_point: vec3<u32>,
+    velocity: vec3<f32>,
+    start: f32,
+    end: f32,
+    // The side of closed fabric.
+    inside: bool,
+}
+
+fn corners_on(leg: Leg, sheet: Sheet) -> Corners {
+    return corners_of(nodes_of(sheet), leg.from_point, leg.velocity, leg.start, leg.end);
+}
+
+fn is_candidate(candidates: ptr<function, Candidates>, triangle: u32) -> bool {
+    var found = false;
+    for (var k = 0u; k < (*candidates).count; k++) {
+        found = found || (*candidates).triangles[k] == triangle;
+    }
+    return found;
+}
+
+// Takes the candidates into account. Most are known to pass beside; the others are tested.
+fn meet_candidates(hit: ptr<function, Hit>, candidates: ptr<function, Candidates>, leg: Leg) {
+    var left = 0u;
+    for (var k = 0u; k < (*candidates).count; k++) {
+        let triangle = (*candidates).triangles[k];
+        if (!passes_beside(corners_on(leg, fabric[triangle]))) {
+            (*candidates).triangles[left] = triangle;
+            left++;
+        }
+    }
+    for (var k = 0u; k < left; k++) {
+        let triangle = (*candidates).triangles[k];
+        let sheet = fabric[triangle];
+        let met = meeting(sheet, corners_on(leg, sheet), leg.inside);
+        let time = leg.start + met * (leg.end - leg.start);
+        let index = OF_FABRIC | triangle;
+        if (met <= 1.0 && (time < (*hit).time || (time == (*hit).time && index < (*hit).triangle))) {
+            (*hit).time = time;
+            (*hit).triangle = index;
         }
     }
 }
 
-// Whether a way passes a cell with fabric.
+// Takes the fabric of lists into account.
+fn meet_gathered(hit: ptr<function, Hit>, gathered: ptr<function, Gathered>, leg: Leg) {
+    var way: Way;
+    var next = 0u;
+    var list = 0u;
+    // bench: triangle
+    while (next != 0u || list < (*gathered).count) {
+        var candidates: Candidates;
+        while ((next != 0u || list < (*gathered).count) && candidates.count < MOST_GATHERED) {
+            if (next == 0u) {
+                next = (*gathered).lists[list].x;
+                way = way_in(cell_at((*gathered).lists[list].y), leg.from_point, leg.to_point);
+                list++;
+            }
+            let entry = fabric_entries[next - 1u];
+            if (passes_box(entry, way) && !is_candidate(&candidates, entry.x)) {
+                candidates.triangles[candidates.count] = entry.x;
+                candidates.count++;
+            }
+            next = entry.y;
+        }
+        meet_candidates(hit, &candidates, leg);
+    }
+    through(0u, next);
+    through(list, (*gathered).count);
+}
+
+// The cell behind this one of a box, row by row; behind the last one it is above the box.
+fn cell_behind(c: vec3<u32>, cells: Cells) -> vec3<u32> {
+    let ends = c == cells.high;
+    if (!ends.x) {
+        return vec3<u32>(c.x + 1u, c.yz);
+    }
+    return vec3<u32>(cells.low.x, select(vec2<u32>(c.y + 1u, c.z), vec2<u32>(cells.low.y, c.z + 1u), ends.y));
+}
+
+// Takes the fabric in some cells into account.
+fn first_sheet(hit: ptr<function, Hit>, cells: Cells, leg: Leg) {
+    var c = cells.low;
+    while (c.z <= cells.high.z) {
+        var gathered: Gathered;
+        // bench: row of cells
+        while (c.z <= cells.high.z && gathered.count < MOST_GATHERED) {
+            let first = first_on_way(c, way_in(c, leg.from_point, leg.to_point));
+            if (first != 0u) {
+                gathered.lists[gathered.count] = vec2<u32>(first, cell_index(c));
+                gathered.count++;
+            }
+            c = cell_behind(c, cells);
+        }
+        meet_gathered(hit, &gathered, leg);
+    }
+    through(c.z, cells.high.z + 1u);
+}
+
+// Whether fabric is in some of these cells.
+fn any_fabric(cells: Cells) -> bool {
+    for (var z = cells.low.z; z <= cells.high.z; z++) {
+        for (var y = cells.low.y; y <= cells.high.y; y++) {
+            for (var x = cells.low.x; x <= cells.high.x; x++) {
+                if (fabric_record(vec3<u32>(x, y, z)) != 0u) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+// Whether a way may meet fabric of a cell that it passes.
 fn passes_fabric(p: vec3<u32>, q: vec3<u32>) -> bool {
     let cells = cells_of(p, q);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             for (var x = cells.low.x; x <= cells.high.x; x++) {
-                if (first_of_cell(vec3<u32>(x, y, z)) != 0u) {
+                let c = vec3<u32>(x, y, z);
+                if (first_on_way(c, way_in(c, p, q)) != 0u) {
                     return true;
                 }
             }
@@ -306,10 +409,12 @@ fn blocked_by_fabric(cells: Cells, p: vec3<u32>, q: vec3<u32>, time: f32) -> boo
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             for (var x = cells.low.x; x <= cells.high.x; x++) {
-                var next = first_of_cell(vec3<u32>(x, y, z));
+                let c = vec3<u32>(x, y, z);
+                let way = way_in(c, p, q);
+                var next = first_on_way(c, way);
                 while (next != 0u) {
-                    let entry = fabric_entry(next);
-                    if (!stays_off(entry.x, fabric[entry.x].a, p, q) && sheet_between(entry.x, p, along, time)) {
+                    let entry = fabric_entries[next - 1u];
+                    if (passes_box(entry, way) && !stays_off(entry.x, p, q) && sheet_between(entry.x, p, along, time)) {
                         return true;
                     }
                     next = entry.y;
@@ -419,8 +524,12 @@ fn blocked_by(motion: Motion, p: vec3<u32>, q: vec3<u32>, along: vec3<f32>) -> b
     return false;
 }
 
-// Whether a wall, from either side, lies between two points at a time of the step.
+// Whether a wall or fabric, from either side, lies between two points at a time of the step.
 fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
+    return blocked_by_wall(p, q, time) || (FABRIC && blocked_by_fabric(cells_of(p, q), p, q, time));
+}
+
+fn blocked_by_wall(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
     let cells = cells_of(p, q);
     let along = between(p, q);
     // bench: plane of cells
@@ -437,9 +546,6 @@ fn blocked(p: vec3<u32>, q: vec3<u32>, time: f32) -> bool {
             }
             through(k, list.y);
         }
-    }
-    if (FABRIC && blocked_by_fabric(cells, p, q, time)) {
-        return true;
     }
     if (MOVING) {
         for (var m = 0u; m < MOTIONS; m++) {

@@ -35,12 +35,17 @@ impl Subdomain {
 
     /// Lists the triangles of fabric by cell.
     pub fn list_fabric(&self, rec: &mut Recording<'_>, step: &StepSlot) {
-        if let Some(kernel) = &self.kernels.list_fabric {
-            let bytes = 4 * words_of_cells(&self.domain.plan.grid);
+        if let Some(kernels) = &self.kernels.fabric {
+            let grid = &self.domain.plan.grid;
+            let bytes = 4 * words_of_cells(grid);
             rec.encoder().clear_buffer(&self.fabric.cells, 0, Some(bytes));
             let device = rec.device();
-            let groups = threads(device, self.domain.fabric.sheets.len() as u64);
-            kernel.dispatch(&mut rec.phase("fabric"), self.offset(device, step, 0), groups);
+            let sheets = threads(device, self.domain.fabric.sheets.len() as u64);
+            let cells = threads(device, self.fabric.room.min(grid.cell_count() as u64));
+            let offset = self.offset(device, step, 0);
+            let pass = &mut rec.phase("fabric");
+            kernels.list.dispatch(pass, offset, sheets);
+            kernels.bound.dispatch(pass, offset, cells);
         }
     }
 

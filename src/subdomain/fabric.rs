@@ -6,7 +6,7 @@
 use crate::geometry::Grid;
 use crate::gpu::{Device, GpuError};
 
-use super::layout::GpuSheet;
+use super::layout::{GpuSheet, GpuSwept};
 use super::registry::{FABRIC_FIRST, NODE_IMPULSE_WORDS, SHEET_MARGIN};
 
 /// How near a flight comes to a sheet, as a share of the longest edge of a triangle and a cell: f32 sums of distances of that size err
@@ -14,7 +14,8 @@ use super::registry::{FABRIC_FIRST, NODE_IMPULSE_WORDS, SHEET_MARGIN};
 const GAP: f64 = 2e-6;
 /// And at least, in quanta of positions.
 const LEAST_GAP: f64 = 32.0;
-const ENTRY_WORDS: u64 = 2;
+/// Of an entry or a record.
+const ENTRY_WORDS: usize = 4;
 
 /// The surfaces that deform.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,15 +39,17 @@ impl Fabric {
 pub struct FabricBuffers {
     pub nodes: wgpu::Buffer,
     pub cells: wgpu::Buffer,
-    /// Of each triangle: the normal at the start of the step, and how far from that plane it comes.
-    pub planes: wgpu::Buffer,
+    /// Those of lists, and records of as many cells.
+    pub entries: wgpu::Buffer,
+    /// What each triangle sweeps in the step ([`GpuSwept`]).
+    pub swept: wgpu::Buffer,
     /// What the gas gives to each node of elastic fabric in a step.
     pub impulses: wgpu::Buffer,
     /// Entries of lists that there is room for.
     pub room: u64,
 }
 
-/// The words of `fabric_cells` before its entries.
+/// The words of `fabric_cells`.
 pub fn words_of_cells(grid: &Grid) -> u64 {
     let cells = grid.cell_count() as u64;
     u64::from(FABRIC_FIRST) + cells + cells.div_ceil(32)
@@ -63,11 +66,12 @@ impl FabricBuffers {
         room: u64,
     ) -> Result<FabricBuffers, GpuError> {
         let pushed = if fabric.elastic.is_some() { fabric.nodes as u64 } else { 0 };
-        let words = if fabric.nodes > 0 { words_of_cells(grid) + ENTRY_WORDS * room } else { 1 };
+        let words = if fabric.nodes > 0 { words_of_cells(grid) } else { 1 };
         Ok(FabricBuffers {
             nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
             cells: device.storage::<u32>("fabric_cells", words)?,
-            planes: device.storage::<[f32; 4]>("fabric_planes", (fabric.sheets.len() as u64).max(1))?,
+            entries: device.storage::<[u32; ENTRY_WORDS]>("fabric_entries", 2 * room.max(1))?,
+            swept: device.storage::<GpuSwept>("fabric_swept", (fabric.sheets.len() as u64).max(1))?,
             impulses: device.storage::<[u32; NODE_IMPULSE_WORDS as usize]>("node_impulses", pushed.max(1))?,
             room,
         })

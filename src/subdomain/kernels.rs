@@ -14,7 +14,7 @@ pub struct Kernels<K> {
     pub half_turn: Option<HalfTurnKernels<K>>,
     pub exchange: Option<ExchangeKernels<K>>,
     /// Of a scene with surfaces that deform.
-    pub list_fabric: Option<K>,
+    pub fabric: Option<FabricKernels<K>>,
     pub reset: K,
     pub advect: K,
     pub bounce: K,
@@ -70,6 +70,12 @@ pub struct HalfTurnKernels<K> {
     pub half_turn: K,
     /// Of a scene whose walls may stand between particles of a cell.
     pub cut: Option<K>,
+}
+
+/// Where the triangles of fabric are.
+pub struct FabricKernels<K> {
+    pub list: K,
+    pub bound: K,
 }
 
 /// On a device among others.
@@ -164,13 +170,18 @@ impl<K> Kernels<K> {
         } else {
             None
         };
+        let fabric = if features.fabric {
+            Some(FabricKernels { list: make("list_fabric")?, bound: make("bound_fabric")? })
+        } else {
+            None
+        };
         Ok(Kernels {
             sort,
             collisions,
             cells,
             half_turn,
             exchange,
-            list_fabric: if features.fabric { Some(make("list_fabric")?) } else { None },
+            fabric,
             reset: make("reset")?,
             advect: make("advect")?,
             bounce: make("bounce")?,

@@ -112,6 +112,16 @@ pub struct GpuSheet {
     pub pad: u32,
 }
 
+/// `Swept` of `shaders/shared/fabric.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuSwept {
+    pub normal: [f32; 3],
+    pub away: f32,
+    pub corner: [u32; 3],
+    pub pad: u32,
+}
+
 /// `Newborn` of `shaders/shared/newborn.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]

@@ -48,7 +48,7 @@ pub use exchange::{Messages, Outgoing};
 pub use fabric::Fabric;
 pub use layout::{
     GpuFlight, GpuGas, GpuMotion, GpuNewborn, GpuPart, GpuParticle, GpuPeer, GpuSending, GpuSheet, GpuStep,
-    GpuStillGas, GpuSurfaceModel, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
+    GpuStillGas, GpuSurfaceModel, GpuSwept, GpuTriangle, GpuUpdate, GpuVent, GpuWeights, GpuZone,
 };
 pub use memory::Memory;
 pub use recall::Remembered;

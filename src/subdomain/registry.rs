@@ -177,9 +177,10 @@ registry! {
     FABRIC_TABLE {
         /// How far around the box that a triangle sweeps it is listed, in gaps.
         SHEET_MARGIN = 16,
-        /// Words of `fabric_cells`: how many entries there are, and where the cells begin.
+        /// Words of `fabric_cells`: how many entries there are, how many cells have some, and where the cells begin.
         FABRIC_ENTRIES = 0,
-        FABRIC_FIRST = 1,
+        FABRIC_LISTED = 1,
+        FABRIC_FIRST = 2,
         /// Of a node of elastic fabric: three components of the impulse that the gas gives it in a step, of two words each.
         NODE_IMPULSE_WORDS = 6,
     }
@@ -221,7 +222,8 @@ pub const BUFFERS: &[&str] = &[
     "nodes",
     "fabric",
     "fabric_cells",
-    "fabric_planes",
+    "fabric_entries",
+    "fabric_swept",
     "node_impulses",
     "cell_volume",
     "cell_parts",

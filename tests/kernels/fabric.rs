@@ -1,4 +1,5 @@
-//! `list_fabric`: a triangle is in the list of each cell that any point of it comes to in the step, and the cells around know.
+//! `list_fabric` and `bound_fabric`: a triangle is in the list of each cell that any point of it comes to in the step, that point is between the
+//! planes of the cell, and the cells around know.
 
 use corpuscle::subdomain::{GpuSheet, GpuStep};
 
@@ -10,6 +11,8 @@ const NODES: usize = 60;
 const TRIANGLES: usize = 80;
 /// m.
 const GAP: f64 = 1e-7;
+/// Where the cells begin in `fabric_cells`.
+const FIRST: usize = 2;
 /// Points of a triangle that are looked at, along each of its sides and in time.
 const PARTS: u32 = 12;
 
@@ -40,7 +43,7 @@ fn swept(seed: u32) -> Swept {
     let sheets: Vec<GpuSheet> =
         triangles.iter().map(|&[a, b, c]| GpuSheet { a, b, c, ..GpuSheet::default() }).collect();
     rig.put("fabric", &sheets);
-    rig.put("fabric_planes", &vec![0f32; 4 * TRIANGLES]);
+    rig.put("fabric_swept", &vec![0u32; 8 * TRIANGLES]);
     rig.constant("FABRIC", 1.0);
     rig.constant("NODES", NODES as f64);
     rig.constant("SHEET_GAP", GAP);
@@ -48,33 +51,64 @@ fn swept(seed: u32) -> Swept {
     Swept { rig, world, nodes: [before, after], triangles }
 }
 
-/// Words before the entries, and the cells of the grid.
+/// Words of `fabric_cells`, and the cells of the grid.
 fn sizes(world: &World) -> (usize, usize) {
     let cells = world.grid.cell_count();
-    (1 + cells + cells.div_ceil(32), cells)
+    (FIRST + cells + cells.div_ceil(32), cells)
 }
 
-fn listed(swept: &mut Swept, room: usize) -> Vec<u32> {
-    let words = sizes(&swept.world).0 + 2 * room;
+/// What a step leaves of fabric: counts and cells, entries, records of cells.
+struct Listed {
+    words: Vec<u32>,
+    entries: Vec<[u32; 4]>,
+    records: Vec<[u32; 4]>,
+}
+
+fn listed(swept: &mut Swept, room: usize) -> Listed {
+    let (words, cells) = sizes(&swept.world);
     swept.rig.put("fabric_cells", &vec![0u32; words]);
+    swept.rig.put("fabric_entries", &vec![[0u32; 4]; 2 * room]);
     swept.rig.run("list_fabric", TRIANGLES);
-    swept.rig.get("fabric_cells", words)
+    swept.rig.run("bound_fabric", cells.min(room));
+    let mut entries: Vec<[u32; 4]> = swept.rig.get("fabric_entries", 2 * room);
+    let records = entries.split_off(room);
+    Listed { words: swept.rig.get("fabric_cells", words), entries, records }
 }
 
-/// The triangles in the list of a cell.
-fn list(words: &[u32], before: usize, cell: usize) -> Vec<u32> {
-    let mut found = Vec::new();
-    let mut next = words[1 + cell] as usize;
-    while next != 0 {
-        let place = before + 2 * (next - 1);
-        found.push(words[place]);
-        next = words[place + 1] as usize;
+impl Listed {
+    fn record(&self, cell: usize) -> Option<[u32; 4]> {
+        let listed = (self.words[FIRST + cell] as usize).checked_sub(1)?;
+        assert_eq!(self.records[listed][3] as usize, cell);
+        Some(self.records[listed])
     }
-    found
+
+    /// The triangles in the list of a cell, with their boxes.
+    fn list(&self, cell: usize) -> Vec<(u32, [[f64; 3]; 2])> {
+        let mut found = Vec::new();
+        let mut next = self.record(cell).map_or(0, |record| record[2]) as usize;
+        while next != 0 {
+            let [triangle, after, low, high] = self.entries[next - 1];
+            found.push((triangle, [low, high].map(|corner| bytes(corner).map(|step| step / 254.0))));
+            next = after as usize;
+        }
+        found
+    }
+
+    /// The planes of a cell: normal, and how far they are from the middle, in cells.
+    fn slab(&self, cell: usize) -> (Vector, [f64; 2]) {
+        let [normal, ends, ..] = self.record(cell).expect("a cell with fabric");
+        let end = |word: u32| f64::from(word as u16 as i16) / 16384.0;
+        (bytes(normal).map(|component| component / 127.0), [end(ends), end(ends >> 16)])
+    }
 }
 
-/// Cells that points of a triangle come to, and cells that its box touches.
-fn passed(swept: &Swept, triangle: [u32; 3]) -> Vec<usize> {
+fn bytes(word: u32) -> Vector {
+    let bytes = word.to_le_bytes();
+    std::array::from_fn(|axis| f64::from(bytes[axis] as i8))
+}
+
+/// Points that a triangle comes to, with their cells.
+fn passed(swept: &Swept, triangle: [u32; 3]) -> Vec<(usize, Vector)> {
     let cells = swept.world.cells();
     let mut found = Vec::new();
     for (i, j, t) in (0..=PARTS).flat_map(|i| (0..=PARTS - i).flat_map(move |j| (0..=PARTS).map(move |t| (i, j, t)))) {
@@ -85,28 +119,55 @@ fn passed(swept: &Swept, triangle: [u32; 3]) -> Vec<usize> {
         };
         let [a, b, c] = [0, 1, 2].map(corner);
         let point = std::array::from_fn(|axis| a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]));
-        found.push(cells.index(cells.cell(swept.world.fixed(point))) as usize);
+        found.push((cells.index(cells.cell(swept.world.fixed(point))) as usize, point));
     }
-    found.sort_unstable();
-    found.dedup();
     found
+}
+
+/// Of a place within its cell, from the middle, in cells.
+fn within(swept: &Swept, cell: usize, point: Vector) -> Vector {
+    let grid = &swept.world.grid;
+    let counts = grid.cells.map(|n| n as usize);
+    let at = [cell % counts[0], cell / counts[0] % counts[1], cell / (counts[0] * counts[1])];
+    let corner = swept.world.metres([0, 1, 2].map(|axis| (at[axis] as u32) << grid.cell_bits));
+    std::array::from_fn(|axis| (point[axis] - corner[axis]) / grid.cell - 0.5)
 }
 
 #[test]
 fn triangles_are_listed_wherever_they_come_to() {
     for seed in 1..4 {
         let mut swept = swept(seed);
-        let words = listed(&mut swept, 40_000);
-        let (before, cells) = sizes(&swept.world);
-        let entries = words[0] as usize;
-        let lists: Vec<Vec<u32>> = (0..cells).map(|cell| list(&words, before, cell)).collect();
+        let found = listed(&mut swept, 40_000);
+        let cells = sizes(&swept.world).1;
+        let entries = found.words[0] as usize;
+        let lists: Vec<_> = (0..cells).map(|cell| found.list(cell)).collect();
         assert_eq!(lists.iter().map(Vec::len).sum::<usize>(), entries);
+        assert_eq!(lists.iter().filter(|list| !list.is_empty()).count(), found.words[1] as usize);
         assert!(entries > 4 * TRIANGLES && entries < TRIANGLES * cells / 2, "{entries} entries");
-        let is_near = |cell: usize| words[1 + cells + cell / 32] >> (cell % 32) & 1 == 1;
+        let is_near = |cell: usize| found.words[FIRST + cells + cell / 32] >> (cell % 32) & 1 == 1;
         let counts = swept.world.grid.cells.map(|n| n as usize);
         for (number, &triangle) in (0u32..).zip(&swept.triangles) {
-            for cell in passed(&swept, triangle) {
-                assert!(lists[cell].contains(&number), "seed {seed}: triangle {number} is not in cell {cell}");
+            let mut last = None;
+            for (cell, point) in passed(&swept, triangle) {
+                let point = within(&swept, cell, point);
+                // (Behind the grid there is no gas.)
+                if point.iter().any(|x| x.abs() > 0.5 + 1e-6) {
+                    continue;
+                }
+                let (normal, [low, high]) = found.slab(cell);
+                let height: f64 = (0..3).map(|axis| normal[axis] * point[axis]).sum();
+                assert!(low <= height && height <= high, "seed {seed}: {height} in cell {cell} from {low} to {high}");
+                let own = lists[cell].iter().find(|(listed, _)| *listed == number);
+                let Some((_, [low, high])) = own else {
+                    panic!("seed {seed}: triangle {number} is not in cell {cell}")
+                };
+                assert!(
+                    (0..3).all(|axis| low[axis] - 1e-6 <= point[axis] && point[axis] <= high[axis] + 1e-6),
+                    "{point:?}"
+                );
+                if last.replace(cell) == Some(cell) {
+                    continue;
+                }
                 let at = [cell % counts[0], cell / counts[0] % counts[1], cell / (counts[0] * counts[1])];
                 for k in 0..27 {
                     let near: [usize; 3] = [at[0] + k % 3, at[1] + k / 3 % 3, at[2] + k / 9];
@@ -117,8 +178,12 @@ fn triangles_are_listed_wherever_they_come_to() {
                 }
             }
         }
-        // The check can fail: some cell has no triangle, and each triangle is in few.
+        // The check can fail: some cell has no triangle, each triangle is in few, and planes leave room in many cells of a single one.
         assert!(lists.iter().any(Vec::is_empty));
+        let alone = (0..cells).filter(|&cell| lists[cell].len() == 1);
+        let thickness: Vec<f64> = alone.map(|cell| found.slab(cell).1).map(|[low, high]| high - low).collect();
+        let thin = thickness.iter().filter(|&&thickness| thickness < 0.5).count();
+        assert!(thickness.len() > 10 && 3 * thin > thickness.len(), "{thin} of {}", thickness.len());
         assert_eq!(swept.rig.counter(MISPLACED), 0);
     }
 }
@@ -127,11 +192,11 @@ fn triangles_are_listed_wherever_they_come_to() {
 #[test]
 fn entries_without_room_are_counted() {
     let mut swept = swept(5);
-    let all = listed(&mut swept, 40_000)[0];
-    let words = listed(&mut swept, 100);
-    assert_eq!(words[0], all);
-    // A buffer has whole sixteens of bytes.
-    let before = sizes(&swept.world).0;
-    let room = ((before + 200).next_multiple_of(4) - before) / 2;
-    assert_eq!(swept.rig.counter(MISPLACED) as usize, all as usize - room);
+    let all = listed(&mut swept, 40_000).words[0];
+    swept.rig.put("counters", &[0u32; COUNTER_WORDS]);
+    let found = listed(&mut swept, 100);
+    assert_eq!(found.words[0], all);
+    let cells = sizes(&swept.world).1;
+    let entered: usize = (0..cells).map(|cell| found.list(cell).len()).sum();
+    assert!(entered <= 100 && swept.rig.counter(MISPLACED) as usize == all as usize - entered, "{entered} of {all}");
 }

@@ -350,6 +350,9 @@ fn particles_behind_a_wall_are_in_another_group() {
     let ranges: Vec<[u32; 2]> = rig.get("cut_cells", cut as usize);
     let (mut both, mut changed) = (0, 0);
     for [begin, end] in ranges {
+        // The highest bits say what cuts it: here walls.
+        assert_eq!(end >> 30, 2);
+        let end = end & 0x3fff_ffff;
         let of_side = |all: &[GpuParticle], upper: bool| -> Vec<GpuParticle> {
             let own = all[begin as usize..end as usize].iter().copied();
             own.filter(|p| (world.metres(p.position)[2] - world.low[2] > 0.036) == upper).collect()

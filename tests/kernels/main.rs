@@ -53,6 +53,7 @@ fn every_kernel_has_its_test() {
         "bin",
         "blocks",
         "bounce",
+        "bound_fabric",
         "ceiling_arithmetic",
         "ceiling_copy",
         "ceiling_flights",
