@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::mem::offset_of;
 
 use corpuscle::fabric::{
-    self, GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+    self, GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
+    GpuSubstep,
 };
 use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
@@ -156,6 +157,7 @@ fn twins() -> Vec<Twin> {
             pressed,
             pad3
         ),
+        twin!("Obstacle", GpuObstacle, place, friction, normal, pad, whole_normal, pad2, velocity, pad3),
         twin!("NodeConstants", GpuNodeConstants, mass, held, first, end),
     ]
 }

@@ -1,4 +1,4 @@
-//! uses: thread.wgsl membrane.wgsl
+//! uses: thread.wgsl membrane.wgsl metric.wgsl
 //! phase: membrane
 // Moves each node by a step of the fabric: sums the forces of its triangles, takes its share of what the gas gave, and flies on.
 //
@@ -6,7 +6,10 @@
 // impulse J is J.(v + v')/2: together they change the kinetic energy, exactly. What the gas gave in its last step, J in all, was given to nodes that flew at
 // `seen`, J.seen in energy; each of the step's `substeps` here takes J/substeps. The ledger has the difference: J.seen less all of J/substeps.(v + v')/2.
 //
-// Reads `element_forces`, `corners`, `node_constants`, `prescribed`; reads and writes `membrane_nodes`, takes and clears `impulses` in the first substep; writes
+// Obstacles are rigid half-spaces. A node that would end behind one ends on it: that takes an impulse P along its normal, and with it friction takes up to
+// mu P of the slip. One that is behind it already comes no deeper.
+//
+// Reads `element_forces`, `corners`, `node_constants`, `prescribed`, `obstacles`; reads and writes `membrane_nodes`, takes and clears `impulses` in the first substep; writes
 // `nodes`, where the gas sees them at the start and at the end of its step. One thread per node; its triangles are added in the order of `corners`.
 
 var<uniform> substep: Substep;
@@ -17,6 +20,7 @@ var<storage, read> corners: array<u32>;
 var<storage, read> node_constants: array<NodeConstants>;
 // m/s, of nodes that are held.
 var<storage, read> prescribed: array<vec4<f32>>;
+var<storage, read> obstacles: array<Obstacle>;
 var<storage, read_write> membrane_nodes: array<MembraneNode>;
 // Three sums of two words for each node.
 var<storage, read_write> impulses: array<u32>;
@@ -31,6 +35,53 @@ struct NodeConstants {
     // Its triangles.
     first: u32,
     end: u32,
+}
+
+struct Obstacle {
+    // One that is on it at the start of the interval, quanta.
+    place: vec3<u32>,
+    // mu.
+    friction: f32,
+    // Towards the free side; 0: no obstacle, nor any behind it.
+    normal: vec3<f32>,
+    pad: f32,
+    // The same times 2^22: floats would round the heights of nodes far from the place by some quanta, and their velocities by that over a step.
+    whole_normal: vec3<i32>,
+    pad2: u32,
+    // m/s.
+    velocity: vec3<f32>,
+    pad3: f32,
+}
+
+// Changes of a velocity, m/s.
+struct Stopped {
+    pushed: vec3<f32>,
+    rubbed: vec3<f32>,
+}
+
+fn stopped_by_obstacles(node: MembraneNode, velocity: vec3<f32>) -> Stopped {
+    var found = Stopped();
+    let time = f32(substep.slot) * membrane_step.gas_dt + f32(substep.substep) * membrane_step.dt;
+    for (var k = 0u; k < MOST_OBSTACLES; k += 1u) {
+        let obstacle = obstacles[k];
+        let normal = obstacle.normal;
+        if (all(normal == vec3<f32>(0.0))) {
+            break;
+        }
+        let whole = dot64(bitcast<vec3<i32>>(node.place - obstacle.place), obstacle.whole_normal, vec2<u32>(0u));
+        let quanta = whole / 4194304.0 + dot(node.remainder, normal);
+        let room = max(membrane_step.quantum * quanta - time * dot(obstacle.velocity, normal), 0.0);
+        let relative = velocity + found.pushed + found.rubbed - obstacle.velocity;
+        let away = dot(relative, normal);
+        let push = -room / membrane_step.dt - away;
+        if (push > 0.0) {
+            let slip = relative - away * normal;
+            let speed = length(slip);
+            found.pushed += push * normal;
+            found.rubbed -= select(vec3<f32>(0.0), slip * (min(speed, obstacle.friction * push) / speed), speed > 0.0);
+        }
+    }
+    return found;
 }
 
 // A signed sum of two words.
@@ -107,13 +158,18 @@ fn move_nodes(thread: Thread) {
     let weight = (kick * mass) * membrane_step.gravity;
     let sum = strain + damping + pressure + weight + node.given;
     var velocity = prescribed[k].xyz;
+    var stopped = Stopped();
     if (constants.held == 0u) {
         velocity = node.velocity + sum / mass;
+        stopped = stopped_by_obstacles(node, velocity);
+        velocity += stopped.pushed + stopped.rubbed;
     }
     let mean = 0.5 * (node.velocity + velocity);
     node.work[WORK_DAMPING] = added(node.work[WORK_DAMPING], dot(damping, mean));
     node.work[WORK_PRESSURE] = added(node.work[WORK_PRESSURE], dot(pressure, mean));
     node.work[WORK_GRAVITY] = added(node.work[WORK_GRAVITY], dot(weight, mean));
+    node.work[WORK_OBSTACLES] = added(node.work[WORK_OBSTACLES], mass * dot(stopped.pushed, mean));
+    node.work[WORK_FRICTION] = added(node.work[WORK_FRICTION], mass * dot(stopped.rubbed, mean));
     let gas = dot(node.given, mean);
     node.work[WORK_GAS] = added(node.work[WORK_GAS], gas);
     node.work[WORK_LEDGER] = added(node.work[WORK_LEDGER], -gas);

@@ -3,7 +3,7 @@
 //! Velocities are those of half a step before the places. The energy of motion is exactly that of these velocities; that of strain is taken half a step back, where the
 //! nodes were then. So to the square of the step, from the start on,
 //!
-//! kinetic + strain + damped = (both at the start) + pressure + gravity + holds + gas, and gas + ledger = what the gas gave.
+//! kinetic + strain + damped + friction = (both at the start) + pressure + gravity + holds + obstacles + gas, and gas + ledger = what the gas gave.
 
 use std::ops::Range;
 
@@ -11,7 +11,9 @@ use glam::DVec3;
 
 use super::layout::GpuMembraneNode;
 use super::model::Model;
-use super::registry::{WORK_DAMPING, WORK_GAS, WORK_GRAVITY, WORK_HOLDS, WORK_LEDGER, WORK_PRESSURE};
+use super::registry::{
+    WORK_DAMPING, WORK_FRICTION, WORK_GAS, WORK_GRAVITY, WORK_HOLDS, WORK_LEDGER, WORK_OBSTACLES, WORK_PRESSURE,
+};
 use super::state::place;
 
 /// J; works since the start.
@@ -32,6 +34,10 @@ pub struct Energies {
     pub gas: f64,
     /// What the gas gave less that: it was given to nodes with the velocity of one step, and taken with that of the next.
     pub ledger: f64,
+    /// Of obstacles that push nodes off: of one at rest what stops there, negative.
+    pub obstacles: f64,
+    /// What friction on obstacles took; negative where one that moves has dragged more along.
+    pub friction: f64,
 }
 
 impl Energies {
@@ -63,11 +69,14 @@ impl Energies {
             holds: work(WORK_HOLDS),
             gas: work(WORK_GAS),
             ledger: work(WORK_LEDGER),
+            obstacles: work(WORK_OBSTACLES),
+            friction: -work(WORK_FRICTION),
         }
     }
 
     /// What is there less what was put in; its change from the start is what the integration lost or made.
     pub fn balance(&self) -> f64 {
-        self.kinetic + self.strain + self.damped - self.pressure - self.gravity - self.holds - self.gas
+        let there = self.kinetic + self.strain + self.damped + self.friction;
+        there - self.pressure - self.gravity - self.holds - self.obstacles - self.gas
     }
 }

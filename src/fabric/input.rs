@@ -14,6 +14,19 @@ pub enum Hold {
     Prescribed([f64; 3]),
 }
 
+/// A rigid half-space that nodes do not enter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Obstacle {
+    /// On its face, m, to half a quantum of the grid; of one that moves at the start of the next interval.
+    pub place: [f64; 3],
+    /// Of its face, of any length, towards the side where nodes may be.
+    pub normal: [f64; 3],
+    /// m/s.
+    pub velocity: [f64; 3],
+    /// mu of fabric on it.
+    pub friction: f64,
+}
+
 /// A triangle of fabric, free of stress where its first corner is the origin of a plane and the others are at `second` and `third`, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Element {

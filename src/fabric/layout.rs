@@ -111,3 +111,19 @@ pub struct GpuNodeConstants {
     pub first: u32,
     pub end: u32,
 }
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuObstacle {
+    /// Quanta of the grid, which may be beyond it.
+    pub place: [u32; 3],
+    pub friction: f32,
+    pub normal: [f32; 3],
+    pub pad: f32,
+    /// 2^22 times the normal.
+    pub whole_normal: [i32; 3],
+    pub pad2: u32,
+    /// m/s.
+    pub velocity: [f32; 3],
+    pub pad3: f32,
+}

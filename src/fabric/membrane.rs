@@ -4,13 +4,15 @@ use crate::gpu::{BoundKernel, Device, GpuError, Kernel, Recording, fold};
 
 use super::energies::Energies;
 use super::error::MembraneError;
-use super::input::{Hold, MembraneInput};
+use super::input::{Hold, MembraneInput, Obstacle};
 use super::law::Law;
 use super::layout::{
-    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
+    GpuSubstep,
 };
 use super::model::{Model, Triangle};
-use super::registry::PHASE;
+use super::obstacles::on_device;
+use super::registry::{MOST_OBSTACLES, PHASE};
 use super::shaders::shader;
 use super::state::{IMPULSE_WORDS, MembraneState};
 
@@ -32,6 +34,7 @@ pub struct Membrane {
     element_forces: wgpu::Buffer,
     membrane_step: wgpu::Buffer,
     prescribed: wgpu::Buffer,
+    obstacles: wgpu::Buffer,
     /// That of no length.
     no_step: GpuMembraneStep,
     forces_of_elements: BoundKernel,
@@ -61,6 +64,7 @@ impl Membrane {
         let elastic: Vec<GpuElastic> = model.laws.iter().map(elastic).collect();
         let elastic = device.storage_of("elastic", &elastic)?;
         let prescribed = device.storage_of("prescribed", &held_velocities(&model.holds))?;
+        let obstacles = device.storage::<GpuObstacle>("obstacles", u64::from(MOST_OBSTACLES))?;
         let faults = device.storage::<u32>("faults", 1)?;
         let membrane_step = device.uniform("membrane_step", size_of::<GpuMembraneStep>() as u64)?;
         let stride = device.limits().min_uniform_buffer_offset_alignment.max(size_of::<GpuSubstep>() as u32);
@@ -76,6 +80,7 @@ impl Membrane {
                 "corners" => Some(&corners),
                 "node_constants" => Some(&constants),
                 "prescribed" => Some(&prescribed),
+                "obstacles" => Some(&obstacles),
                 "membrane_nodes" => Some(&state),
                 "impulses" => Some(&impulses),
                 "nodes" => Some(&nodes),
@@ -97,6 +102,7 @@ impl Membrane {
             element_forces,
             membrane_step,
             prescribed,
+            obstacles,
             forces_of_elements,
             move_nodes,
             stride,
@@ -138,6 +144,15 @@ impl Membrane {
             other => *other,
         });
         device.write(&self.prescribed, 0, &held_velocities(&holds.collect::<Vec<_>>()));
+        Ok(())
+    }
+
+    /// The obstacles from the next submission on; one that moves anew for each interval.
+    ///
+    /// # Errors
+    /// If there are too many, or one is none.
+    pub fn set_obstacles(&self, device: &Device, obstacles: &[Obstacle]) -> Result<(), MembraneError> {
+        device.write(&self.obstacles, 0, &on_device(obstacles, &self.model, self.no_step.limit)?);
         Ok(())
     }
 

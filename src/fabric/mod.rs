@@ -12,6 +12,7 @@ pub mod law;
 mod layout;
 mod membrane;
 pub mod model;
+mod obstacles;
 pub mod registry;
 mod shaders;
 mod state;
@@ -19,10 +20,11 @@ mod state;
 pub use elastic::{Elasticity, Material};
 pub use energies::Energies;
 pub use error::MembraneError;
-pub use input::{Element, Hold, MembraneInput, longest_step};
+pub use input::{Element, Hold, MembraneInput, Obstacle, longest_step};
 pub use law::{Law, Stress, Taut, principal};
 pub use layout::{
-    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuSubstep,
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
+    GpuSubstep,
 };
 pub use membrane::Membrane;
 pub use model::Model;

@@ -24,11 +24,21 @@ registry! {
         /// What nodes took of what the gas gave, and what they did not.
         WORK_GAS = 4,
         WORK_LEDGER = 5,
+        /// Of obstacles: what pushes nodes off, and what rubs them.
+        WORK_OBSTACLES = 6,
+        WORK_FRICTION = 7,
+    }
+}
+
+registry! {
+    /// Room for obstacles.
+    OBSTACLE_TABLE {
+        MOST_OBSTACLES = 8,
     }
 }
 
 /// All numbers that kernels see.
-pub const NUMBERS: [&[(&str, u32)]; 1] = [WORK_TABLE];
+pub const NUMBERS: [&[(&str, u32)]; 2] = [WORK_TABLE, OBSTACLE_TABLE];
 
 /// The uniform of which each dispatch sees the part of its step.
 pub const STEPPED: &str = "substep";
@@ -43,6 +53,7 @@ pub const BUFFERS: &[&str] = &[
     "corners",
     "node_constants",
     "prescribed",
+    "obstacles",
     "membrane_nodes",
     "impulses",
     "nodes",

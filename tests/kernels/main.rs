@@ -24,6 +24,7 @@ mod lists;
 mod local;
 mod match_pairs;
 mod membrane;
+mod membrane_nodes;
 mod moved;
 mod neighbour_lists;
 mod neighbours;

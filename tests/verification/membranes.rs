@@ -2,7 +2,7 @@
 //! principal stresses of compression to 0, which has no potential.
 
 use corpuscle::fabric::{Hold, Law, Model, principal};
-use corpuscle::study::verify::membrane::moving::{CRUMPLING_TIME, crumpling};
+use corpuscle::study::verify::membrane::moving::{self, CRUMPLING_TIME, crumpling};
 use corpuscle::study::verify::membrane::shapes;
 use corpuscle::study::verify::membrane::sheet::{FABRIC, Sheet};
 use corpuscle::study::verify::membrane::stretched::{ORTHOTROPIC, WOVEN, loop_on_host};
@@ -107,6 +107,14 @@ fn a_sheet_that_crumples_keeps_its_energy_but_by_the_rule_of_principal_stresses(
     let by_rule = crumpled(&sheet, with_share);
     println!("the most that the energy of motion grew: {relaxed:.4} relaxed, {by_rule:.4} by the rule");
     assert!(relaxed < 5e-3 && by_rule > 0.5, "{relaxed} {by_rule}");
+}
+
+#[test]
+fn a_sheet_slides_until_friction_stops_it() {
+    passes("membrane-slide");
+    // Of a friction of .1 three times as much is far off.
+    let found = moving::slid(&device(), 0.3).expect("a run");
+    fails(&Check::of("way", 0.03125, (found, 0.0), 3e-4));
 }
 
 #[test]

@@ -46,7 +46,7 @@ struct MembraneNode {
     seen: vec3<f32>,
     pad4: f32,
     // Energies, J, and what their sums are too large by.
-    work: array<vec2<f32>, 6>,
+    work: array<vec2<f32>, 8>,
 }
 
 struct Element {

@@ -207,6 +207,11 @@ pub const CASES: &[Case] = &[
         run: membrane::moving::taut,
     },
     Case {
+        name: "membrane-slide",
+        law: "a sheet that slides on a plane with friction comes to rest after v^2/(2 mu g)",
+        run: membrane::moving::slides,
+    },
+    Case {
         name: "membrane-bag",
         law: "volume of a square bag under pressure (.2055 L^3 if inextensible, Kepert)",
         run: membrane::shapes::squares,

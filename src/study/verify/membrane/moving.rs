@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::fabric::{Elasticity, Material};
+use crate::fabric::{Elasticity, Material, Obstacle};
 use crate::gpu::Device;
 use crate::study::StudyError;
 
@@ -92,4 +92,30 @@ pub fn taut(device: &Device, _: Effort) -> Result<Findings, StudyError> {
     let (change, kinetic) = change(&run, 20_000)?;
     let name = "change over 20,000 steps/energy of motion";
     Ok(vec![Check::of(name, 0.0, (change / kinetic, 0.0), 1e-4)].into())
+}
+
+/// How far a sheet slides that lies on a plane with friction, m: v^2/(2 mu g).
+pub fn slid(device: &Device, friction: f64) -> Result<f64, StudyError> {
+    let mut sheet = Sheet::rectangle([4; 2], 0.05);
+    sheet.velocities = vec![SLIDE_VELOCITY * DVec3::X; sheet.mesh.nodes.len()];
+    sheet.gravity = [0.0, 0.0, -SLIDE_GRAVITY];
+    let run = sheet.run(device, 1.0)?;
+    let plane = Obstacle { place: [0.0; 3], normal: [0.0, 0.0, 1.0], velocity: [0.0; 3], friction };
+    run.membrane.set_obstacles(device, &[plane])?;
+    let time = SLIDE_VELOCITY / (friction * SLIDE_GRAVITY);
+    run.steps((1.1 * time / run.dt) as u32)?;
+    let ways = run.places()?.into_iter().zip(&run.mesh.nodes).map(|(end, start)| end.x - start[0]);
+    Ok(ways.sum::<f64>() / run.mesh.nodes.len() as f64)
+}
+
+const SLIDE_VELOCITY: f64 = 0.25;
+const SLIDE_GRAVITY: f64 = 10.0;
+
+pub fn slides(device: &Device, _: Effort) -> Result<Findings, StudyError> {
+    let check = |friction: f64| {
+        let way = SLIDE_VELOCITY * SLIDE_VELOCITY / (2.0 * friction * SLIDE_GRAVITY);
+        let found = slid(device, friction)?;
+        Ok(Check::of(format!("way with friction {friction}, m"), way, (found, 0.0), 0.01 * way))
+    };
+    [0.1, 0.3].into_iter().map(check).collect()
 }

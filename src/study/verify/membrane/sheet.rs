@@ -45,6 +45,8 @@ pub struct Sheet {
     pub elements: Vec<Element>,
     pub material: Material,
     pub holds: Vec<Hold>,
+    /// m/s2.
+    pub gravity: [f64; 3],
     /// m around the mesh that nodes may come to.
     pub room: f64,
 }
@@ -63,6 +65,7 @@ impl Sheet {
             holds: vec![Hold::Free; mesh.nodes.len()],
             mesh,
             material: FABRIC,
+            gravity: [0.0; 3],
             room: 0.1,
         }
     }
@@ -129,7 +132,7 @@ impl Sheet {
             materials: &[self.material],
             added_masses: &vec![0.0; self.mesh.nodes.len()],
             holds: &self.holds,
-            gravity: [0.0; 3],
+            gravity: self.gravity,
             substeps: 1,
             steps_per_interval: BATCH,
             impulse_unit: 1.0,
