@@ -16,10 +16,10 @@ use crate::study::verify::{Check, Effort, Findings};
 /// Without damping: energies must stay.
 pub const UNDAMPED: Material = Material { damping: 0.0, ..FABRIC };
 
-/// A standing wave of stretching in a taut strip of 200 elements, without Poisson's ratio.
-pub fn waves(device: &Device, _: Effort) -> Result<Findings, StudyError> {
-    let (squares, edge) = ([200, 1], 0.005);
-    let length = f64::from(squares[0]) * edge;
+/// A standing wave of stretching in a taut strip, so many elements long, without Poisson's ratio.
+pub fn wave(device: &Device, elements: u32) -> Result<Check, StudyError> {
+    let length = 1.0;
+    let (squares, edge) = ([elements, 1], length / f64::from(elements));
     let speed = (YOUNG / DENSITY).sqrt();
     let mut sheet = Sheet::rectangle(squares, edge);
     let elasticity = Elasticity::Isotropic { young: YOUNG, poisson: 0.0 };
@@ -30,7 +30,8 @@ pub fn waves(device: &Device, _: Effort) -> Result<Findings, StudyError> {
     sheet.moved(|_, p| p.with_x(1.0005 * p.x));
     let run = sheet.run(device, 1.0)?;
     let period = 2.0 * length / speed;
-    let between = 16;
+    // Some 250 points in three periods.
+    let between = ((0.012 * period / run.dt) as u32).max(1);
     let mut series = Vec::new();
     while series.last().is_none_or(|&(time, _)| time < 3.0) {
         run.steps(between)?;
@@ -40,7 +41,11 @@ pub fn waves(device: &Device, _: Effort) -> Result<Findings, StudyError> {
         series.push((time, off.zip(&shape).map(|(off, s)| off * s).sum::<f64>()));
     }
     let [frequency, _] = fit(&series, 2.0 * PI);
-    Ok(vec![Check::of("speed of a wave/root(E/rho)", 1.0, (frequency / (2.0 * PI), 0.0), 0.02)].into())
+    Ok(Check::of(format!("speed/root(E/rho), {elements} elements"), 1.0, (frequency / (2.0 * PI), 0.0), 0.02))
+}
+
+pub fn waves(device: &Device, _: Effort) -> Result<Findings, StudyError> {
+    Ok(vec![wave(device, 200)?].into())
 }
 
 /// A free sheet of 0.4 m a side that is drawn apart, springs back, and crumples.
@@ -78,20 +83,25 @@ pub fn crumple(device: &Device, _: Effort) -> Result<Findings, StudyError> {
     Ok(vec![Check::of(name, 0.0, (change / kinetic, 0.0), 5e-3)].into())
 }
 
-/// A taut sheet that swings for 20,000 steps.
-pub fn taut(device: &Device, _: Effort) -> Result<Findings, StudyError> {
+/// A taut sheet that swings for 20,000 steps, with so many waves a side.
+pub fn swing(device: &Device, half_waves: u32) -> Result<Check, StudyError> {
     let (squares, edge) = (10, 0.04);
     let side = f64::from(squares) * edge;
     let mut sheet = Sheet::rectangle([squares; 2], edge);
     sheet.material = UNDAMPED;
     sheet.fix(|p| [p.x, p.y].iter().any(|&x| x < 1e-9 || x > side - 1e-9));
-    let mode = |p: &[f64; 3]| (PI * p[0] / side).sin() * (PI * p[1] / side).sin();
+    let number = PI * f64::from(half_waves) / side;
+    let mode = |p: &[f64; 3]| (number * p[0]).sin() * (number * p[1]).sin();
     sheet.velocities = sheet.mesh.nodes.iter().map(|p| DVec3::Z * mode(p)).collect();
     sheet.moved(|_, p| 1.005 * p);
     let run = sheet.run(device, 1.0)?;
     let (change, kinetic) = change(&run, 20_000)?;
     let name = "change over 20,000 steps/energy of motion";
-    Ok(vec![Check::of(name, 0.0, (change / kinetic, 0.0), 1e-4)].into())
+    Ok(Check::of(name, 0.0, (change / kinetic, 0.0), 1e-4))
+}
+
+pub fn taut(device: &Device, _: Effort) -> Result<Findings, StudyError> {
+    Ok(vec![swing(device, 1)?].into())
 }
 
 /// How far a sheet slides that lies on a plane with friction, m: v^2/(2 mu g).
