@@ -3,7 +3,7 @@
 //! phase: advect
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's surface model has it, diffusely with the temperature of the wall or with their speed, or out through a
-// vent. A wall that moves does so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
+// vent, of fabric to its other side. A wall that moves does so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
 //
 // Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions
 // `particles`), the walls, `surface_models`, `vents` and `zones`; writes `particles` (NOBODY for one that has left), counts it in
@@ -118,7 +118,7 @@ fn energy_of(particle: Particle, mass: f32) -> f32 {
     return 0.5 * mass * dot(particle.velocity, particle.velocity) + particle.spin;
 }
 
-// Whether a particle that hits vent `v` leaves through it, which is tallied.
+// Whether a particle that hits vent `v` at a speed passes it, which is tallied.
 fn leaves(v: u32, particle: Particle, mass: f32, speed: f32, word: u32) -> bool {
     let slot = VENTS_AT + vents[v].index * VENT_WORDS;
     let probability = vents[v].beta * mass * speed;
@@ -192,7 +192,15 @@ fn bounce(thread: Thread) {
             let draw = wall_draw(particle.tag, bounces, 0u);
             if (VENTS) {
                 let v = vent_at(surface_model, where_hit);
-                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(old, wall.normal), draw.x)) {
+                if (v != NOBODY && leaves(v, particle, gas.mass, -dot(relative, wall.normal), draw.x)) {
+                    if (FABRIC && vents[v].passes != 0u) {
+                        // To the other side of the sheet, as far from it.
+                        let beyond = shifted(where_hit, wall.normal, wall.lift - 2.0 * SHEET_GAP);
+                        particle.position = shifted(beyond, -old, hit.time);
+                        particle.tag ^= INSIDE;
+                        time = hit.time;
+                        continue;
+                    }
                     if (SURFACES && wall.surface != NOBODY) {
                         tally_impulse(wall.surface, wall.normal, gas.mass * old);
                     }

@@ -16,7 +16,8 @@ struct Sheet {
     closed: u32,
     // The surface tally of the side that the normal points to, and behind it that of the other; or NOBODY.
     surface: u32,
-    // As those of a triangle of a wall (walls.wgsl).
+    // What the side that the normal points to does to a particle that hits it (`surface_models`), and behind it the other; or
+    // NOBODY: mirrors.
     surface_model: u32,
     // The tally of its work.
     work: u32,

@@ -263,8 +263,9 @@ fn struck_sheet(index: u32, x0: vec3<u32>, v: vec3<f32>, start: f32, time: f32, 
         + moving.c.velocity * place.weights.z;
     // The side that the normal points to first.
     let surface = select(sheet.surface + select(1u, 0u, side > 0.0), NOBODY, sheet.surface == NOBODY);
+    let model = select(sheet.surface_model + select(1u, 0u, side > 0.0), NOBODY, sheet.surface_model == NOBODY);
     let lift = SHEET_GAP + dot(here.a, normal);
-    return Struck(normal, surface, velocity, sheet.surface_model, sheet.work, lift, index, place.weights);
+    return Struck(normal, surface, velocity, model, sheet.work, lift, index, place.weights);
 }
 
 // The record of a cell, from 1, or 0: it has no fabric.

@@ -17,18 +17,19 @@ struct SurfaceModel {
     next: u32,
 }
 
-// A place of a wall that lets gas out.
+// A place of a wall, or of fabric, that lets gas out.
 struct Vent {
     // Quanta.
     center: vec3<u32>,
-    // m2; negative: all of the wall.
+    // m2; negative: all that has the surface model.
     radius2: f32,
     // Probability of passing, per normal speed (s/m) and mass over the reference mass.
     beta: f32,
     // Its tally.
     index: u32,
+    // 1: to the other side of fabric, else out of the run.
+    passes: u32,
     pad: u32,
-    pad2: u32,
 }
 
 var<storage, read> surface_models: array<SurfaceModel>;

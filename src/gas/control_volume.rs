@@ -77,6 +77,8 @@ pub struct OpenVent {
     pub chamber: usize,
     pub area: f64,
     pub vent: Vent,
+    /// The chamber whose gas is behind it, in place of its external pressure.
+    pub behind: Option<usize>,
 }
 
 /// Contents of a chamber at the start.

@@ -32,6 +32,8 @@ pub struct Audit {
     pub particles_outside: u64,
     /// At the end, on the wrong side of closed fabric: each one has passed it. `None` in a scene without.
     pub particles_passed: Option<u64>,
+    /// What passed vents and pores of fabric to gas on its other side, and so stays: particles, and kg. `None` where no vent leads there.
+    pub through_fabric: Option<(u64, f64)>,
     /// kg.
     pub mass_start: f64,
     pub mass_injected: f64,
@@ -302,6 +304,9 @@ impl Audit {
             ("  end", vector(self.momentum_end)),
             ("  error", momentum_error),
         ]);
+        facts.extend(self.through_fabric.map(|(particles, mass)| {
+            ("through vents of fabric, inside", format!("{} particles, {mass:.6e} kg", grouped(particles)))
+        }));
         facts.splice(1..1, collisions);
         facts.extend(self.fabric.iter().flat_map(FabricAccount::facts));
         if let Some(work) = self.work_by_walls {

@@ -182,7 +182,7 @@ pub fn highest_temperature(scene: &Scene, measured: &Measured) -> (f64, String) 
         candidates.push((gamma(&orifice.mixture, hottest) * hottest, why));
     }
     for (id, heat) in scene.heated_surfaces() {
-        candidates.push((heat.temperature, format!("wall `{}`", scene.surface_name(id))));
+        candidates.push((heat.temperature, scene.surface_title(id)));
     }
     let (hottest, why) =
         candidates.into_iter().fold((0.0, String::new()), |best, next| if next.0 > best.0 { next } else { best });

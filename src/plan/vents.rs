@@ -77,8 +77,8 @@ pub fn heat(scene: &Scene, species: &[Species], method: Method, measured: &Measu
     let of_wall = |&(id, chamber): &(SurfaceId, usize)| {
         let heat = scene.surface_model(id).heat.as_ref()?;
         let share = accommodation(heat, species, &concentrations(scene, chamber), scene.chambers[chamber].temperature);
-        let (wall, chamber) = (scene.surface_name(id), &scene.chambers[chamber].name);
-        let subject = format!("wall `{wall}` at the start in chamber `{chamber}`");
+        let (surface, chamber) = (scene.surface_title(id), &scene.chambers[chamber].name);
+        let subject = format!("{surface} at the start in chamber `{chamber}`");
         Warning::by_table(Quantity::Heat, method, &subject, share, "a smaller `heat_transfer`, or `accommodation`")
     };
     // A place on a wall can stand there beside its rest.

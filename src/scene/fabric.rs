@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::region::Region;
+use super::surface_model::SurfaceModel;
 
 /// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +16,10 @@ pub struct Fabric {
     pub motion: Option<PathBuf>,
     /// The gas moves it.
     pub membrane: Option<Membrane>,
+    /// What both of its sides do to the gas that hits them.
+    pub surface: SurfaceModel,
+    /// The names of those of its mesh's parts that the scene names: `Face::Part` counts in it.
+    pub parts: Vec<String>,
     /// Pa, the same everywhere outside of closed fabric, where no gas is then.
     pub external_pressure: Option<f64>,
 }

@@ -7,12 +7,14 @@ use super::errors::{Problem, quote};
 use super::fabric::{Fabric, Fixed, Membrane};
 use super::fabric_material::material;
 use super::numbers::{not_negative, number, positive};
+use super::parts::Parts;
 use super::places::region;
 use super::raw::RawScene;
 use super::raw_fabric::{RawFabric, RawFixed, RawMaterial};
 use super::raw_values::At;
 use super::types::UnitSystem;
 use super::units::Quantity;
+use super::wall_surface;
 use super::walls::existing;
 
 /// Surfaces that deform, at most.
@@ -22,7 +24,14 @@ const MESHES: (&[&str], &str) = (&["stl", "obj"], "a file name that ends with .s
 const MOTIONS: (&[&str], &str) =
     (&["nodes", "pvd", "series"], "a file name that ends with .nodes, .pvd, .vtk.series or .vtu.series");
 
-pub(super) fn fabric(raw: &At<RawFabric>, units: UnitSystem, base_dir: &Path) -> Result<Fabric, Problem> {
+/// The fabric of this index in the scene.
+pub(super) fn fabric(
+    raw: &At<RawFabric>,
+    index: usize,
+    parts: &Parts,
+    units: UnitSystem,
+    base_dir: &Path,
+) -> Result<Fabric, Problem> {
     let fabric = &raw.value;
     let scale = match &fabric.scale {
         Some(scale) => positive(scale, Quantity::Length, units)?,
@@ -37,6 +46,8 @@ pub(super) fn fabric(raw: &At<RawFabric>, units: UnitSystem, base_dir: &Path) ->
             Some(material) => Some(membrane(fabric, material, units, base_dir)?),
             None => no_membrane(fabric)?,
         },
+        surface: wall_surface::of_fabric(fabric, units)?,
+        parts: parts.of_fabric(index),
         external_pressure: fabric
             .external_pressure
             .as_ref()

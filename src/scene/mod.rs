@@ -39,6 +39,7 @@ mod walls;
 mod words;
 mod write;
 mod write_fabric;
+mod write_surface;
 
 use std::io::Read;
 use std::path::Path;

@@ -27,7 +27,7 @@ pub(super) fn motion(scene: &RawScene, index: usize, walls: &Names, units: UnitS
             "give the vessel as a wall at rest, and the piston as a body of its own that reaches into its walls",
         ));
     }
-    if scene.vent.iter().any(|vent| vent.value.wall.value == name.value) {
+    if scene.vent.iter().filter_map(|vent| vent.value.wall.as_ref()).any(|wall| wall.value == name.value) {
         let found = format!("the wall {:?}, which has a vent", name.value);
         return Err(Problem::value(&name.span, found, "a wall without vents, or the vent on a wall at rest"));
     }

@@ -13,13 +13,15 @@ use super::types::Face;
 pub(super) struct Parts<'a> {
     walls: &'a [At<RawWall>],
     used: Vec<Vec<String>>,
+    /// And of each fabric.
+    used_of_fabrics: Vec<Vec<String>>,
 }
 
 impl<'a> Parts<'a> {
-    pub fn collect(raw: &'a RawScene, walls: &Names) -> Parts<'a> {
+    pub fn collect(raw: &'a RawScene, walls: &Names, fabrics: &Names) -> Parts<'a> {
         let mut used: Vec<Vec<String>> = vec![Vec::new(); raw.wall.len()];
         let of_surfaces = raw.surface.iter().map(|at| (&at.value.wall, &at.value.face));
-        let of_vents = raw.vent.iter().map(|at| (&at.value.wall, &at.value.face));
+        let of_vents = raw.vent.iter().filter_map(|at| Some((at.value.wall.as_ref()?, &at.value.face)));
         let mut add = |wall: usize, face: &At<String>| {
             if !used[wall].contains(&face.value) {
                 used[wall].push(face.value.clone());
@@ -34,7 +36,30 @@ impl<'a> Parts<'a> {
         for (wall, raw) in raw.wall.iter().enumerate() {
             raw.value.part.iter().for_each(|part| add(wall, &part.value.face));
         }
-        Parts { walls: &raw.wall, used }
+        let mut used_of_fabrics: Vec<Vec<String>> = vec![Vec::new(); raw.fabric.len()];
+        for vent in raw.vent.iter().map(|at| &at.value) {
+            let index = vent.fabric.as_ref().and_then(|name| fabrics.find(name).ok());
+            if let (Some(own), Some(face)) = (index.map(|index| &mut used_of_fabrics[index]), &vent.face)
+                && !own.contains(&face.value)
+            {
+                own.push(face.value.clone());
+            }
+        }
+        Parts { walls: &raw.wall, used, used_of_fabrics }
+    }
+
+    /// The names used of a fabric.
+    pub fn of_fabric(&self, fabric: usize) -> Vec<String> {
+        self.used_of_fabrics[fabric].clone()
+    }
+
+    /// The part of a fabric that is called so; whether its mesh has it is known once that is read.
+    pub fn find_of_fabric(&self, given: &At<String>, fabric: usize) -> Result<Face, Problem> {
+        if given.value.is_empty() {
+            return Err(Problem::value(&given.span, "an empty name", "the name of a part of the mesh"));
+        }
+        let part = self.used_of_fabrics[fabric].iter().position(|used| *used == given.value);
+        Ok(Face::Part(part.unwrap_or_default() as u32))
     }
 
     /// The names used of a wall that is a mesh.

@@ -320,20 +320,25 @@ pub struct RawSurface {
     pub face: Option<At<String>>,
 }
 
-/// A part of a wall that lets gas out of the scene; exactly one of `discharge`, `discharge_by_pressure`, `leak_velocity`.
+/// A part of a wall that lets gas out of the scene, or of a closed fabric; exactly one of `wall` and `fabric`, and exactly one of
+/// `discharge`, `discharge_by_pressure`, `leak_velocity`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawVent {
     /// Unique among the vents.
     pub name: At<String>,
     /// The name of a wall.
-    pub wall: At<String>,
+    pub wall: Option<At<String>>,
+    /// The name of a closed fabric: gas flows from its inside to the other side, or out of the scene with the fabric's
+    /// `external_pressure`.
+    pub fabric: Option<At<String>>,
     /// A named part of it: `"-x"` to `"+z"` or `"outside"` of a box, `"base"`, `"top"` or `"side"` of a cylinder, `"front"`,
-    /// `"back"` or `"rim"` of a plane, a solid, group or object of a mesh file; all of the wall unless given.
+    /// `"back"` or `"rim"` of a plane, a solid, group or object of a mesh file; all of the wall or fabric unless given.
     pub face: Option<At<String>>,
     /// The chamber that it empties; needed where its place borders on several.
     pub chamber: Option<At<String>>,
-    /// Centre of a disc on the wall or face, its place; with `diameter`.
+    /// Centre of a disc on the wall or face, its place; of fabric the triangles whose middles are in it at the start; with
+    /// `diameter`.
     pub position: Option<At<Numbers<3>>>,
     /// Diameter of that disc.
     pub diameter: Option<At<f64>>,
@@ -349,7 +354,7 @@ pub struct RawVent {
     pub opening_pressure: Option<At<f64>>,
     /// The same as an absolute pressure, not below the external one (SI: Pa); instead of `opening_pressure`.
     pub opening_pressure_absolute: Option<At<f64>>,
-    /// External pressure (SI: Pa); 101325 Pa unless given.
+    /// External pressure of a vent on a wall (SI: Pa); 101325 Pa unless given.
     pub external_pressure: Option<At<f64>>,
 }
 

@@ -28,6 +28,17 @@ pub struct RawFabric {
     /// Of a membrane: the nodes that are held, by regions in which they are at the start, or `"edge"` for those of the
     /// open edge; none unless given.
     pub fixed: Option<At<RawFixed>>,
+    /// Temperature that it keeps, and at which it exchanges heat with the gas on both sides, K; without it the fabric is
+    /// adiabatic.
+    pub temperature: Option<At<f64>>,
+    /// Share of the hits that leave diffusely with the fabric's temperature, 0 to 1; with `temperature`, 1 unless it or
+    /// `heat_transfer` is given.
+    pub accommodation: Option<At<f64>>,
+    /// Heat-transfer coefficient of each side (SI: W/(m2 K)), instead of `accommodation`.
+    pub heat_transfer: Option<At<f64>>,
+    /// Share of the hits that leave in a random direction with the speed they had, 0 to 1, of those that do not take the
+    /// fabric's temperature; 0 unless given.
+    pub friction: Option<At<f64>>,
     /// Of closed fabric: the uniform pressure outside, where no gas is then (SI: Pa).
     pub external_pressure: Option<At<f64>>,
 }

@@ -31,9 +31,10 @@ impl SurfaceModel {
     }
 }
 
-/// What has one surface model: a wall's part, or what the parts leave of the wall.
+/// What has one surface model: a wall's part, or what the parts leave of the wall; or a fabric.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SurfaceId {
+    /// Past the indices of all walls that of a fabric.
     pub wall: usize,
     /// Index in the wall's `parts`.
     pub part: Option<usize>,

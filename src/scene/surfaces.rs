@@ -4,16 +4,25 @@ use super::surface_model::{SurfaceId, SurfaceModel, WallHeat};
 use super::types::{Face, Scene, Wall};
 
 impl Scene {
-    /// All surfaces: each wall's own, then those of its parts.
+    /// The fabric that an index past those of all walls stands for.
+    pub fn fabric_at(&self, wall: usize) -> Option<usize> {
+        wall.checked_sub(self.walls.len()).filter(|&index| index < self.fabrics.len())
+    }
+
+    /// All surfaces: each wall's own, then those of its parts; then the fabrics.
     pub fn surface_ids(&self) -> impl Iterator<Item = SurfaceId> + '_ {
         let of_wall = |(wall, own): (usize, &Wall)| {
             let parts = (0..own.parts.len()).map(Some);
             std::iter::once(None).chain(parts).map(move |part| SurfaceId { wall, part })
         };
-        self.walls.iter().enumerate().flat_map(of_wall)
+        let of_fabric = |index: usize| SurfaceId { wall: self.walls.len() + index, part: None };
+        self.walls.iter().enumerate().flat_map(of_wall).chain((0..self.fabrics.len()).map(of_fabric))
     }
 
     pub fn surface_model(&self, id: SurfaceId) -> &SurfaceModel {
+        if let Some(index) = self.fabric_at(id.wall) {
+            return &self.fabrics[index].surface;
+        }
         let wall = &self.walls[id.wall];
         id.part.map_or(&wall.surface, |part| &wall.parts[part].surface)
     }
@@ -26,11 +35,20 @@ impl Scene {
 
     /// As reports and columns call it: the wall's name, of a part `wall/part`.
     pub fn surface_name(&self, id: SurfaceId) -> String {
+        if let Some(index) = self.fabric_at(id.wall) {
+            return self.fabrics[index].name.clone();
+        }
         let wall = &self.walls[id.wall];
         match id.part {
             None => wall.name.clone(),
             Some(part) => format!("{}/{}", wall.name, wall.parts[part].face.name(wall)),
         }
+    }
+
+    /// As sentences begin that are about it.
+    pub fn surface_title(&self, id: SurfaceId) -> String {
+        let kind = if self.fabric_at(id.wall).is_some() { "fabric" } else { "wall" };
+        format!("{kind} `{}`", self.surface_name(id))
     }
 
     /// The surfaces that keep a temperature, in the order of [`Scene::surface_ids`].

@@ -302,24 +302,25 @@ pub struct Surface {
     pub face: Option<Face>,
 }
 
-/// Where a wall lets gas out: a vent or a leaking fabric, modelled (method.md, "Vents and leaks"). What leaves is gone.
+/// Where a wall or a closed fabric lets gas out: a vent or pores, modelled (method.md, "Vents and leaks"). What leaves through a wall
+/// is gone, as is what leaves a fabric without gas around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vent {
     pub name: String,
-    /// Wall index.
+    /// Wall index; past those of all walls the index of a fabric ([`Scene::fabric_at`]).
     pub wall: usize,
-    /// A part of the wall, or all of it.
+    /// A part of it, or all of it.
     pub face: Option<Face>,
     /// Index of the chamber that it empties; `None`: the only one at its place.
     pub chamber: Option<usize>,
-    /// Its place, if not all of the wall or face.
+    /// Its place, if not all of the wall or face; of a fabric the triangles whose middles are in it at the start.
     pub disc: Option<Disc>,
     /// m2; `None`: that of its place.
     pub area: Option<f64>,
     pub flow: VentFlow,
     /// Pa above the external pressure, at which it opens; from then on it is open.
     pub opening_pressure: f64,
-    /// Pa.
+    /// Pa. Of a fabric with gas around it, that gas at the start: what drives the flow then is the gas that is there.
     pub external_pressure: f64,
 }
 

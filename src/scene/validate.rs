@@ -45,7 +45,7 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let end_time = keep(positive(&raw.end_time, Quantity::Time, units), &mut problems);
     let seed = keep(raw.seed.as_ref().map_or(Ok(SEED), |s| count(s, 0..=LARGEST_SEED)), &mut problems);
     let gases = each(&raw.gas, &mut problems, |gas, _| gases::gas(gas, units));
-    let parts = Parts::collect(raw, &wall_names);
+    let parts = Parts::collect(raw, &wall_names, &fabric_names);
     let walls = each(&raw.wall, &mut problems, |wall, index| walls::wall(wall, index, &parts, units, base_dir));
     let last = raw.chamber.len().saturating_sub(1);
     let chambers = each(&raw.chamber, &mut problems, |chamber, i| {
@@ -55,9 +55,11 @@ pub(super) fn validate(raw: &RawScene, stem: &str, base_dir: &Path) -> Result<Sc
     let orifices = each(&raw.orifice, &mut problems, |orifice, _| flows::orifice(orifice, &gas_names, units));
     let probes = each(&raw.probe, &mut problems, |probe, _| places::probe(probe, units));
     let surfaces = each(&raw.surface, &mut problems, |surface, _| places::surface(surface, &wall_names, &parts));
-    let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, &wall_names, &chamber_names, &parts, units));
+    let places = vents::Places { walls: &wall_names, fabrics: &fabric_names, chambers: &chamber_names, parts: &parts };
+    let vents = each(&raw.vent, &mut problems, |vent, _| vents::vent(vent, raw, &places, units));
     let motions = each(&raw.motion, &mut problems, |_, index| motions::motion(raw, index, &wall_names, units));
-    let fabrics = each(&raw.fabric, &mut problems, |fabric, _| fabrics::fabric(fabric, units, base_dir));
+    let fabrics =
+        each(&raw.fabric, &mut problems, |fabric, index| fabrics::fabric(fabric, index, &parts, units, base_dir));
     let gravity = keep(fabrics::gravity(raw, units), &mut problems);
     let model = keep(settings::model(&raw.model, units), &mut problems);
     let output = keep(settings::output(&raw.output), &mut problems);

@@ -5,7 +5,7 @@ use super::flows::curve;
 use super::names::Names;
 use super::numbers::{described, not_negative, point, positive, show};
 use super::parts::Parts;
-use super::raw::RawVent;
+use super::raw::{RawScene, RawVent};
 use super::raw_values::{At, NumberOr, Numbers};
 use super::types::{Curve, Disc, UnitSystem, Vent, VentFlow};
 use super::units::Quantity;
@@ -13,15 +13,71 @@ use super::units::Quantity;
 /// The standard atmosphere, Pa.
 const ATMOSPHERE: f64 = 101_325.0;
 
-pub(super) fn vent(
+/// What vents refer to.
+pub(super) struct Places<'a> {
+    pub walls: &'a Names<'a>,
+    pub fabrics: &'a Names<'a>,
+    pub chambers: &'a Names<'a>,
+    pub parts: &'a Parts<'a>,
+}
+
+pub(super) fn vent(raw: &At<RawVent>, scene: &RawScene, places: &Places, units: UnitSystem) -> Result<Vent, Problem> {
+    match (&raw.value.wall, &raw.value.fabric) {
+        (Some(wall), None) => on_wall(raw, wall, places, units),
+        (None, Some(fabric)) => on_fabric(raw, fabric, (scene, places), units),
+        (None, None) => {
+            let keys = "exactly one of `wall`, `fabric`";
+            Err(Problem::missing(&raw.span, if scene.fabric.is_empty() { "wall" } else { "fabric" }, keys))
+        }
+        (Some(wall), Some(fabric)) => {
+            let later = if wall.span.start > fabric.span.start { &wall.span } else { &fabric.span };
+            Err(Problem::value(later, "both `wall` and `fabric`", "exactly one of them"))
+        }
+    }
+}
+
+/// A vent of a closed fabric: whether it is closed is known once its mesh is read.
+fn on_fabric(
     raw: &At<RawVent>,
-    walls: &Names,
-    chambers: &Names,
-    parts: &Parts,
+    name: &At<String>,
+    (scene, places): (&RawScene, &Places),
     units: UnitSystem,
 ) -> Result<Vent, Problem> {
     let vent = &raw.value;
-    let wall = walls.find(&vent.wall)?;
+    let fabric = places.fabrics.find(name)?;
+    let foreign = [
+        ("chamber", vent.chamber.as_ref().map(|at| &at.span)),
+        ("external_pressure", vent.external_pressure.as_ref().map(|at| &at.span)),
+        ("opening_pressure_absolute", vent.opening_pressure_absolute.as_ref().map(|at| &at.span)),
+    ];
+    if let Some((key, span)) = foreign.into_iter().find_map(|(key, span)| Some((key, span?))) {
+        let found = format!("`{key}` of a vent on fabric");
+        let allowed = "no such key: gas flows from inside of the fabric to what is around it";
+        return Err(Problem::value(span, found, allowed)
+            .hint("an `opening_pressure` is above the pressure around; without gas there give the fabric an `external_pressure`"));
+    }
+    let around = || {
+        let rest = scene.chamber.iter().find(|at| at.value.inside.is_none() && at.value.region.is_none());
+        rest.map(|at| &at.value.pressure)
+    };
+    let external = scene.fabric[fabric].value.external_pressure.as_ref().or_else(around);
+    Ok(Vent {
+        name: vent.name.value.clone(),
+        wall: scene.wall.len() + fabric,
+        face: vent.face.as_ref().map(|given| places.parts.find_of_fabric(given, fabric)).transpose()?,
+        chamber: None,
+        disc: disc(raw, units)?,
+        area: vent.area.as_ref().map(|at| positive(at, Quantity::Area, units)).transpose()?,
+        flow: flow(raw, units)?,
+        opening_pressure: opening_pressure(vent, 0.0, units)?,
+        external_pressure: external.map_or(Ok(0.0), |at| not_negative(at, Quantity::Pressure, units))?,
+    })
+}
+
+fn on_wall(raw: &At<RawVent>, name: &At<String>, places: &Places, units: UnitSystem) -> Result<Vent, Problem> {
+    let Places { walls, chambers, parts, .. } = places;
+    let vent = &raw.value;
+    let wall = walls.find(name)?;
     let pressure = |at: &Option<At<f64>>| at.as_ref().map(|at| not_negative(at, Quantity::Pressure, units)).transpose();
     let external_pressure = pressure(&vent.external_pressure)?.unwrap_or(ATMOSPHERE);
     Ok(Vent {

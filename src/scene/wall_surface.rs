@@ -1,9 +1,10 @@
-//! The keys of a wall's surface, and those of parts that have their own.
+//! The keys of a wall's surface, those of parts that have their own, and those of fabric.
 
 use super::errors::{Problem, quote};
 use super::numbers::{bounded, not_negative, positive};
 use super::parts::Parts;
 use super::raw::{RawWall, RawWallPart};
+use super::raw_fabric::RawFabric;
 use super::raw_values::At;
 use super::surface_model::{HeatTransfer, SurfaceModel, WallHeat};
 use super::types::{UnitSystem, WallPart};
@@ -32,6 +33,16 @@ impl<'a> Keys<'a> {
     fn of_part(raw: &'a RawWallPart) -> Keys<'a> {
         Keys {
             owner: "part of a wall",
+            temperature: raw.temperature.as_ref(),
+            accommodation: raw.accommodation.as_ref(),
+            heat_transfer: raw.heat_transfer.as_ref(),
+            friction: raw.friction.as_ref(),
+        }
+    }
+
+    fn of_fabric(raw: &'a RawFabric) -> Keys<'a> {
+        Keys {
+            owner: "fabric",
             temperature: raw.temperature.as_ref(),
             accommodation: raw.accommodation.as_ref(),
             heat_transfer: raw.heat_transfer.as_ref(),
@@ -90,6 +101,11 @@ impl<'a> Keys<'a> {
 
 fn share(at: &At<f64>, units: UnitSystem) -> Result<f64, Problem> {
     bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
+}
+
+/// Of both sides of a fabric.
+pub(super) fn of_fabric(raw: &RawFabric, units: UnitSystem) -> Result<SurfaceModel, Problem> {
+    Keys::of_fabric(raw).model(units)
 }
 
 /// Of all that is in none of the wall's parts.

@@ -1,10 +1,10 @@
 //! A scene as resolved: in SI, every default explicit. Reading it back gives an equal scene (but for
 //! `units`, which says SI then).
 
-use super::surface_model::{HeatTransfer, SurfaceModel};
 use super::toml_lines::{TomlLines, quoted, region_table, shown};
 use super::types::*;
 use super::write_fabric::write_fabric;
+use super::write_surface::{write_heat, write_surface};
 
 /// The scene as a TOML text.
 pub fn to_toml(scene: &Scene) -> String {
@@ -139,10 +139,7 @@ fn write_wall(out: &mut TomlLines, wall: &Wall) {
         GasSide::Outside => out.text("gas", "outside"),
         GasSide::Both => {}
     }
-    write_heat(out, &wall.surface);
-    if wall.surface.friction > 0.0 {
-        out.number("friction", wall.surface.friction);
-    }
+    write_surface(out, &wall.surface);
     for part in &wall.parts {
         out.header("[[wall.part]]");
         write_face(out, Some(part.face), wall);
@@ -168,20 +165,21 @@ fn write_wall(out: &mut TomlLines, wall: &Wall) {
     }
 }
 
-fn write_heat(out: &mut TomlLines, surface: &SurfaceModel) {
-    let Some(heat) = &surface.heat else { return };
-    out.number("temperature", heat.temperature);
-    match heat.transfer {
-        HeatTransfer::Accommodation(share) => out.number("accommodation", share),
-        HeatTransfer::Coefficient(coefficient) => out.number("heat_transfer", coefficient),
-    }
-}
-
 fn write_vent(out: &mut TomlLines, vent: &Vent, scene: &Scene) {
     out.header("[[vent]]");
     out.text("name", &vent.name);
-    out.text("wall", &scene.walls[vent.wall].name);
-    write_face(out, vent.face, &scene.walls[vent.wall]);
+    match scene.fabric_at(vent.wall).map(|index| &scene.fabrics[index]) {
+        Some(fabric) => {
+            out.text("fabric", &fabric.name);
+            if let Some(Face::Part(part)) = vent.face {
+                out.text("face", &fabric.parts[part as usize]);
+            }
+        }
+        None => {
+            out.text("wall", &scene.walls[vent.wall].name);
+            write_face(out, vent.face, &scene.walls[vent.wall]);
+        }
+    }
     if let Some(chamber) = vent.chamber {
         out.text("chamber", &scene.chambers[chamber].name);
     }
@@ -198,7 +196,9 @@ fn write_vent(out: &mut TomlLines, vent: &Vent, scene: &Scene) {
         VentFlow::LeakVelocity(curve) => out.curve("leak_velocity", curve),
     }
     out.number("opening_pressure", vent.opening_pressure);
-    out.number("external_pressure", vent.external_pressure);
+    if scene.fabric_at(vent.wall).is_none() {
+        out.number("external_pressure", vent.external_pressure);
+    }
 }
 
 fn write_motion(out: &mut TomlLines, motion: &Motion, scene: &Scene) {

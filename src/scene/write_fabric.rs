@@ -2,6 +2,7 @@
 
 use super::fabric::{Elasticity, Fabric, Fixed, Membrane};
 use super::toml_lines::{TomlLines, region_table};
+use super::write_surface::write_surface;
 
 pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
     out.header("[[fabric]]");
@@ -11,6 +12,7 @@ pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
     if let Some(motion) = &fabric.motion {
         out.text("motion", &motion.to_string_lossy());
     }
+    write_surface(out, &fabric.surface);
     if let Some(pressure) = fabric.external_pressure {
         out.number("external_pressure", pressure);
     }

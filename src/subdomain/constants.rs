@@ -110,6 +110,8 @@ pub struct Patches {
     pub surfaces: usize,
     pub surface_models: usize,
     pub vents: usize,
+    /// As many as vents if some lead to other gas: what passes those is tallied apart, behind what leaves.
+    pub passages: usize,
     /// Walls that move.
     pub motions: usize,
     /// Surfaces that deform.
@@ -123,7 +125,7 @@ impl Patches {
     pub(super) fn ends(&self) -> [usize; 3] {
         let surfaces = self.surfaces.max(1) * SURFACE_WORDS as usize;
         let surface_models = surfaces + self.surface_models * SURFACE_MODEL_WORDS as usize;
-        [surfaces, surface_models, surface_models + self.vents * VENT_WORDS as usize]
+        [surfaces, surface_models, surface_models + (self.vents + self.passages) * VENT_WORDS as usize]
     }
 
     pub(super) fn words(&self) -> usize {

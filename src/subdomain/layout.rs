@@ -205,8 +205,9 @@ pub struct GpuVent {
     pub radius2: f32,
     pub beta: f32,
     pub index: u32,
+    /// 1: to the other side of fabric, else out of the run.
+    pub passes: u32,
     pub pad: u32,
-    pub pad2: u32,
 }
 
 /// `Zone` of `shaders/shared/zones.wgsl`.

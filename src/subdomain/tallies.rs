@@ -71,6 +71,8 @@ pub struct Tallies {
     pub surfaces: Vec<SurfaceSum>,
     pub surface_models: Vec<SurfaceModelSum>,
     pub vents: Vec<VentSum>,
+    /// What passed each vent to other gas; empty if none leads there.
+    pub passages: Vec<VentSum>,
     /// The work that the gas did on each wall that moves.
     pub works: Vec<SurfaceModelSum>,
     pub blocks: Vec<BlockSum>,
@@ -102,6 +104,17 @@ impl Tallies {
             let sum = |w: &[u32]| SurfaceModelSum { energy: signed(w, WALL_ENERGY), tallied: signed(w, WALL_TALLIED) };
             words.chunks_exact(SURFACE_MODEL_WORDS as usize).map(sum).collect()
         };
+        let passed = |words: &[u32]| -> Vec<VentSum> {
+            let sum = |w: &[u32]| VentSum {
+                energy: signed(w, WALL_ENERGY),
+                tallied: signed(w, WALL_TALLIED),
+                hits: signed(w, VENT_HITS),
+                clipped: signed(w, VENT_CLIPPED),
+                left: std::array::from_fn(|gas| i64::from(w[VENT_LEFT as usize + gas])),
+            };
+            words.chunks_exact(VENT_WORDS as usize).map(sum).collect()
+        };
+        let vents_end = patches.vents * VENT_WORDS as usize;
         let block_words = &rest[..sizes.blocks];
         Tallies {
             counters: Counters::from_words(&counter_words),
@@ -124,16 +137,8 @@ impl Tallies {
                 .collect(),
             surface_models: taken(surface_models),
             works: taken(works),
-            vents: vents
-                .chunks_exact(VENT_WORDS as usize)
-                .map(|w| VentSum {
-                    energy: signed(w, WALL_ENERGY),
-                    tallied: signed(w, WALL_TALLIED),
-                    hits: signed(w, VENT_HITS),
-                    clipped: signed(w, VENT_CLIPPED),
-                    left: std::array::from_fn(|gas| i64::from(w[VENT_LEFT as usize + gas])),
-                })
-                .collect(),
+            vents: passed(&vents[..vents_end]),
+            passages: passed(&vents[vents_end..]),
             blocks: block_words[..blocks * BLOCK_WORDS as usize]
                 .chunks_exact(BLOCK_WORDS as usize)
                 .map(|w| BlockSum { number: long(w, BLOCK_NUMBER), energy: long(w, BLOCK_ENERGY) })
@@ -210,7 +215,7 @@ impl Tallies {
             .surface_models
             .iter_mut()
             .flat_map(|surface_model| [&mut surface_model.energy, &mut surface_model.tallied]);
-        let vents = self.vents.iter_mut().flat_map(|vent| {
+        let vents = self.vents.iter_mut().chain(&mut self.passages).flat_map(|vent| {
             let VentSum { energy, tallied, hits, clipped, left } = vent;
             [energy, tallied, hits, clipped].into_iter().chain(left)
         });

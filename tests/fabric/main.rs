@@ -9,3 +9,4 @@ mod paddle;
 mod refused;
 mod scenes;
 mod sheets;
+mod vents;

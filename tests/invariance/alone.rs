@@ -10,8 +10,8 @@ use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
-    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, inflated_bag, pistons, plate, shaken_bag, tank,
-    venting, venting_freely,
+    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
+    shaken_bag, tank, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
 
@@ -198,6 +198,15 @@ fn a_shaken_bag_has_the_same_bits_in_every_way() {
     for method in [Method::HalfTurn, Method::ClosestApproach] {
         every_way(&shaken_bag(method));
     }
+}
+
+/// What passes its pores has another side from then on.
+#[test]
+fn a_porous_bag_has_the_same_bits_in_every_way() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        every_way(&porous_bag(method));
+    }
+    every_way(&vented_bag(Method::HalfTurn));
 }
 
 #[test]

@@ -11,8 +11,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, first, gas_box, inflated_bag, pistons, plate, shaken_bag,
-    switching, tank, thin, tube, venting, venting_freely,
+    burst, by, cold_walls, curves, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
+    shaken_bag, switching, tank, thin, tube, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -250,6 +250,21 @@ fn an_inflated_bag_has_the_same_bits_on_any_number_of_ranks() {
         assert!(last > 1.01 * first, "the bag has {last} m3 after {first}");
     }
     same(&inflated_bag(Method::None), &[Way::new(3, Off, 1).over_places()]);
+}
+
+/// Vents follow gas of all ranks, and what passes them is counted once.
+#[test]
+fn a_porous_bag_has_the_same_bits_on_any_number_of_ranks() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+        let runs = same(&porous_bag(method), &ways);
+        let audit = &runs[0].outcome.audit;
+        assert!(audit.through_fabric.is_some_and(|(passed, _)| passed > 20), "{audit:?}");
+        assert_eq!(audit.particles_passed, Some(0));
+    }
+    let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+    let runs = same(&vented_bag(Method::HalfTurn), &ways);
+    assert!(runs[0].outcome.audit.through_fabric.is_some_and(|(passed, _)| passed > 20));
 }
 
 #[test]

@@ -205,6 +205,22 @@ pub fn pistons() -> Model {
 
 /// A bag that is shaken, with another pressure inside, and gas that flows into it.
 pub fn shaken_bag(method: Method) -> Model {
+    bag(method, "", "")
+}
+
+/// The same of warm and rough fabric, with pores that lead to the gas around and a vent in them that opens late.
+pub fn porous_bag(method: Method) -> Model {
+    bag(
+        method,
+        "temperature = 350.0\naccommodation = 0.3\nfriction = 0.5\n",
+        "[[vent]]\nname = \"vent\"\nfabric = \"bag\"\nface = \"upper\"\nposition = [0.05, 0.05, 0.05]\ndiameter = 0.05\n\
+         area = 0.0002\ndischarge = 0.7\nopening_pressure = 1.8e5\n\
+         [[vent]]\nname = \"pores\"\nfabric = \"bag\"\nleak_velocity = [[0.0, 0.0], [2e5, 30.0]]\n",
+    )
+}
+
+/// With more keys of its fabric, and more entries.
+fn bag(method: Method, keys: &str, more: &str) -> Model {
     let folder = tempfile::TempDir::new().expect("a folder");
     let mesh = MeshShape::Cushion { radius: 0.04, rings: 4, gap: 0.018 }.mesh([0.05, 0.05, 0.04]).expect("a cushion");
     let shake = NodeMotion::Shake { speed: 60.0, amplitude: Some(1.5e-3), seed: 3 };
@@ -216,7 +232,7 @@ pub fn shaken_bag(method: Method) -> Model {
             "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
              [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.08]\ngas = \"inside\"\n\
-             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\nmotion = \"bag.nodes\"\n\
+             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\nmotion = \"bag.nodes\"\n{keys}{more}\
              [[chamber]]\nname = \"in\"\ninside = \"bag\"\npressure = 3e5\ntemperature = 400.0\ngas = {{ air = 0.5, helium = 0.5 }}\n\
              [[chamber]]\nname = \"out\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
              [[orifice]]\nname = \"inlet\"\nposition = [0.05, 0.05, 0.04]\ndirection = [1.0, 0.0, 0.0]\narea = 0.0001\n\
@@ -231,6 +247,17 @@ pub fn shaken_bag(method: Method) -> Model {
 
 /// An elastic bag that the gas inflates, with gas around it and gas that flows into it.
 pub fn inflated_bag(method: Method) -> Model {
+    elastic_bag(method, "", "")
+}
+
+/// The same of warm, rough fabric with a vent.
+pub fn vented_bag(method: Method) -> Model {
+    let vent = "[[vent]]\nname = \"vent\"\nfabric = \"bag\"\nface = \"upper\"\narea = 0.001\ndischarge = 0.7\n";
+    elastic_bag(method, "temperature = 350.0\naccommodation = 0.3\nfriction = 0.5\n", vent)
+}
+
+/// With more keys of its fabric, and more entries.
+fn elastic_bag(method: Method, keys: &str, more: &str) -> Model {
     let folder = tempfile::TempDir::new().expect("a folder");
     let mesh = MeshShape::Cushion { radius: 0.04, rings: 4, gap: 0.018 }.mesh([0.05, 0.05, 0.04]).expect("a cushion");
     mesh.write(&folder.path().join("bag.obj"), 1.0).expect("a mesh file");
@@ -239,8 +266,8 @@ pub fn inflated_bag(method: Method) -> Model {
             "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
              [[gas]]\nname = \"helium\"\nmolar_mass = 0.004\ngamma = 1.6667\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.1, 0.08]\ngas = \"inside\"\n\
-             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n\
-             [fabric.material]\nthickness = 3e-4\ndensity = 800.0\nyoung = 1e8\npoisson = 0.3\n\
+             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n{keys}\
+             [fabric.material]\nthickness = 3e-4\ndensity = 800.0\nyoung = 1e8\npoisson = 0.3\n{more}\
              [[chamber]]\nname = \"in\"\ninside = \"bag\"\npressure = 3e5\ntemperature = 400.0\ngas = {{ air = 0.5, helium = 0.5 }}\n\
              [[chamber]]\nname = \"out\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
              [[orifice]]\nname = \"inlet\"\nposition = [0.05, 0.05, 0.04]\ndirection = [1.0, 0.0, 0.0]\narea = 0.0001\n\

@@ -183,6 +183,7 @@ fn vent(opening_pressure: f64) -> OpenVent {
     OpenVent {
         chamber: 0,
         area: 1e-4,
+        behind: None,
         vent: Vent {
             name: "vent".into(),
             wall: 0,

@@ -7,6 +7,7 @@ fn clean() -> Audit {
         particles_vented: 1_000,
         particles_inside: 19_000,
         particles_outside: 0,
+        through_fabric: None,
         particles_passed: None,
         mass_start: 0.07,
         mass_injected: 0.08,

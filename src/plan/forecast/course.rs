@@ -169,6 +169,7 @@ fn vents(scene: &Scene, measured: &Measured, group: &[usize]) -> Vec<OpenVent> {
         chamber: group[place.chamber],
         area: vent.area.unwrap_or(place.area),
         vent: vent.clone(),
+        behind: None,
     });
     open.collect()
 }

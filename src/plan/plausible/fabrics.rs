@@ -40,7 +40,7 @@ mod tests {
 
     use super::super::by_scene;
     use super::*;
-    use crate::scene::{FabricMaterial, Fixed, Membrane};
+    use crate::scene::{FabricMaterial, Fixed, Membrane, SurfaceModel};
 
     fn told(material: FabricMaterial) -> String {
         let text = include_str!("../../../scenes/box.toml");
@@ -51,6 +51,8 @@ mod tests {
             scale: 1.0,
             motion: None,
             membrane: Some(Membrane { material, reference: None, fixed: Fixed::Nothing }),
+            surface: SurfaceModel::default(),
+            parts: Vec::new(),
             external_pressure: None,
         });
         by_scene(&scene).join("\n")

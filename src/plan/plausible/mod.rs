@@ -111,8 +111,8 @@ fn of_wall(scene: &Scene, wall: &Wall) -> Option<String> {
 
 fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {
     let Some(heat) = scene.surface_model(id).heat else { return Vec::new() };
-    let own = scene.walls[id.wall].surface.heat.filter(|_| id.part.is_some());
-    let subject = format!("wall `{}`", scene.surface_name(id));
+    let own = id.part.and_then(|_| scene.walls[id.wall].surface.heat);
+    let subject = scene.surface_title(id);
     let named = |key| Named { subject: subject.clone(), key, units: scene.units };
     // What a part has from its wall is told of the wall.
     let differs = |own: Option<f64>, value: f64| own != Some(value);

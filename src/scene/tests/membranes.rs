@@ -115,3 +115,36 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
     }
     scene
 }
+
+#[test]
+fn the_scenes_with_membranes_are_read() {
+    let [teabag, cushion] = ["teabag.toml", "cushion.toml"].map(super::repository_scene);
+    for scene in [&teabag, &cushion] {
+        assert!(scene.fabrics[0].membrane.is_some() && scene.chambers[0].inside == Some(0));
+        let again = parsed(&to_toml(scene));
+        assert_eq!(&Scene { units: scene.units, ..again }, scene);
+    }
+    let vent = &cushion.vents[0];
+    assert_eq!((cushion.fabric_at(vent.wall), vent.external_pressure), (Some(0), 101_325.0));
+    assert_eq!((vent.face, &cushion.fabrics[0].parts[..]), (Some(Face::Part(0)), &["lower".to_string()][..]));
+    assert_eq!(teabag.fabric_at(0), None);
+}
+
+/// A vent on fabric is against the pressure around it at the start.
+#[test]
+fn vents_and_surfaces_of_fabric_are_read_and_written() {
+    let text =
+        in_units("SI", [1.0; 3]).replace("name = 'film'\n", "name = 'film'\nfriction = 0.5\ntemperature = 350.0\n");
+    let vents = "[[vent]]\nname = 'a'\nfabric = 'woven'\nface = 'one'\ndischarge = 0.5\n\
+                 [[vent]]\nname = 'b'\nfabric = 'woven'\nface = 'other'\nposition = [0.1, 0.0, 0.0]\ndiameter = 0.1\n\
+                 leak_velocity = [[0.0, 0.0], [1e5, 2.0]]\nopening_pressure = 3e4\n";
+    let scene = parsed(&(text + vents));
+    assert_eq!(parsed(&to_toml(&scene)), scene);
+    assert_eq!(scene.vents[1].face, Some(Face::Part(1)));
+    assert_eq!(scene.vents[0].external_pressure, 101_325.0);
+    let film = scene.surface_ids().nth(2).expect("a wall, then fabrics");
+    assert_eq!((scene.surface_name(film), scene.surface_model(film).friction), ("film".to_string(), 0.5));
+    assert!(scene.has_heat() && !scene.has_mirrors_only());
+    // Columns and reports name it.
+    assert_eq!(scene.heated_surfaces().map(|(id, _)| scene.surface_title(id)).collect::<Vec<_>>(), ["fabric `film`"]);
+}

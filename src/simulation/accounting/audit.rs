@@ -266,9 +266,11 @@ impl Account {
         self.counted.left += left(tallies);
         self.counted.particles = interval.particles - self.counted.left;
         self.counted.clipped.resize(tallies.vents.len(), [0; 2]);
-        for (counted, vent) in self.counted.clipped.iter_mut().zip(&tallies.vents) {
-            counted[0] += vent.left.iter().sum::<i64>().unsigned_abs();
-            counted[1] += vent.clipped.unsigned_abs();
+        for sums in [&tallies.vents, &tallies.passages] {
+            for (counted, vent) in self.counted.clipped.iter_mut().zip(sums) {
+                counted[0] += vent.left.iter().sum::<i64>().unsigned_abs();
+                counted[1] += vent.clipped.unsigned_abs();
+            }
         }
         self.counted.steps += steps;
         // A pair that a wall parted was settled without a collision.
@@ -349,6 +351,7 @@ impl Account {
             particles_inside: end.number - outside,
             particles_outside: outside,
             particles_passed: passed,
+            through_fabric: averages.total_through_fabric().map(|(particles, mass, _)| (particles, mass)),
             mass_start: self.counted.start.mass,
             mass_injected: entered.mass - before.mass,
             mass_vented,
@@ -383,7 +386,7 @@ impl Account {
     }
 }
 
-/// Particles that left in an interval.
+/// Particles that left the run in an interval.
 fn left(tallies: &Tallies) -> u64 {
     tallies.vents.iter().flat_map(|vent| vent.left).sum::<i64>().unsigned_abs()
 }

@@ -136,7 +136,7 @@ impl Averages {
             patches: vec![SurfaceSum::default(); patches],
             received: vec![[0; 3]; patches],
             heat: vec![[0; 2]; layout.surface_models],
-            passed: vec![[Passed::default(); 2]; layout.vents],
+            passed: vec![[Passed::default(); 2]; layout.vents.len()],
             works: vec![[0; 2]; layout.motions + layout.fabrics],
             room: if layout.motions + layout.fabrics > 0 { vec![0.0; zones] } else { Vec::new() },
             layout,
@@ -193,6 +193,12 @@ impl Averages {
         for ((passed, sum), wanted) in self.passed.iter_mut().zip(&tallies.vents).zip(wanted) {
             for total in passed {
                 total.add(sum, wanted);
+            }
+        }
+        // What a vent should have passed stands with what left.
+        for (passed, sum) in self.passed.iter_mut().zip(&tallies.passages) {
+            for total in passed {
+                total.add(sum, &VentTarget::default());
             }
         }
     }
@@ -285,7 +291,9 @@ impl Averages {
 
     fn zone(&self, zone: usize) -> ZoneState {
         let gases = self.gases.len();
-        let volume = self.room.get(zone).map_or(self.layout.volumes[zone], |room| room / self.weight);
+        // Of fabric at rest no room is told.
+        let room = self.room.get(zone).filter(|room| **room > 0.0);
+        let volume = room.map_or(self.layout.volumes[zone], |room| room / self.weight);
         let (mut mass, mut kinetic, mut number) = (0.0, 0.0, 0.0);
         let mut momentum = [0.0; 3];
         let mut particles = Vec::with_capacity(gases);
@@ -388,12 +396,24 @@ impl Averages {
         self.heat.iter().map(|heat| heat[1]).sum::<i128>() as f64 * self.energy_unit()
     }
 
-    /// All that has left through vents since the start: particles, kg, J.
+    /// All that has left the run through vents since the start: particles, kg, J.
     pub fn total_vented(&self) -> (u64, f64, f64) {
-        let number = self.passed.iter().flat_map(|[_, all]| all.left).sum::<i64>();
+        self.total_passed(false)
+    }
+
+    /// All that has passed vents to other gas of the run since the start; none where no vent leads there.
+    pub fn total_through_fabric(&self) -> Option<(u64, f64, f64)> {
+        self.layout.vents.contains(&true).then(|| self.total_passed(true))
+    }
+
+    fn total_passed(&self, to_gas: bool) -> (u64, f64, f64) {
+        let own = || {
+            self.passed.iter().zip(&self.layout.vents).filter(|(_, leads)| **leads == to_gas).map(|([_, all], _)| all)
+        };
+        let number = own().flat_map(|all| all.left).sum::<i64>();
         // (The sum of nothing is -0.)
-        let mass = self.passed.iter().map(|[_, all]| self.mass(all)).sum::<f64>() + 0.0;
-        let energy = self.passed.iter().map(|[_, all]| all.energy).sum::<i128>() as f64;
+        let mass = own().map(|all| self.mass(all)).sum::<f64>() + 0.0;
+        let energy = own().map(|all| all.energy).sum::<i128>() as f64;
         (number.unsigned_abs(), mass, energy * self.energy_unit())
     }
 

@@ -128,7 +128,8 @@ pub struct Layout {
     /// The placed surface models of each wall that exchanges heat, and its area, m2.
     pub walls: Vec<(Vec<usize>, f64)>,
     pub surface_models: usize,
-    pub vents: usize,
+    /// Of each vent, whether it leads to other gas of the run.
+    pub vents: Vec<bool>,
     pub motions: usize,
     pub fabrics: usize,
     /// Of walls: behind them are two of each surface that deforms, the outer side and the inner.

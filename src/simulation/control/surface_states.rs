@@ -8,14 +8,17 @@
 //! or less than its beta would let out of a gas at rest the vent lately let out of the gas before it, which flows. Without the
 //! latter a vent would for ever owe what makes up for it, some intervals' flow in proportion.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
-use crate::scene::{GAS_CONSTANT, HeatTransfer};
+use crate::scene::{GAS_CONSTANT, HeatTransfer, Vent};
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::model::build::Model;
+use crate::simulation::model::vent_places::Beyond;
 use crate::subdomain::{GpuSurfaceModel, GpuVent, Scales, Tables, Tallies, ZoneSum};
 
 /// A vent pays what it owes within so many intervals of its flow, or while so many particles leave.
@@ -175,15 +178,17 @@ impl<'a> SurfaceStates<'a> {
         self.state.latest.vents.resize(model.scene.vents.len(), VentSeen::default());
         let wanted: Vec<VentTarget> =
             (0..model.scene.vents.len()).map(|index| self.flow(&self.state.latest, index, start, end).0).collect();
-        for (index, vent) in model.scene.vents.iter().enumerate() {
+        for (index, target) in wanted.iter().enumerate() {
             let mut seen = self.state.latest.vents[index];
             let place = &model.surface_models.vents[index];
             let gas = self.local(&self.state.latest, place.chamber);
-            seen.open = opens(vent, seen.open, gas.map_or(0.0, |gas| gas.pressure));
-            let (mass, left) = (wanted[index].mass, self.left(tallies, index));
+            let vent = self.vent_against(&self.state.latest, index);
+            seen.open = opens(&vent, seen.open, gas.map_or(0.0, |gas| gas.pressure));
+            let (mass, left) = (target.mass, self.left(tallies, index));
             let most = MOST_RAISED * (PAID_IN * mass).max(PAID_BY * self.scales.reference_mass);
             seen.owed = (seen.owed + mass - left).clamp(-most, most);
-            let beta = vents.iter().find(|known| known.index as usize == index).map_or(0.0, |known| known.beta.into());
+            let tally = self.tally_of(index);
+            let beta = vents.iter().find(|known| known.index == tally).map_or(0.0, |known| known.beta.into());
             let unit = |gas: LocalGas| 0.5 * gas.pressure * gas.molar_mass * place.area * (end - start);
             seen.learn(left, beta * gas.map_or(0.0, unit) / self.heaviest(), self.scales.reference_mass);
             self.state.latest.vents[index] = seen;
@@ -197,9 +202,22 @@ impl<'a> SurfaceStates<'a> {
         self.state.current = self.see(at_start, window).0;
     }
 
-    /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last.
-    pub fn pressure_before(&self, vent: usize) -> f64 {
-        self.local(&self.state.latest, self.model.surface_models.vents[vent].chamber).map_or(0.0, |gas| gas.pressure)
+    /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last; before fabric with gas behind it that
+    /// which drives the flow, above the vent's external pressure.
+    pub fn pressure_before(&self, index: usize) -> f64 {
+        let seen = &self.state.latest;
+        let pressure = |chamber| self.local(seen, chamber).map_or(0.0, |gas| gas.pressure);
+        let vent = &self.model.scene.vents[index];
+        pressure(self.model.surface_models.vents[index].chamber) + vent.external_pressure
+            - self.vent_against(seen, index).external_pressure
+    }
+
+    /// A vent of the scene against the gas that is behind it.
+    fn vent_against(&self, seen: &SeenGas, index: usize) -> Cow<'a, Vent> {
+        let vent = &self.model.scene.vents[index];
+        let Beyond::Gas(chamber) = self.model.surface_models.vents[index].beyond else { return Cow::Borrowed(vent) };
+        let behind = chamber.and_then(|chamber| self.local(seen, chamber)).map_or(0.0, |gas| gas.pressure);
+        Cow::Owned(Vent { external_pressure: behind, ..vent.clone() })
     }
 
     /// Of each vent, whether it has opened.
@@ -242,10 +260,21 @@ impl<'a> SurfaceStates<'a> {
         LocalGas::new(&self.species, &gas.moles, gas.temperature)
     }
 
-    /// Mass that has left through a vent, kg.
+    /// The number of a vent's tally on the device.
+    fn tally_of(&self, vent: usize) -> u32 {
+        let first = if self.passes(vent) { self.model.scene.vents.len() } else { 0 };
+        (first + vent) as u32
+    }
+
+    fn passes(&self, vent: usize) -> bool {
+        self.model.surface_models.vents[vent].beyond != Beyond::Nothing
+    }
+
+    /// Mass that has left its side through a vent, kg.
     fn left(&self, tallies: &Tallies, vent: usize) -> f64 {
         let plan = &self.model.plan;
-        let left = tallies.vents.get(vent).map(|sum| sum.left).unwrap_or_default();
+        let sums = if self.passes(vent) { &tallies.passages } else { &tallies.vents };
+        let left = sums.get(vent).map(|sum| sum.left).unwrap_or_default();
         plan.gases.iter().zip(left).map(|(gas, n)| gas.molar_mass * plan.moles_per_particle * n as f64).sum()
     }
 
@@ -263,16 +292,18 @@ impl<'a> SurfaceStates<'a> {
             let first_vent = tables.vents.len() as u32;
             for &vent in &placed.vents {
                 let (center, radius2) = self.disc(vent);
-                let (beta, index) = (betas[vent] as f32, vent as u32);
-                tables.vents.push(GpuVent { center, radius2, beta, index, ..GpuVent::default() });
+                let (beta, index, passes) = (betas[vent] as f32, self.tally_of(vent), u32::from(self.passes(vent)));
+                tables.vents.push(GpuVent { center, radius2, beta, index, passes, pad: 0 });
             }
             let surface = model.scene.surface_model(placed.surface);
             let (mut thermal, mut share) = (0.0, 0.0);
             if let Some(heat) = &surface.heat {
                 thermal = GAS_CONSTANT * heat.temperature / heaviest;
-                share = match self.state.current.chambers.get(placed.chamber) {
-                    Some(gas) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
-                    None => 0.0,
+                let gas = placed.chamber.and_then(|chamber| self.state.current.chambers.get(chamber));
+                share = match (gas, heat.transfer) {
+                    (Some(gas), _) => accommodation(heat, &self.species, &gas.moles, gas.temperature),
+                    (None, HeatTransfer::Accommodation(share)) if placed.chamber.is_none() => share,
+                    (None, _) => 0.0,
                 };
                 // In an empty chamber any coefficient is too large, and nothing hits the wall.
                 if share.is_finite() && matches!(heat.transfer, HeatTransfer::Coefficient(_)) {
@@ -286,29 +317,31 @@ impl<'a> SurfaceStates<'a> {
                 first_vent,
                 end_vent: tables.vents.len() as u32,
                 // Of zones the first is everything.
-                zone: placed.next.map_or(0, |_| placed.chamber as u32 + 1),
+                zone: placed.next.and(placed.chamber).map_or(0, |chamber| chamber as u32 + 1),
                 next: placed.next.unwrap_or(0) as u32,
             });
         }
         tables
     }
 
-    /// Centre in quanta and the square of the radius, m2, of a vent's place.
-    fn disc(&self, vent: usize) -> ([u32; 3], f32) {
+    /// Centre in quanta and the square of the radius, m2, of a vent's place. (Of fabric it is a set of triangles, whose surface model no
+    /// other has.)
+    fn disc(&self, index: usize) -> ([u32; 3], f32) {
         let grid = &self.model.plan.grid;
-        match &self.model.scene.vents[vent].disc {
-            None => ([0; 3], -1.0),
-            Some(disc) => {
+        let vent = &self.model.scene.vents[index];
+        match &vent.disc {
+            Some(disc) if self.model.scene.fabric_at(vent.wall).is_none() => {
                 let quanta = |axis: usize| ((disc.center[axis] - grid.origin[axis]) / grid.quantum()).round() as i64;
                 (std::array::from_fn(|axis| quanta(axis) as u32), (0.25 * disc.diameter * disc.diameter) as f32)
             }
+            _ => ([0; 3], -1.0),
         }
     }
 
     /// What a vent should pass of the gas of a state, and its beta for the reference mass, s/m.
     fn flow(&self, state: &SeenGas, index: usize, start: f64, end: f64) -> (VentTarget, f64) {
         let model = self.model;
-        let (vent, place) = (&model.scene.vents[index], &model.surface_models.vents[index]);
+        let (vent, place) = (self.vent_against(state, index), &model.surface_models.vents[index]);
         let Some(gas) = self.local(state, place.chamber) else {
             return (VentTarget::default(), 0.0);
         };
@@ -319,7 +352,7 @@ impl<'a> SurfaceStates<'a> {
         if !seen.open {
             return (VentTarget { mass: 0.0, isentropic }, 0.0);
         }
-        let flux = flux(vent, &gas, 0.5 * (start + end));
+        let flux = flux(&vent, &gas, 0.5 * (start + end));
         let wanted = VentTarget { mass: over * flux, isentropic };
         let within = (PAID_IN * wanted.mass).max(PAID_BY * self.scales.reference_mass);
         let raised = (1.0 + seen.owed / within) / seen.eagerness(self.scales.reference_mass);

@@ -20,7 +20,8 @@ const NEAR: f64 = 0.5;
 pub fn backed_vents(scene: &Scene, vessel: &Vessel, places: &[VentPlace]) -> Vec<[usize; 2]> {
     let mut found = Vec::new();
     for (index, (vent, place)) in scene.vents.iter().zip(places).enumerate() {
-        let wall = &scene.walls[vent.wall];
+        // What is around fabric is no mistake.
+        let Some(wall) = scene.walls.get(vent.wall) else { continue };
         let deep = match wall.shape {
             _ if wall.gas == GasSide::Inside => continue,
             Shape::Box { thickness: Some(thickness), .. } | Shape::Plane { thickness, .. } => 1.01 * thickness,

@@ -67,6 +67,7 @@ impl Model {
         }
         let Survey { vessel, surface_models, moving, fabric, probe_volumes, .. } = seen;
         let orifices_inside = orifices_inside(&scene, &vessel);
+        refuse_outer_orifices(&scene, &orifices_inside)?;
         Ok(Model { scene, vessel, plan, surface_models, moving, fabric, orifices_inside, probe_volumes, choice })
     }
 
@@ -142,7 +143,7 @@ impl Survey {
         vessel.bags = fabric.bags(0.0)?;
         refuse_open_chambers(scene, &vessel)?;
         check_orifices(scene, &vessel)?;
-        let surface_models = SurfaceModels::new(scene, &vessel)?;
+        let surface_models = SurfaceModels::new(scene, &vessel, &fabric)?;
         let mut moving = Moving::new(scene, &vessel)?;
         moving.deform(scene, &vessel, &fabric)?;
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
@@ -175,6 +176,21 @@ fn orifices_inside(scene: &Scene, vessel: &Vessel) -> Vec<bool> {
     let before = |orifice: &Orifice| along(orifice.position, orifice.direction, 1e-3 * orifice.area.sqrt());
     let inside = |point| vessel.bags.iter().flatten().any(|bag| bag.contains(point));
     scene.orifices.iter().map(|orifice| inside(before(orifice))).collect()
+}
+
+/// Where a pressure is in place of gas none flows in.
+fn refuse_outer_orifices(scene: &Scene, inside: &[bool]) -> Result<(), ModelError> {
+    let Some(fabric) = scene.fabrics.iter().find(|fabric| fabric.external_pressure.is_some()) else { return Ok(()) };
+    match scene.orifices.iter().zip(inside).find(|(_, inside)| !**inside) {
+        None => Ok(()),
+        Some((orifice, _)) => Err(ModelError::Fabric {
+            fabric: fabric.name.clone(),
+            problem: format!(
+                "orifice \"{}\" lies outside of fabric, where the `external_pressure` is in place of gas",
+                orifice.name
+            ),
+        }),
+    }
 }
 
 /// What is inside of an open surface is not known.

@@ -36,6 +36,9 @@ pub struct Surface {
     pub triangles: Range<usize>,
     /// It encloses a space; its triangles are counter-clockwise seen from outside.
     pub closed: bool,
+    /// The part of the mesh that each of its triangles is of, by its place among the names.
+    pub parts: Vec<Option<u32>>,
+    pub names: Vec<String>,
 }
 
 /// How the nodes of all surfaces move.
@@ -145,6 +148,8 @@ impl Surfaces {
                 name: fabric.name.clone(),
                 triangles: first..triangles.len(),
                 closed: read.mesh.is_closed(),
+                parts: read.mesh.parts,
+                names: read.mesh.names,
             });
             frames.push(read.frames);
         }
@@ -219,16 +224,18 @@ impl Surfaces {
 
     /// What the device knows of them; their works are tallied behind those of so many walls that move, the sides of each, the outer
     /// and the inner, behind so many patches of walls.
-    pub fn for_device(&self, grid: &Grid, motions: usize, patches: usize) -> Fabric {
+    /// `models` are those of each triangle ([`SurfaceModels::of_sheet`](super::surface_models::SurfaceModels)), empty if all are mirrors.
+    pub fn for_device(&self, grid: &Grid, motions: usize, patches: usize, models: &[u32]) -> Fabric {
         let mut sheets = Vec::with_capacity(self.triangles.len());
         for (index, surface) in self.all.iter().enumerate() {
-            sheets.extend(self.triangles[surface.triangles.clone()].iter().map(|&[a, b, c]| GpuSheet {
+            let own = surface.triangles.clone().map(|triangle| (triangle, self.triangles[triangle]));
+            sheets.extend(own.map(|(triangle, [a, b, c])| GpuSheet {
                 a,
                 b,
                 c,
                 closed: u32::from(surface.closed),
                 surface: (patches + 2 * index) as u32,
-                surface_model: NOBODY,
+                surface_model: models.get(triangle).copied().unwrap_or(NOBODY),
                 work: (motions + index) as u32,
                 pad: 0,
             }));
@@ -326,11 +333,6 @@ struct Read {
 
 fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
     let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
-    if fabric.external_pressure.is_some() && fabric.membrane.is_none() {
-        return Err(refused(
-            "it has an `external_pressure`, and no `material`: where its nodes are no pressure changes".into(),
-        ));
-    }
     let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
     mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);
     if mesh.triangles.is_empty() {
@@ -351,6 +353,11 @@ fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelE
             frames.node_count(),
             mesh.nodes.len()
         )));
+    }
+    if fabric.external_pressure.is_some() && !mesh.is_closed() {
+        return Err(refused(
+            "it has an `external_pressure`, and its surface is open: an open sheet has no outside".into(),
+        ));
     }
     let mut notes = Vec::new();
     for note in frames.notes(&mesh, FASTEST_NODE).map_err(|error| refused(error.to_string()))? {

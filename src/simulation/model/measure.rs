@@ -59,7 +59,11 @@ pub fn measured(
             .iter()
             .map(|place| MeasuredVent { chamber: place.chamber, area: place.area })
             .collect(),
-        modelled_surfaces: surface_models.placed.iter().map(|placed| (placed.surface, placed.chamber)).collect(),
+        modelled_surfaces: surface_models
+            .placed
+            .iter()
+            .filter_map(|placed| Some((placed.surface, placed.chamber?)))
+            .collect(),
         walls: vessel.walls.iter().enumerate().map(|(index, wall)| measured_wall(vessel, index, wall)).collect(),
     }
 }

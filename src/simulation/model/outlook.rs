@@ -36,7 +36,9 @@ pub fn outlook(scene: &Scene, vessel: &Vessel, measured: &Measured, surface_mode
         probes: probes.collect(),
         borders: measured.touching.clone(),
         heated: heated
-            .map(|placed| SeenHeat { surface: placed.surface, chamber: placed.chamber, area: placed.area })
+            .filter_map(|placed| {
+                Some(SeenHeat { surface: placed.surface, chamber: placed.chamber?, area: placed.area })
+            })
             .collect(),
         modelled: Vec::new(),
     }

@@ -2,10 +2,13 @@
 //! chamber with the same vents, so that one state of the gas and one table entry serve all of it.
 
 use super::error::ModelError;
+use super::fabric::Surfaces;
+use super::fabric_surfaces::OnFabric;
 use super::fronts::Front;
-use super::vent_places::{VentPlace, area, corners, on_face, places};
+use super::placed_model::PlacedModel;
+use super::vent_places::{Beyond, VentPlace, area, corners, on_face, places};
 use crate::geometry::{Triangle, Vessel};
-use crate::scene::{Disc, Scene, SurfaceId};
+use crate::scene::{Disc, Scene};
 
 const NOBODY: u32 = u32::MAX;
 
@@ -14,34 +17,27 @@ pub struct SurfaceModels {
     /// The placed model of each triangle of the vessel, the first of several where chambers share it, or `u32::MAX` for a mirror; empty
     /// if all are.
     pub of_triangle: Vec<u32>,
+    /// The same of each triangle of fabric: the first of two, that of the side which its normal points to.
+    pub of_sheet: Vec<u32>,
     pub placed: Vec<PlacedModel>,
     /// Of the scene's vents.
     pub vents: Vec<VentPlace>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlacedModel {
-    pub surface: SurfaceId,
-    pub chamber: usize,
-    /// m2.
-    pub area: f64,
-    /// Indices of the scene's vents that lie on it, at least in part.
-    pub vents: Vec<usize>,
-    /// Of triangles that several chambers share: the model before the gas of the next of them.
-    pub next: Option<usize>,
-    shared: bool,
-}
-
 impl SurfaceModels {
     /// # Errors
     /// If a vent has no place, or none can say which chamber it empties.
-    pub fn new(scene: &Scene, vessel: &Vessel) -> Result<SurfaceModels, ModelError> {
+    pub fn new(scene: &Scene, vessel: &Vessel, fabric: &Surfaces) -> Result<SurfaceModels, ModelError> {
         if scene.has_mirrors_only() && scene.vents.is_empty() {
             return Ok(SurfaceModels::default());
         }
         let fronts = fronts(scene, vessel);
         let places = places(scene, vessel, &fronts)?;
-        let mut models = SurfaceModels { of_triangle: Vec::new(), placed: Vec::new(), vents: places };
+        let mut models = SurfaceModels::default();
+        // While walls are placed theirs are known alone; those of fabric are on no wall.
+        let unplaced = VentPlace { chamber: usize::MAX, area: 0.0, beyond: Beyond::Nothing };
+        models.vents = vec![unplaced; scene.vents.len()];
+        places.into_iter().for_each(|(index, place)| models.vents[index] = place);
         for (triangle, front) in vessel.triangles.iter().zip(&fronts) {
             let index = match front {
                 None => NOBODY,
@@ -49,6 +45,10 @@ impl SurfaceModels {
             };
             models.of_triangle.push(index);
         }
+        let on_fabric = OnFabric::new(scene, fabric, models.placed.len())?;
+        models.placed.extend(on_fabric.placed);
+        models.of_sheet = on_fabric.of_sheet;
+        on_fabric.vents.into_iter().for_each(|(index, place)| models.vents[index] = place);
         Ok(models)
     }
 
@@ -71,7 +71,8 @@ impl SurfaceModels {
             let end = first + parts.len();
             let own = self.placed.get(first..end).unwrap_or_default();
             let same = |(model, (chamber, _, vents)): (&PlacedModel, &(usize, f64, Vec<usize>))| {
-                (model.surface, model.chamber, model.shared) == (surface, *chamber, shared) && model.vents == *vents
+                (model.surface, model.chamber, model.shared) == (surface, Some(*chamber), shared)
+                    && model.vents == *vents
             };
             own.len() == parts.len() && own.iter().zip(&parts).all(same) && own[parts.len() - 1].next.is_none()
         };
@@ -82,11 +83,16 @@ impl SurfaceModels {
             if known.is_none() {
                 let next = (k + 1 < parts.len()).then_some(first + k + 1);
                 let vents = vents.clone();
-                self.placed.push(PlacedModel { surface, chamber: *chamber, area: 0.0, vents, next, shared });
+                self.placed.push(PlacedModel { surface, chamber: Some(*chamber), area: 0.0, vents, next, shared });
             }
             self.placed[first + k].area += share * whole;
         }
         first as u32
+    }
+
+    /// Whether some vent leads to other gas.
+    pub fn has_passages(&self) -> bool {
+        self.vents.iter().any(|place| place.beyond != Beyond::Nothing)
     }
 
     /// Entries of the device's table of vents: a vent that lies on several placed models has several.
@@ -179,7 +185,7 @@ mod tests {
         let heated = model(&one, "temperature = 400.0\n").unwrap().surface_models;
         assert_eq!(
             heated.placed.iter().map(|placed| (placed.surface.wall, placed.chamber)).collect::<Vec<_>>(),
-            [(0, 1), (1, 0)]
+            [(0, Some(1)), (1, Some(0))]
         );
     }
 
@@ -209,9 +215,13 @@ mod tests {
             let place = found.vents[0];
             assert!(place.chamber == chamber && (place.area / full - 1.0).abs() < 2e-3, "{z}: {place:?}");
             // What the other chamber has of the face is a mirror.
-            let with_vents: Vec<usize> =
+            let with_vents: Vec<Option<usize>> =
                 found.placed.iter().filter(|placed| !placed.vents.is_empty()).map(|placed| placed.chamber).collect();
-            assert!(with_vents.iter().all(|&own| own == chamber) && !with_vents.is_empty(), "{z}: {:?}", found.placed);
+            assert!(
+                with_vents.iter().all(|&own| own == Some(chamber)) && !with_vents.is_empty(),
+                "{z}: {:?}",
+                found.placed
+            );
             let other = disc(z, &format!("chamber = \"{}\"", ["high", "low"][chamber]));
             assert!(matches!(other, Err(ModelError::VentElsewhere { .. })), "{z}");
         }
@@ -227,7 +237,7 @@ mod tests {
             assert!((share - expected).abs() < 2e-3, "{share} {expected}");
         }
         let of = |chamber: usize| {
-            let own = found.surface_models.placed.iter().filter(|placed| placed.chamber == chamber);
+            let own = found.surface_models.placed.iter().filter(|placed| placed.chamber == Some(chamber));
             own.map(|placed| placed.area).sum::<f64>()
         };
         let sides = 2.0 * (0.25 + 0.12);

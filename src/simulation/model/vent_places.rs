@@ -17,8 +17,18 @@ const LEAST: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VentPlace {
     pub chamber: usize,
-    /// m2 of wall.
+    /// m2 of wall, or of fabric at the start.
     pub area: f64,
+    pub beyond: Beyond,
+}
+
+/// Where gas goes that passes a vent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Beyond {
+    /// Out of the run.
+    Nothing,
+    /// To the other side of fabric: to the gas of a chamber, or to space that was empty at the start.
+    Gas(Option<usize>),
 }
 
 pub fn on_face(vent: &Vent, wall: usize, face: Option<Face>) -> bool {
@@ -33,18 +43,20 @@ pub fn area([a, b, c]: Corners) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
-/// The chamber and the area of each vent's place. Where places overlap the earlier vent has the wall.
-pub fn places(scene: &Scene, vessel: &Vessel, fronts: &[Option<Front>]) -> Result<Vec<VentPlace>, ModelError> {
-    let place = |(vent, areas): (&Vent, &Vec<f64>)| -> Result<VentPlace, ModelError> {
+/// The chamber and the area of the place of each vent on a wall. Where places overlap the earlier vent has the wall.
+pub fn places(scene: &Scene, vessel: &Vessel, fronts: &[Option<Front>]) -> Result<Vec<(usize, VentPlace)>, ModelError> {
+    let place = |(index, (vent, areas)): (usize, (&Vent, &Vec<f64>))| -> Result<(usize, VentPlace), ModelError> {
         match touched(areas)[..] {
-            [chamber] => Ok(VentPlace { chamber, area: areas[chamber] }),
+            [chamber] => Ok((index, VentPlace { chamber, area: areas[chamber], beyond: Beyond::Nothing })),
             [] => Err(without_gas(scene, vessel, fronts, vent)),
             ref several => {
                 Err(ModelError::VentOfSeveral { vent: vent.name.clone(), chambers: names(&scene.chambers, several) })
             }
         }
     };
-    scene.vents.iter().zip(&areas(scene, vessel, fronts, &scene.vents)).map(place).collect()
+    let all = areas(scene, vessel, fronts, &scene.vents);
+    let on_walls = |(_, (vent, _)): &(usize, (&Vent, &Vec<f64>))| scene.fabric_at(vent.wall).is_none();
+    scene.vents.iter().zip(&all).enumerate().filter(on_walls).map(place).collect()
 }
 
 /// The chambers of a place, by its areas.

@@ -6,6 +6,7 @@ use crate::simulation::accounting::row::Layout;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::patches::patches;
+use crate::simulation::model::vent_places::Beyond;
 use crate::simulation::parallel::initial_particles::find_room;
 use crate::subdomain::{CellTable, Fabric, GpuZone, Patches, Walls, zone_inside, zone_of};
 
@@ -49,13 +50,19 @@ impl HostSetup {
             surfaces: patches.len() + 2 * model.fabric.all.len(),
             surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
+            passages: if model.surface_models.has_passages() { model.scene.vents.len() } else { 0 },
             motions: model.moving.count(),
             fabrics: model.fabric.all.len(),
             membrane: model.fabric.is_elastic(),
         };
         Ok(HostSetup {
             walls,
-            fabric: model.fabric.for_device(&plan.grid, model.moving.count(), patches.len()),
+            fabric: model.fabric.for_device(
+                &plan.grid,
+                model.moving.count(),
+                patches.len(),
+                &model.surface_models.of_sheet,
+            ),
             cells,
             zones,
             patches: counted,
@@ -146,7 +153,7 @@ fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -
     });
     Layout {
         walls: walls.collect(),
-        vents: scene.vents.len(),
+        vents: surface_models.vents.iter().map(|place| place.beyond != Beyond::Nothing).collect(),
         surface_models: surface_models.placed.len(),
         motions: moving.count(),
         fabrics: model.fabric.all.len(),

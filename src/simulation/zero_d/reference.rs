@@ -9,6 +9,7 @@ use crate::plan::{OpeningPlan, Plan};
 use crate::scene::{Course, Curve, Method, Opening, Scene, SurfaceId};
 use crate::simulation::model::build::Model;
 use crate::simulation::model::places::chamber_of;
+use crate::simulation::model::vent_places::Beyond;
 
 /// The reference states of the chambers at `times` (s, ascending); outer index time.
 pub fn reference(model: &Model, times: &[f64]) -> Vec<Vec<State>> {
@@ -79,15 +80,15 @@ fn volume(model: &Model) -> ControlVolume {
 
 /// The scene's surfaces that the heat of [`Lost`] went to.
 pub fn heated_walls(model: &Model) -> Vec<SurfaceId> {
-    let surface_models = model.surface_models.placed.iter().map(|placed| placed.surface);
-    surface_models.filter(|&surface| model.scene.surface_model(surface).heat.is_some()).collect()
+    let with_gas = model.surface_models.placed.iter().filter(|placed| placed.chamber.is_some());
+    with_gas.map(|placed| placed.surface).filter(|&surface| model.scene.surface_model(surface).heat.is_some()).collect()
 }
 
 fn walls(model: &Model) -> Vec<HeatedWall> {
     let surface_models = model.surface_models.placed.iter();
     let heated = surface_models.filter_map(|placed| {
         let heat = model.scene.surface_model(placed.surface).heat?;
-        Some(HeatedWall { chamber: placed.chamber, area: placed.area, heat })
+        Some(HeatedWall { chamber: placed.chamber?, area: placed.area, heat })
     });
     heated.collect()
 }
@@ -98,6 +99,10 @@ fn vents(model: &Model) -> Vec<OpenVent> {
         chamber: place.chamber,
         area: vent.area.unwrap_or(place.area),
         vent: vent.clone(),
+        behind: match place.beyond {
+            Beyond::Gas(chamber) => chamber,
+            Beyond::Nothing => None,
+        },
     });
     open.collect()
 }

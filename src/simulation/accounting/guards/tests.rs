@@ -13,6 +13,7 @@ fn model() -> Model {
 
 fn tallies(lost: u32, sampled: u32, blocks: Vec<BlockSum>) -> Tallies {
     Tallies {
+        passages: Vec::new(),
         counters: Counters { lost, sampled, ..Counters::default() },
         zones: Vec::new(),
         surfaces: Vec::new(),

@@ -19,6 +19,7 @@ fn owed(eager: f64, intervals: usize) -> f64 {
         let mut of_gas = [0; 16];
         of_gas[0] = left;
         Tallies {
+            passages: Vec::new(),
             counters: Counters::default(),
             zones: vec![zone; 2],
             surfaces: Vec::new(),

@@ -134,6 +134,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             surfaces: patches.len(),
             surface_models: model.surface_models.placed.len(),
             vents: model.scene.vents.len(),
+            passages: 0,
             motions: model.moving.count(),
             fabrics: 0,
             membrane: false,
