@@ -93,6 +93,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
     let chambers = chambers(scene, measured, population.initial);
     let decided = Decided {
         method,
+        moles_per_particle: population.moles_per_particle,
         particles,
         number_density,
         resolution: &resolution,

@@ -56,6 +56,8 @@ pub enum Quantity {
     Facets,
     /// How thick a body is, or how wide a gap that faces gas, over the longest side of the vessel.
     Thickness,
+    /// The mass of a particle over that of the lightest node of elastic fabric.
+    NodeMass,
 }
 
 impl Quantity {
@@ -75,6 +77,7 @@ impl Quantity {
             Quantity::FastParticles => "share of particles that fly more than a cell",
             Quantity::CellParticles => "particles in a collision cell",
             Quantity::Thickness => "thickness over the vessel's longest side",
+            Quantity::NodeMass => "mass of a particle over that of the lightest node",
             Quantity::Halvings => "halvings of the step left",
             Quantity::EnergyDrift => "drift of the energy",
             Quantity::ClippedHits => "share of clipped hits",
@@ -177,6 +180,8 @@ pub const LIMITS: &[Limit] = &[
     limit_of(Quantity::Gap, None, AtLeast(1.0), "what lies across the smallest passage is not resolved"),
     // Rounding leaves particles up to 1e-6 of it behind a wall, on either side (`TOLERANCE` of `src/subdomain/walls.rs`).
     limit_of(Quantity::Thickness, None, AtLeast(2e-6), "positions are too coarse for it, and gas may pass through"),
+    // Hits make nodes as fast as c0 sqrt(m_p/M).
+    limit_of(Quantity::NodeMass, None, AtMost(1.5e-3), "hits shake the fabric, which ripples and becomes shorter"),
     // Measured in shock tubes of 40,000 particles (map `density-ratio`): what the thin gas feels is .96 +- .04 of the exact push
     // at .12, .92 +- .04 at .34 and .78 +- .05 at 1.1 (`closest-approach`); .91, .88 and .83 (`cell`).
     limit_of(Quantity::ThinGas, None, AtMost(0.2), "fronts that run into it are blurred, and push it too weakly"),
@@ -328,6 +333,7 @@ mod tests {
             (Quantity::WallSpeed, 17),
             (Quantity::CellParticles, 19),
             (Quantity::Thickness, 21),
+            (Quantity::NodeMass, 22),
         ];
         for (quantity, number) in numbered {
             assert_eq!(quantity as u32, number, "{quantity:?}");

@@ -60,6 +60,8 @@ pub struct Measured {
     pub split_chambers: Vec<SplitChamber>,
     /// Orifices with a wall right before them.
     pub facing_orifices: Vec<FacingOrifice>,
+    /// kg, the lightest node of elastic fabric that is free, where there is any.
+    pub lightest_node: Option<f64>,
 }
 
 impl Measured {

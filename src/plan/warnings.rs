@@ -47,6 +47,7 @@ const MILLIMETRES: (f64, &str) = (1e-3, "mm");
 /// What has been decided so far.
 pub struct Decided<'a> {
     pub method: Method,
+    pub moles_per_particle: f64,
     pub particles: u64,
     /// Particles per m3 at the end.
     pub number_density: f64,
@@ -88,6 +89,11 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
             "no gas is in its region: move it into the gas, in the units of the scene"
         };
         table(Quantity::ProbeParticles, &format!("probe `{}` at the end of the run", probe.name), count, remedy)
+    }));
+    let heaviest = scene.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max) * decided.moles_per_particle;
+    found.extend(measured.lightest_node.map(|node| {
+        let remedy = "more `particles`, or a mesh of larger triangles";
+        table(Quantity::NodeMass, "elastic fabric", heaviest / node, remedy)
     }));
     found.push(long_steps(decided));
     found.push(busy_walls(measured, decided));

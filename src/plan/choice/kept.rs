@@ -49,6 +49,7 @@ pub fn beyond(choices: &Choices<'_>, resolution: &Resolution) -> Vec<Quantity> {
         .collect();
     let decided = Decided {
         method,
+        moles_per_particle: 1.0 / per_mole,
         particles: particles as u64,
         // The plan's own numbers differ a little.
         number_density: ROOM * particles / measured.gas_volume,

@@ -147,7 +147,9 @@ impl Survey {
         let mut moving = Moving::new(scene, &vessel)?;
         moving.deform(scene, &vessel, &fabric)?;
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
+        let lightest_node = fabric.membranes.as_ref().map(|membranes| membranes.lightest_node);
         let measured = measured(scene, &vessel, &surface_models, &moving, &probe_volumes);
+        let measured = Measured { lightest_node, ..measured };
         Ok(Survey { vessel, surface_models, moving, fabric, probe_volumes, measured })
     }
 

@@ -15,6 +15,8 @@ pub struct Membranes {
     pub holds: Vec<Hold>,
     /// The longest step of the fabric, s; infinite if none is elastic.
     pub longest_step: f64,
+    /// kg, of those that are free.
+    pub lightest_node: f64,
 }
 
 /// Of surfaces at rest beside elastic ones: their nodes are held, and whatever they are of has no stress.
@@ -24,7 +26,7 @@ const THICKNESS_AT_REST: f64 = 1e-3;
 
 impl Membranes {
     pub fn new() -> Membranes {
-        Membranes { longest_step: f64::INFINITY, ..Membranes::default() }
+        Membranes { longest_step: f64::INFINITY, lightest_node: f64::INFINITY, ..Membranes::default() }
     }
 
     /// Adds a surface; its mesh is in m.
@@ -57,13 +59,20 @@ impl Membranes {
         let known = Material { elasticity: elasticity(&of.elasticity), density: of.density, damping: of.damping };
         self.materials.push(known);
         self.longest_step = self.longest_step.min(longest_step(&own, &self.materials));
-        self.elements.extend(own);
         let holds = holds(&membrane.fixed, mesh);
         if holds.iter().all(|hold| *hold == Hold::Fixed) {
             return Err(refused(
                 "all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into(),
             ));
         }
+        let mut masses = vec![0.0; mesh.nodes.len()];
+        for (triangle, element) in mesh.triangles.iter().zip(&own) {
+            let share = of.density * element.thickness * element.area() / 3.0;
+            triangle.iter().for_each(|&node| masses[node as usize] += share);
+        }
+        let free = masses.iter().zip(&holds).filter(|(_, hold)| **hold == Hold::Free).map(|(mass, _)| *mass);
+        self.lightest_node = free.fold(self.lightest_node, f64::min);
+        self.elements.extend(own);
         self.holds.extend(holds);
         Ok(())
     }
