@@ -18,6 +18,8 @@ override SURFACE_MODELS: bool = true;
 override VENTS: bool = true;
 // The scene has elastic fabric, whose nodes take the impulses of hits.
 override MEMBRANE: bool = false;
+// They see its nodes fly with smoothed velocities.
+override SMOOTHED: bool = false;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
 // Impulse over reference mass to tally units.
@@ -46,6 +48,8 @@ var<storage, read> bouncing: array<u32>;
 var<storage, read_write> sums: array<atomic<u32>>;
 // Of each node of elastic fabric the impulse of the step, over the reference mass, in units of tallies (src/fabric/).
 var<storage, read_write> node_impulses: array<atomic<u32>>;
+// m/s.
+var<storage, read> node_velocities: array<vec4<f32>>;
 
 // Where the copy of this thread's workgroup starts.
 var<private> copy: u32;
@@ -62,6 +66,19 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
         add64(copy + surface * SURFACE_WORDS + SURFACE_IMPULSE + 2u * axis, word, select(0u, 0xffffffffu, whole[axis] < 0));
     }
     add64(copy + surface * SURFACE_WORDS + SURFACE_HITS, 1u, 0u);
+}
+
+// With which the surface throws a particle back.
+fn velocity_of(wall: Struck, v: vec3<f32>) -> vec3<f32> {
+    if (!(MEMBRANE && SMOOTHED) || wall.sheet == NOBODY) {
+        return wall.velocity;
+    }
+    let sheet = fabric[wall.sheet];
+    let smoothed = node_velocities[sheet.a].xyz * wall.weights.x
+        + node_velocities[sheet.b].xyz * wall.weights.y
+        + node_velocities[sheet.c].xyz * wall.weights.z;
+    // (Seen so, it may fly off already.)
+    return select(wall.velocity, smoothed, dot(v - smoothed, wall.normal) < 0.0);
 }
 
 // Adds to one component of a node's impulse.
@@ -159,7 +176,7 @@ fn bounce(thread: Thread) {
     var bounces = 0u;
     var end = step.dt;
     // Velocity of the surface that was hit last.
-    var carried = vec3<f32>(0.0);
+    var going = vec3<f32>(0.0);
     var overshoot = 0.0;
     var ended = false;
     // bench: hit
@@ -180,7 +197,8 @@ fn bounce(thread: Thread) {
         bounces++;
         let old = particle.velocity;
         let wall = struck(hit, particle.position, old, time, is_inside(particle.tag));
-        carried = wall.velocity;
+        going = wall.velocity;
+        let carried = velocity_of(wall, old);
         // In the frame of the wall.
         let relative = old - carried;
         var turned = relative - 2.0 * dot(relative, wall.normal) * wall.normal;
@@ -270,7 +288,7 @@ fn bounce(thread: Thread) {
     particle.position = shifted(particle.position, particle.velocity, end);
     if ((MOVING || FABRIC) && end < step.dt) {
         // A flight that was cut short ends at its wall, which goes on.
-        particle.position = shifted(particle.position, carried, step.dt - end);
+        particle.position = shifted(particle.position, going, step.dt - end);
     }
     let cell = particle.position >> vec3<u32>(CELL_BITS);
     if (!in_grid(cell) || class_of(cell_index(cell)) == CLASS_SOLID) {

@@ -5,12 +5,13 @@
 // Central differences: v' = v + (sum of impulses)/m, x' = x + v' dt. Forces act for half the last step and half this one. The work of each
 // impulse J is J.(v + v')/2: together they change the kinetic energy, exactly. What the gas gave in its last step, J in all, was given to nodes that flew at
 // `seen`, J.seen in energy; each of the step's `substeps` here takes J/substeps. The ledger has the difference: J.seen less all of J/substeps.(v + v')/2.
+// (Where they are smoothed, by J and `seen`: the sum over all nodes of the one smoothed with the other is the same either way.)
 //
 // Obstacles are rigid half-spaces. A node that would end behind one ends on it: that takes an impulse P along its normal, and with it friction takes up to
 // mu P of the slip. One that is behind it already comes no deeper.
 //
-// Reads `element_forces`, `corners`, `node_constants`, `prescribed`, `obstacles`; reads and writes `membrane_nodes`, takes and clears `impulses` in the first substep; writes
-// `nodes`, where the gas sees them at the start and at the end of its step. One thread per node; its triangles are added in the order of `corners`.
+// Reads `element_forces`, `corners`, `node_constants`, `prescribed`, `obstacles`; reads and writes `membrane_nodes`, takes `given` in the first substep; writes
+// `nodes`, where the gas sees them at the start and at the end of its step, and `node_velocities`, with which it sees them fly. One thread per node; its triangles are added in the order of `corners`.
 
 var<uniform> substep: Substep;
 var<uniform> membrane_step: MembraneStep;
@@ -22,9 +23,9 @@ var<storage, read> node_constants: array<NodeConstants>;
 var<storage, read> prescribed: array<vec4<f32>>;
 var<storage, read> obstacles: array<Obstacle>;
 var<storage, read_write> membrane_nodes: array<MembraneNode>;
-// Three sums of two words for each node.
-var<storage, read_write> impulses: array<u32>;
+var<storage, read> given: array<vec4<f32>>;
 var<storage, read_write> nodes: array<vec4<u32>>;
+var<storage, read_write> node_velocities: array<vec4<f32>>;
 var<storage, read_write> faults: array<atomic<u32>>;
 
 struct NodeConstants {
@@ -84,18 +85,6 @@ fn stopped_by_obstacles(node: MembraneNode, velocity: vec3<f32>) -> Stopped {
     return found;
 }
 
-// A signed sum of two words.
-fn impulse_word(slot: u32) -> f32 {
-    let low = impulses[slot];
-    let high = impulses[slot + 1u];
-    impulses[slot] = 0u;
-    impulses[slot + 1u] = 0u;
-    let negative = high >= 0x80000000u;
-    let size = select(vec2<u32>(low, high), vec2<u32>(~low + 1u, ~high + select(0u, 1u, low == 0u)), negative);
-    let value = f32(size.y) * 4294967296.0 + f32(size.x);
-    return select(value, -value, negative) * membrane_step.impulse_unit;
-}
-
 // Kahan's sum.
 fn added(sum: vec2<f32>, more: f32) -> vec2<f32> {
     let less = more - sum.y;
@@ -144,7 +133,7 @@ fn move_nodes(thread: Thread) {
     let mass = constants.mass;
     let here = substep.slot * membrane_step.nodes + k;
     if (substep.substep == 0u) {
-        let whole = vec3<f32>(impulse_word(6u * k), impulse_word(6u * k + 2u), impulse_word(6u * k + 4u));
+        let whole = given[k].xyz;
         node.given = whole / f32(membrane_step.substeps);
         node.work[WORK_LEDGER] = added(node.work[WORK_LEDGER], dot(whole, node.seen));
         nodes[here] = vec4<u32>(node.place, 0u);
@@ -194,6 +183,7 @@ fn move_nodes(thread: Thread) {
     if (substep.substep + 1u == membrane_step.substeps) {
         let start = nodes[here].xyz;
         node.seen = vec3<f32>(bitcast<vec3<i32>>(node.place - start)) * (membrane_step.quantum / membrane_step.gas_dt);
+        node_velocities[k] = vec4<f32>(node.seen, 0.0);
         nodes[here + membrane_step.nodes] = vec4<u32>(node.place, 0u);
     }
     membrane_nodes[k] = node;

@@ -53,6 +53,14 @@ pub struct GpuMembraneNode {
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuNeighbour {
+    pub node: u32,
+    /// Of its difference, in a pass of smoothing.
+    pub share: f32,
+}
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct GpuElement {
     pub nodes: [u32; 3],
     pub elastic: u32,

@@ -1,6 +1,6 @@
 //! A membrane on a device: its buffers, and the dispatches of a step.
 
-use crate::gpu::{BoundKernel, Device, GpuError, Kernel, Recording, fold};
+use crate::gpu::{BoundKernel, Device, GpuError, Kernel, Pass, Recording, fold};
 
 use super::energies::Energies;
 use super::error::MembraneError;
@@ -14,6 +14,7 @@ use super::model::{Model, Triangle};
 use super::obstacles::on_device;
 use super::registry::{MOST_OBSTACLES, PHASE};
 use super::shaders::shader;
+use super::smoothing::neighbours;
 use super::state::{IMPULSE_WORDS, MembraneState};
 
 /// Threads of a workgroup of the kernels.
@@ -27,6 +28,8 @@ pub struct Membrane {
     /// What the gas gave in its last step, in the input's unit: of each node three signed sums of two words, the low one first. The next step takes and clears
     /// them.
     pub impulses: wgpu::Buffer,
+    /// With which the gas sees nodes fly, m/s, `array<vec4<f32>>`: those of the flights between `nodes`, smoothed.
+    pub node_velocities: wgpu::Buffer,
     /// Of each node a [`GpuMembraneNode`].
     pub state: wgpu::Buffer,
     /// A word: how often a node would have left the grid, or was nowhere. A run with any is wrong.
@@ -39,6 +42,11 @@ pub struct Membrane {
     no_step: GpuMembraneStep,
     forces_of_elements: BoundKernel,
     move_nodes: BoundKernel,
+    take_impulses: BoundKernel,
+    /// Of impulses and of velocities, to and fro.
+    smooth: [[BoundKernel; 2]; 2],
+    /// Passes of smoothing, to and fro.
+    smoothings: u32,
     element_groups: [u32; 3],
     node_groups: [u32; 3],
     /// Bytes from one substep to the next in their uniform.
@@ -66,12 +74,24 @@ impl Membrane {
         let prescribed = device.storage_of("prescribed", &held_velocities(&model.holds))?;
         let obstacles = device.storage::<GpuObstacle>("obstacles", u64::from(MOST_OBSTACLES))?;
         let faults = device.storage::<u32>("faults", 1)?;
+        let [given, node_velocities, smoothed] =
+            [(); 3].map(|()| device.storage::<[f32; 4]>("node_velocities", count as u64));
+        let (given, node_velocities, smoothed) = (given?, node_velocities?, smoothed?);
+        let (neighbours, starts) = neighbours(count, input.triangles);
+        let neighbours = device.storage_of("neighbours", &neighbours)?;
+        let starts = device.storage_of("neighbour_starts", &starts)?;
         let membrane_step = device.uniform("membrane_step", size_of::<GpuMembraneStep>() as u64)?;
         let stride = device.limits().min_uniform_buffer_offset_alignment.max(size_of::<GpuSubstep>() as u32);
         let substep = substeps(device, input, stride)?;
-        let bind = |name: &str| {
+        let bind = |name: &str, [from, to]: [&wgpu::Buffer; 2]| {
             let kernel = Kernel::new(device, shader(name)?, &[("WORKGROUP", f64::from(WORKGROUP))])?;
             kernel.bind(device, |name| match name {
+                "given" => Some(&given),
+                "node_velocities" => Some(&node_velocities),
+                "neighbours" => Some(&neighbours),
+                "neighbour_starts" => Some(&starts),
+                "smooth_from" => Some(from),
+                "smooth_to" => Some(to),
                 "substep" => Some(&substep),
                 "membrane_step" => Some(&membrane_step),
                 "elastic" => Some(&elastic),
@@ -88,7 +108,12 @@ impl Membrane {
                 _ => None,
             })
         };
-        let (forces_of_elements, move_nodes) = (bind("element_forces")?, bind("move_nodes")?);
+        let nothing = [&given, &smoothed];
+        let (forces_of_elements, move_nodes) = (bind("element_forces", nothing)?, bind("move_nodes", nothing)?);
+        let smooth = |of: &wgpu::Buffer| -> Result<[BoundKernel; 2], GpuError> {
+            Ok([bind("smooth_nodes", [of, &smoothed])?, bind("smooth_nodes", [&smoothed, of])?])
+        };
+        let (take_impulses, smooth) = (bind("take_impulses", nothing)?, [smooth(&given)?, smooth(&node_velocities)?]);
         let groups = |items: usize| fold(items as u64, WORKGROUP, device.limits().max_compute_workgroups_per_dimension);
         Ok(Membrane {
             no_step: step_of_no_length(input, count, elements),
@@ -105,8 +130,25 @@ impl Membrane {
             obstacles,
             forces_of_elements,
             move_nodes,
+            take_impulses,
+            smooth,
+            smoothings: 0,
+            node_velocities,
             stride,
         })
+    }
+
+    /// With so many passes, a multiple of two, that smooth what the gas gives nodes, and how it sees them fly.
+    #[must_use]
+    pub fn smoothed(self, passes: u32) -> Membrane {
+        Membrane { smoothings: passes.div_ceil(2), ..self }
+    }
+
+    fn smooth(&self, pass: &mut Pass<'_>, [to, fro]: &[BoundKernel; 2]) {
+        for _ in 0..self.smoothings {
+            to.dispatch(pass, 0, self.node_groups);
+            fro.dispatch(pass, 0, self.node_groups);
+        }
     }
 
     /// The same on the host.
@@ -165,10 +207,14 @@ impl Membrane {
     pub fn divided_step(&self, recording: &mut Recording<'_>, slot: u32, substeps: u32) {
         let mut pass = recording.phase(PHASE);
         let first = slot * self.no_step.substeps;
+        let [given, velocities] = &self.smooth;
+        self.take_impulses.dispatch(&mut pass, 0, self.node_groups);
+        self.smooth(&mut pass, given);
         for substep in 0..substeps {
             self.forces_of_elements.dispatch(&mut pass, 0, self.element_groups);
             self.move_nodes.dispatch(&mut pass, (first + substep) * self.stride, self.node_groups);
         }
+        self.smooth(&mut pass, velocities);
     }
 
     /// Copies all that the next step depends on, on the device, for an interval that may run again.

@@ -15,6 +15,7 @@ pub mod model;
 mod obstacles;
 pub mod registry;
 mod shaders;
+mod smoothing;
 mod state;
 
 pub use elastic::{Elasticity, Material};
@@ -23,7 +24,7 @@ pub use error::MembraneError;
 pub use input::{Element, Hold, MembraneInput, Obstacle, longest_step};
 pub use law::{Law, Stress, Taut, principal};
 pub use layout::{
-    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNeighbour, GpuNodeConstants, GpuObstacle,
     GpuSubstep,
 };
 pub use membrane::Membrane;

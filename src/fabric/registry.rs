@@ -56,6 +56,12 @@ pub const BUFFERS: &[&str] = &[
     "obstacles",
     "membrane_nodes",
     "impulses",
+    "given",
+    "node_velocities",
+    "neighbours",
+    "neighbour_starts",
+    "smooth_from",
+    "smooth_to",
     "nodes",
     "faults",
 ];

@@ -101,6 +101,7 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         chambers: &chambers,
         openings: &openings,
     };
+    super::fabric::reasons(scene, measured, population.moles_per_particle, &mut reasons);
     let beyond = warnings(scene, measured, &decided);
     let narrow = beyond.iter().any(|warning| warning.quantity == Quantity::Gap);
     let mut warnings: Vec<String> = beyond.into_iter().map(|warning| warning.text).collect();

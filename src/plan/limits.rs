@@ -180,8 +180,8 @@ pub const LIMITS: &[Limit] = &[
     limit_of(Quantity::Gap, None, AtLeast(1.0), "what lies across the smallest passage is not resolved"),
     // Rounding leaves particles up to 1e-6 of it behind a wall, on either side (`TOLERANCE` of `src/subdomain/walls.rs`).
     limit_of(Quantity::Thickness, None, AtLeast(2e-6), "positions are too coarse for it, and gas may pass through"),
-    // Hits make nodes as fast as c0 sqrt(m_p/M).
-    limit_of(Quantity::NodeMass, None, AtMost(1.5e-3), "hits shake the fabric, which ripples and becomes shorter"),
+    // Hits make nodes as fast as c0 sqrt(m_p/M); what ten passes of smoothing serve to.
+    limit_of(Quantity::NodeMass, None, AtMost(0.06), "hits shake the fabric, which ripples and becomes shorter"),
     // Measured in shock tubes of 40,000 particles (map `density-ratio`): what the thin gas feels is .96 +- .04 of the exact push
     // at .12, .92 +- .04 at .34 and .78 +- .05 at 1.1 (`closest-approach`); .91, .88 and .83 (`cell`).
     limit_of(Quantity::ThinGas, None, AtMost(0.2), "fronts that run into it are blurred, and push it too weakly"),

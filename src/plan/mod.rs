@@ -20,6 +20,7 @@ mod continuum;
 mod control_volume;
 mod decide;
 mod error;
+mod fabric;
 mod facets;
 mod forecast;
 mod heat;
@@ -44,6 +45,7 @@ mod warnings;
 pub use choice::{Choice, choose, modelling_errors};
 pub use decide::plan;
 pub use error::{MOST_PARTICLES, PlanError};
+pub use fabric::smoothings;
 pub use forecast::noise::{of_hits as noise_of_hits, of_zone as noise_of_zone};
 pub use forecast::{
     Alternative, Cause, ColumnForecast, Forecast, Modelled, Outlook, Part, SeenHeat, SeenProbe, SeenSurface, worst,

@@ -346,6 +346,7 @@ impl<'a> Buffers<'a> {
             "fabric_entries" => &fabric.entries,
             "fabric_swept" => &fabric.swept,
             "node_impulses" => &fabric.impulses,
+            "node_velocities" => &fabric.velocities,
             "cell_volume" => &domain.cell_volume,
             "cell_parts" => &domain.cell_parts,
             "still_gas" => &domain.still_gas,

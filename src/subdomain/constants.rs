@@ -52,6 +52,8 @@ pub struct Features {
     pub fabric: bool,
     /// And are elastic.
     pub membrane: bool,
+    /// And what hits give them is smoothed.
+    pub smoothed: bool,
     /// Other devices own the particles of other cells.
     pub halo: bool,
 }
@@ -118,6 +120,8 @@ pub struct Patches {
     pub fabrics: usize,
     /// Whether they are elastic.
     pub membrane: bool,
+    /// Whether what hits give them is smoothed.
+    pub smoothed: bool,
 }
 
 impl Patches {
@@ -160,6 +164,7 @@ impl Features {
             moving: patches.motions > 0,
             fabric: patches.fabrics > 0,
             membrane: patches.membrane,
+            smoothed: patches.smoothed,
             halo: among_others && plan.method != Method::None,
         }
     }
@@ -257,6 +262,7 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("MOTIONS", patches.motions as f64),
         ("FABRIC", flag(features.fabric)),
         ("MEMBRANE", flag(features.membrane)),
+        ("SMOOTHED", flag(features.smoothed)),
         ("NODES", fabric.nodes as f64),
         ("SHEET_GAP", fabric.gap),
         ("MOST_BOUNCES", MOST_BOUNCES),

@@ -45,6 +45,8 @@ pub struct FabricBuffers {
     pub swept: wgpu::Buffer,
     /// What the gas gives to each node of elastic fabric in a step.
     pub impulses: wgpu::Buffer,
+    /// Of its nodes, smoothed, m/s.
+    pub velocities: wgpu::Buffer,
     /// Entries of lists that there is room for.
     pub room: u64,
 }
@@ -72,6 +74,7 @@ impl FabricBuffers {
             cells: device.storage::<u32>("fabric_cells", words)?,
             entries: device.storage::<[u32; ENTRY_WORDS]>("fabric_entries", 2 * room.max(1))?,
             swept: device.storage::<GpuSwept>("fabric_swept", (fabric.sheets.len() as u64).max(1))?,
+            velocities: device.storage::<[f32; 4]>("node_velocities", pushed.max(1))?,
             impulses: device.storage::<[u32; NODE_IMPULSE_WORDS as usize]>("node_impulses", pushed.max(1))?,
             room,
         })

@@ -191,18 +191,18 @@ impl Subdomain {
         Ok(())
     }
 
-    /// From now on nodes are where others put them, in a buffer as that of this subdomain, and these take the impulses of hits.
+    /// From now on nodes are where others put them, in buffers as those of this subdomain: places, what hits give, and smoothed velocities.
     ///
     /// # Errors
     /// If the device refuses the buffers.
     pub fn follow_fabric(
         &mut self,
         device: &Device,
-        nodes: &wgpu::Buffer,
-        impulses: &wgpu::Buffer,
+        [nodes, impulses, velocities]: [&wgpu::Buffer; 3],
     ) -> Result<(), GpuError> {
         self.fabric.nodes = nodes.clone();
         self.fabric.impulses = impulses.clone();
+        self.fabric.velocities = velocities.clone();
         self.rebind(device)
     }
 

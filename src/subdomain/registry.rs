@@ -225,6 +225,7 @@ pub const BUFFERS: &[&str] = &[
     "fabric_entries",
     "fabric_swept",
     "node_impulses",
+    "node_velocities",
     "cell_volume",
     "cell_parts",
     "still_gas",

@@ -15,7 +15,7 @@ use crate::gas::{Inflow, InflowParticles};
 use crate::geometry::Vessel;
 use crate::plan::{
     Choice, Limit, Measured, Outlook, Plan, PlanError, Quantity, Reason, choose, limit, modelling_errors,
-    notes_of_reach, plan, significant,
+    notes_of_reach, plan, significant, smoothings,
 };
 use crate::scene::{Method, Orifice, Scene};
 use crate::subdomain::Memory;
@@ -69,6 +69,13 @@ impl Model {
         let orifices_inside = orifices_inside(&scene, &vessel);
         refuse_outer_orifices(&scene, &orifices_inside)?;
         Ok(Model { scene, vessel, plan, surface_models, moving, fabric, orifices_inside, probe_volumes, choice })
+    }
+
+    /// Passes of smoothing of what hits give the nodes of elastic fabric.
+    pub fn smoothings(&self) -> u32 {
+        let lightest = self.fabric.membranes.as_ref().map(|membranes| membranes.lightest_node);
+        let heaviest = self.plan.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
+        lightest.map_or(0, |node| smoothings(heaviest * self.plan.moles_per_particle / node))
     }
 
     /// All that will flow in.

@@ -77,8 +77,8 @@ impl<'a> ElasticFabric<'a> {
             impulse_unit,
             drag: 0.0,
         };
-        let membrane = Membrane::new(device, &input)?;
-        subdomain.follow_fabric(device, &membrane.nodes, &membrane.impulses)?;
+        let membrane = Membrane::new(device, &input)?.smoothed(model.smoothings());
+        subdomain.follow_fabric(device, [&membrane.nodes, &membrane.impulses, &membrane.node_velocities])?;
         let state = membrane.read_state(device)?.nodes;
         let energies = Energies::of(membrane.model(), &state);
         let nodes = lattice_places(model, &state);
@@ -217,17 +217,18 @@ impl<'a> ElasticFabric<'a> {
             kinetic: [kinetic, now.kinetic],
             strain: [strain, now.strain],
             damped: now.damped,
-            ledger: now.ledger + self.pending(&self.pending_impulses(device, comm)?),
+            ledger: now.ledger + self.pending(device, &self.pending_impulses(device, comm)?)?,
         })
     }
 
     /// What hits of the last step gave, which nodes have not taken yet, J.
-    fn pending(&self, impulses: &[u64]) -> f64 {
-        let given = |(node, impulse): (&GpuMembraneNode, &[u64])| -> f64 {
+    fn pending(&self, device: &Device, impulses: &[u64]) -> Result<f64, SimulationError> {
+        let given = |([x, y, z, _], impulse): (&[f32; 4], &[u64])| -> f64 {
             let impulse = DVec3::from_array(std::array::from_fn(|axis| impulse[axis] as i64 as f64));
-            self.impulse_unit * impulse.dot(DVec3::from_array(node.seen.map(f64::from)))
+            self.impulse_unit * impulse.dot(DVec3::from_array([*x, *y, *z].map(f64::from)))
         };
-        self.state.iter().zip(impulses.chunks_exact(3)).map(given).sum()
+        let velocities: Vec<[f32; 4]> = device.read(&self.membrane.node_velocities, self.nodes.len())?;
+        Ok(velocities.iter().zip(impulses.chunks_exact(3)).map(given).sum())
     }
 
     fn pending_impulses(&self, device: &Device, comm: &dyn Communicator) -> Result<Vec<u64>, SimulationError> {

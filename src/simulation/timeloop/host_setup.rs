@@ -54,6 +54,7 @@ impl HostSetup {
             motions: model.moving.count(),
             fabrics: model.fabric.all.len(),
             membrane: model.fabric.is_elastic(),
+            smoothed: model.smoothings() > 0,
         };
         Ok(HostSetup {
             walls,

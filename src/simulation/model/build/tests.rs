@@ -138,6 +138,7 @@ fn kernels_are_compiled_without_what_the_scene_lacks() {
             motions: model.moving.count(),
             fabrics: 0,
             membrane: false,
+            smoothed: false,
         };
         let features = Features::of(&model.plan, patches, false, false);
         let flags = [

@@ -1,0 +1,49 @@
+//! How elastic fabric is modelled: whether what hits give its nodes is smoothed.
+//!
+//! Hits thermalise nodes: a node of mass M is as fast as c0 sqrt(m_p/M), each way. Passes of smoothing spread each hit over more nodes.
+
+use super::text::significant;
+use super::{Measured, Reason};
+use crate::scene::Scene;
+
+/// So heavy may a particle be over the lightest node without smoothing, with few passes, and with many
+/// (`src/fabric/smoothing.rs`).
+const PLAIN: f64 = 1.5e-3;
+const FEW: f64 = 0.015;
+
+/// Passes of smoothing for a mass of the heaviest particle over that of the lightest node.
+pub fn smoothings(ratio: f64) -> u32 {
+    if ratio <= PLAIN {
+        0
+    } else if ratio <= FEW {
+        4
+    } else {
+        10
+    }
+}
+
+pub fn reasons(scene: &Scene, measured: &Measured, moles_per_particle: f64, reasons: &mut Vec<Reason>) {
+    let Some(node) = measured.lightest_node else { return };
+    let heaviest = scene.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max) * moles_per_particle;
+    let ratio = heaviest / node;
+    let passes = smoothings(ratio);
+    reasons.push(Reason {
+        quantity: "smoothing of hits".into(),
+        value: if passes == 0 { "none".into() } else { format!("{passes} passes") },
+        why: format!(
+            "a particle has {} of the mass of the lightest node of fabric; up to {} hits may shake each node alone",
+            significant(ratio),
+            significant(PLAIN)
+        ),
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heavier_particles_are_smoothed_more() {
+        assert_eq!([1e-4, 1.5e-3, 2e-3, 0.015, 0.02, 0.5].map(smoothings), [0, 0, 4, 4, 10, 10]);
+    }
+}
