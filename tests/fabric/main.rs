@@ -5,6 +5,7 @@
 mod whole_run;
 
 mod bags;
+mod elastic;
 mod paddle;
 mod refused;
 mod scenes;

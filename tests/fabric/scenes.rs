@@ -22,6 +22,10 @@ pub struct Scene {
     pub rows: u32,
     /// TOML.
     pub chambers: String,
+    /// TOML of elastic fabric: its other keys, and its material.
+    pub elastic: String,
+    /// Of elastic fabric, free of stress.
+    pub reference: Option<TriangleMesh>,
 }
 
 pub const ALIKE: &str = "[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n";
@@ -48,6 +52,8 @@ impl Scene {
             step: None,
             rows: 5,
             chambers: ALIKE.into(),
+            elastic: String::new(),
+            reference: None,
         }
     }
 
@@ -58,12 +64,16 @@ impl Scene {
             frames.write(&folder.path().join("bag.nodes"), Precision::Double).expect("a file of nodes");
             "motion = \"bag.nodes\"\n"
         });
-        let Scene { method, low, high, particles, seed, end, rows, chambers, .. } = self;
+        let reference = self.reference.as_ref().map_or("", |reference| {
+            reference.write(&folder.path().join("reference.obj"), 1.0).expect("a mesh file");
+            "reference = \"reference.obj\"\n"
+        });
+        let Scene { method, low, high, particles, seed, end, rows, chambers, elastic, .. } = self;
         let step = self.step.map_or(String::new(), |step| format!("time_step = {step:e}\n"));
         format!(
             "end_time = {end:e}\nseed = {seed}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = {low:?}\nmax = {high:?}\ngas = \"inside\"\n\
-             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n{motion}{chambers}\
+             [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n{motion}{reference}{elastic}{chambers}\
              [model]\nmethod = \"{}\"\nparticles = {particles}\n{step}[output]\nrows = {rows}\nsnapshots = 0\n",
             method.name()
         )

@@ -7,7 +7,7 @@ use corpuscle::simulation::initial_particles;
 use crate::scenes::Scene;
 
 /// A square sheet across x at a place, of so many elements a side, that reaches into the walls.
-fn sheet(x: f64, [low, high]: [f64; 2], elements: u32) -> TriangleMesh {
+pub fn sheet(x: f64, [low, high]: [f64; 2], elements: u32) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
     let along = |k: u32| low + (high - low) * f64::from(k) / f64::from(elements);
     for j in 0..=elements {

@@ -1,0 +1,92 @@
+//! Elastic fabric.
+
+use corpuscle::geometry::MeshShape;
+use corpuscle::output::FabricAccount;
+use corpuscle::scene::{GAS_CONSTANT, Method};
+
+use crate::scenes::{ALIKE, Scene, inside_and_outside, on_the_wrong_side};
+use crate::sheets::sheet;
+use crate::whole_run::Run;
+
+fn account(run: &Run) -> FabricAccount {
+    run.outcome.audit.fabric.expect("elastic fabric")
+}
+
+/// What is left over of the account, over what went through the fabric.
+fn assert_closed(run: &Run, tolerance: f64) {
+    let (account, audit) = (account(run), &run.outcome.audit);
+    let off = account.missing() / audit.energy_start;
+    eprintln!(
+        "account of fabric {account:?}: {off:.1e} of the gas's energy; the gas's own {:.1e}",
+        audit.energy_error()
+    );
+    assert!(off.abs() < tolerance, "{account:?}");
+    assert!(audit.energy_error().abs() < 1e-6, "{}", audit.energy_error());
+}
+
+/// A bag that the gas inflates: nothing passes, and gas, fabric, damping and the ledger of hits have together what was there.
+#[test]
+fn nothing_is_lost_of_a_bag_that_gas_inflates() {
+    for (method, particles) in [(Method::None, 2000), (Method::HalfTurn, 2000), (Method::ClosestApproach, 1000)] {
+        let mesh = MeshShape::Cushion { radius: 0.035, rings: 4, gap: 0.017 }.mesh([0.05; 3]).expect("a cushion");
+        let elastic = "[fabric.material]\nthickness = 3e-4\ndensity = 800.0\nyoung = 1e8\npoisson = 0.3\n".into();
+        let chambers = inside_and_outside(1.5e5, 1e5);
+        let scene =
+            Scene { end: 4e-4, step: Some(2e-6), particles, chambers, elastic, ..Scene::new(method, mesh, None) };
+        let (model, run) = scene.run();
+        let [first, last] = [0, run.rows.len() - 1].map(|row| run.rows[row].fabrics[0]);
+        eprintln!("{}: from {} to {} L", method.name(), 1e3 * first.volume, 1e3 * last.volume);
+        assert!(last.volume > 1.05 * first.volume, "{} m3, then {} m3", first.volume, last.volume);
+        assert!(last.energies.expect("energies").strain > 0.0);
+        assert_closed(&run, 1e-4);
+        assert_eq!(run.outcome.audit.particles_passed, Some(0));
+        // (The bag of the start is another.)
+        assert!(!on_the_wrong_side(&model, &run, 0.0).is_empty());
+    }
+}
+
+/// A sheet that is held at its edges and stretched, without damping: hits of particles of mass m give its free nodes of mass M the
+/// velocity c0 sqrt(m/M) across it. The kinetic energy is that of so many degrees of freedom, kT/2 each.
+fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
+    let elements = 8;
+    let mesh = sheet(0.05, [1e-3, 0.099], elements);
+    let mut reference = mesh.clone();
+    reference.nodes.iter_mut().for_each(|place| *place = place.map(|x| 0.05 + 0.99 * (x - 0.05)));
+    let elastic = "fixed = \"edge\"\n[fabric.material]\nthickness = 6e-4\ndensity = 800.0\nyoung = 1e9\npoisson = 0.3\ndamping = 0.0\n";
+    let step = 5e-6;
+    let scene = Scene {
+        particles,
+        end: step * f64::from(steps),
+        step: Some(step),
+        rows: 40,
+        chambers: ALIKE.into(),
+        elastic: elastic.into(),
+        reference: Some(reference),
+        ..Scene::new(Method::HalfTurn, mesh, None)
+    };
+    let (model, run) = scene.run();
+    let thermal = model.plan.moles_per_particle * GAS_CONSTANT * 300.0;
+    let free = f64::from((elements - 1).pow(2));
+    let late: Vec<f64> = run.rows[10..].iter().map(|row| row.fabrics[0].energies.expect("energies").kinetic).collect();
+    let mean = late.iter().sum::<f64>() / late.len() as f64;
+    let ratio = mean / (0.5 * thermal * free);
+    eprintln!("{particles} particles: {ratio:.3} of kT/2 for each of {free} nodes, {} passes", model.smoothings());
+    (ratio, free, run)
+}
+
+#[test]
+#[ignore = "minutes; ./scripts/test.sh --long runs it"]
+fn hits_give_nodes_their_temperature() {
+    let (ratio, _, run) = shaken_by_hits(20_000, 2000);
+    // The noise of 49 nodes in some thirty states.
+    assert!((ratio - 1.0).abs() < 0.15, "{ratio}");
+    assert_closed(&run, 1e-4);
+}
+
+/// Particles of more than a hundredth of a node: smoothing leaves the nodes a small part of that.
+#[test]
+fn smoothed_hits_shake_nodes_less() {
+    let (ratio, free, run) = shaken_by_hits(1500, 600);
+    assert!(ratio > 0.01 && ratio < 0.5, "{ratio} of {free} nodes");
+    assert_closed(&run, 1e-4);
+}
