@@ -24,8 +24,8 @@ pub use error::MembraneError;
 pub use input::{Element, Hold, MembraneInput, Obstacle, longest_step};
 pub use law::{Law, Stress, Taut, principal};
 pub use layout::{
-    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNeighbour, GpuNodeConstants, GpuObstacle,
-    GpuSubstep,
+    GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNeighbour, GpuNodeConstants,
+    GpuObstacle, GpuSubstep,
 };
 pub use membrane::Membrane;
 pub use model::Model;

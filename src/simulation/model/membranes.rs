@@ -15,6 +15,8 @@ pub struct Membranes {
     pub holds: Vec<Hold>,
     /// The longest step of the fabric, s; infinite if none is elastic.
     pub longest_step: f64,
+    /// Of the thickest, m.
+    pub thickest: f64,
     /// kg, of those that are free.
     pub lightest_node: f64,
 }
@@ -65,6 +67,7 @@ impl Membranes {
                 "all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into(),
             ));
         }
+        self.thickest = self.thickest.max(of.thickness);
         let mut masses = vec![0.0; mesh.nodes.len()];
         for (triangle, element) in mesh.triangles.iter().zip(&own) {
             let share = of.density * element.thickness * element.area() / 3.0;

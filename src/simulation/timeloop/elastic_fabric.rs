@@ -8,10 +8,11 @@
 
 use glam::DVec3;
 
-use crate::fabric::{Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState};
+use crate::fabric::{Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState, Obstacle};
 use crate::gpu::{Device, Readback, Recording};
 use crate::output::FabricAccount;
 use crate::ranks::Communicator;
+use crate::scene::{GasSide, Scene, Shape};
 use crate::simulation::accounting::row::FabricEnergies;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
@@ -78,6 +79,7 @@ impl<'a> ElasticFabric<'a> {
             drag: 0.0,
         };
         let membrane = Membrane::new(device, &input)?.smoothed(model.smoothings());
+        membrane.set_obstacles(device, &obstacles(&model.scene, membranes.thickest))?;
         subdomain.follow_fabric(device, [&membrane.nodes, &membrane.impulses, &membrane.node_velocities])?;
         let state = membrane.read_state(device)?.nodes;
         let energies = Energies::of(membrane.model(), &state);
@@ -213,7 +215,7 @@ impl<'a> ElasticFabric<'a> {
             from_gas: 0.0,
             from_pressure: now.pressure,
             from_gravity: now.gravity,
-            from_supports: now.holds,
+            from_supports: now.holds + now.obstacles - now.friction,
             kinetic: [kinetic, now.kinetic],
             strain: [strain, now.strain],
             damped: now.damped,
@@ -276,6 +278,24 @@ impl<'a> ElasticFabric<'a> {
         self.start = known.start;
         Ok(())
     }
+}
+
+/// The sides of the box around the gas, if that is what is around it: smooth, and half the thickness of the fabric before the walls.
+fn obstacles(scene: &Scene, thickness: f64) -> Vec<Obstacle> {
+    let mut rooms = scene.walls.iter().filter_map(|wall| match wall.shape {
+        Shape::Box { min, max, thickness: None, .. } if wall.gas == GasSide::Inside => Some([min, max]),
+        Shape::Box { min, max, thickness: Some(_), ref holes } if holes.is_empty() => Some([min, max]),
+        _ => None,
+    });
+    let (Some([min, max]), None) = (rooms.next(), rooms.next()) else { return Vec::new() };
+    let side = |axis: usize, corner: [f64; 3], sign: f64| {
+        let mut normal = [0.0; 3];
+        normal[axis] = sign;
+        let mut place = corner;
+        place[axis] += sign * 0.5 * thickness;
+        Obstacle { place, normal, velocity: [0.0; 3], friction: 0.0 }
+    };
+    (0..3).flat_map(|axis| [side(axis, min, 1.0), side(axis, max, -1.0)]).collect()
 }
 
 /// Steps of the fabric in one of the gas, s.
