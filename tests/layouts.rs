@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::mem::offset_of;
 
 use corpuscle::fabric::{
-    self, GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
-    GpuSubstep,
+    self, GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNeighbour, GpuNodeConstants,
+    GpuObstacle, GpuSubstep,
 };
 use corpuscle::gpu::KernelSource;
 use corpuscle::subdomain::registry::{PHASES, REUSED, Runs, Use};
@@ -158,6 +158,7 @@ fn twins() -> Vec<Twin> {
             pad3
         ),
         twin!("Obstacle", GpuObstacle, place, friction, normal, pad, whole_normal, pad2, velocity, pad3),
+        twin!("Neighbour", GpuNeighbour, node, share),
         twin!("NodeConstants", GpuNodeConstants, mass, held, first, end),
     ]
 }

@@ -95,7 +95,7 @@ fn every_kernel_has_its_test() {
     let known: Vec<&str> = corpuscle::subdomain::KERNELS.iter().map(|kernel| kernel.name).collect();
     assert_eq!(known, tested);
     let of_membranes: Vec<&str> = corpuscle::fabric::KERNELS.iter().map(|kernel| kernel.name).collect();
-    assert_eq!(of_membranes, ["element_forces", "move_nodes"]);
+    assert_eq!(of_membranes, ["element_forces", "move_nodes", "smooth_nodes", "take_impulses"]);
 }
 
 /// Whether there are other devices is asked by kernels of integers alone: with floating point one device would have other

@@ -319,3 +319,51 @@ fn bad_membranes_are_refused() {
     refused(MembraneInput { triangles: &[], elements: &[], ..good }, "node 0 is free and has no mass");
     refused(MembraneInput { nodes: &[[0.0; 3], [0.1, 0.0, 0.0], [9.0, 0.1, 0.0]], ..good }, "node 2 at");
 }
+
+/// Passes of smoothing over neighbours along the edges of triangles, by the degrees of both.
+fn smoothed(values: &[DVec3], triangles: &[[u32; 3]], passes: u32) -> Vec<DVec3> {
+    let are_neighbours =
+        |a: usize, b: usize| a != b && triangles.iter().any(|t| t.contains(&(a as u32)) && t.contains(&(b as u32)));
+    let count = values.len();
+    let degree = |a: usize| (0..count).filter(|&b| are_neighbours(a, b)).count();
+    (0..passes).fold(values.to_vec(), |values, _| {
+        let of = |a: usize| {
+            let others = (0..count).filter(|&b| are_neighbours(a, b));
+            let more = others.map(|b| (values[b] - values[a]) / (1 + degree(a).max(degree(b))) as f64);
+            values[a] + more.sum::<DVec3>()
+        };
+        (0..count).map(of).collect()
+    })
+}
+
+/// What nodes take is smoothed as the velocities are with which the gas sees them, and its sum is that of what was given.
+#[test]
+fn impulses_and_velocities_are_smoothed_alike() {
+    let membrane = Sheet { holds: vec![Hold::Free; 9], substeps: 2 }.membrane().smoothed(4);
+    let triangles: Vec<[u32; 3]> = membrane.model().triangles.iter().map(|triangle| triangle.nodes).collect();
+    let mut state = membrane.read_state(device()).expect("a state");
+    let given: Vec<[i64; 3]> =
+        (0..9i64).map(|k| [1_000_000_000 * (k % 4), -3_000_000 * k * k, 5_000_000_000 - k]).collect();
+    let words = given.as_flattened().iter().flat_map(|&word| [word as u32, (word >> 32) as u32]);
+    state.impulses = words.collect();
+    membrane.write_state(device(), &state).expect("written");
+    membrane.set_step(device(), 4e-6);
+    run(&membrane, 0..1);
+    let found = membrane.read_state(device()).expect("a state").nodes;
+    let velocities: Vec<[f32; 4]> = device().read(&membrane.node_velocities, 9).expect("velocities");
+    let impulses: Vec<DVec3> = given.iter().map(|j| DVec3::from_array(j.map(|j| j as f64 * UNIT))).collect();
+    let expected = smoothed(&impulses, &triangles, 4);
+    let seen: Vec<DVec3> = found.iter().map(|node| vector(node.seen)).collect();
+    let smoothed_seen = smoothed(&seen, &triangles, 4);
+    let size = |all: &[DVec3]| all.iter().map(|one| one.length()).fold(0.0, f64::max);
+    for node in 0..9 {
+        // (Half of it in each of the two steps.)
+        let taken = 2.0 * vector(found[node].given);
+        let [x, y, z, _] = velocities[node].map(f64::from);
+        assert!((taken - expected[node]).length() < 1e-6 * size(&impulses), "{node}: {taken}, {}", expected[node]);
+        assert!((DVec3::new(x, y, z) - smoothed_seen[node]).length() < 1e-6 * size(&seen), "{node}");
+        assert!((taken - impulses[node]).length() > 1e-3 * size(&impulses), "{node}: not smoothed");
+    }
+    let sum = |all: &[DVec3]| all.iter().sum::<DVec3>();
+    assert!((sum(&expected) - sum(&impulses)).length() < 1e-12 * size(&impulses));
+}

@@ -128,6 +128,8 @@ impl Rig {
         rig.put("fabric_cells", &[0u32; 4]);
         rig.put("fabric_entries", &[0u32; 8]);
         rig.put("fabric_swept", &[0u32; 8]);
+        rig.put("node_impulses", &[0u32; 8]);
+        rig.put("node_velocities", &[0f32; 4]);
         rig.put("counters", &[0u32; COUNTER_WORDS]);
         rig.put("stalled", &[0u32; STALLED_PARTICLES + 1]);
         rig.put("step_state", &[0u32; INTERVAL_STEPS + 1]);
