@@ -22,6 +22,9 @@ override MEMBRANE: bool = false;
 override SMOOTHED: bool = false;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
+// The same where nodes of fabric take impulses: these move them in the next step only, so that a particle caught between two sheets that touch would
+// throw them apart with many times its momentum.
+const MOST_PUSHES: u32 = 6u;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;
 
@@ -188,7 +191,7 @@ fn bounce(thread: Thread) {
             ended = true;
             break;
         }
-        if (bounces == MOST_BOUNCES) {
+        if (bounces == select(MOST_BOUNCES, MOST_PUSHES, MEMBRANE)) {
             atomicAdd(&counters[TRUNCATED], 1u);
             end = time;
             ended = true;
