@@ -22,8 +22,8 @@ override MEMBRANE: bool = false;
 override SMOOTHED: bool = false;
 // Bounces in one step after which a flight ends at the wall; such flights are counted.
 override MOST_BOUNCES: u32 = 32;
-// The same where nodes of fabric take impulses: these move them in the next step only, so that a particle caught between two sheets that touch would
-// throw them apart with many times its momentum.
+// Hits on elastic fabric after which a flight ends there as well: they move its nodes in the next step only, so that a particle caught between two
+// sheets that touch would throw them apart with many times its momentum.
 const MOST_PUSHES: u32 = 6u;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;
@@ -49,7 +49,7 @@ var<storage, read_write> particles: array<Packed>;
 var<storage, read> sorted: array<Packed>;
 var<storage, read> bouncing: array<u32>;
 var<storage, read_write> sums: array<atomic<u32>>;
-// Of each node of elastic fabric the impulse of the step, over the reference mass, in units of tallies (src/fabric/).
+// The impulse of the step on each node of elastic fabric, over the reference mass, in units of tallies (src/fabric/).
 var<storage, read_write> node_impulses: array<atomic<u32>>;
 // m/s.
 var<storage, read> node_velocities: array<vec4<f32>>;
@@ -71,7 +71,7 @@ fn tally_impulse(surface: u32, normal: vec3<f32>, impulse: vec3<f32>) {
     add64(copy + surface * SURFACE_WORDS + SURFACE_HITS, 1u, 0u);
 }
 
-// With which the surface throws a particle back.
+// The velocity with which the surface throws a particle back.
 fn velocity_of(wall: Struck, v: vec3<f32>) -> vec3<f32> {
     if (!(MEMBRANE && SMOOTHED) || wall.sheet == NOBODY) {
         return wall.velocity;
@@ -177,6 +177,7 @@ fn bounce(thread: Thread) {
     }
     let gas = gases[kind_of(particle.tag)];
     var bounces = 0u;
+    var pushes = 0u;
     var end = step.dt;
     // Velocity of the surface that was hit last.
     var going = vec3<f32>(0.0);
@@ -191,7 +192,7 @@ fn bounce(thread: Thread) {
             ended = true;
             break;
         }
-        if (bounces == select(MOST_BOUNCES, MOST_PUSHES, MEMBRANE)) {
+        if (bounces == MOST_BOUNCES || pushes == MOST_PUSHES) {
             atomicAdd(&counters[TRUNCATED], 1u);
             end = time;
             ended = true;
@@ -266,6 +267,7 @@ fn bounce(thread: Thread) {
         }
         if (MEMBRANE && wall.sheet != NOBODY) {
             push_nodes(wall, gas.mass * (old - turned));
+            pushes++;
         }
         var place = shifted(particle.position, old, hit.time);
         if (FABRIC && wall.lift > 0.0) {

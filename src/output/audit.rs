@@ -231,6 +231,12 @@ impl Audit {
                 100.0 * limits.fabric_error
             ));
         }
+        if self.fabric.is_some() && self.truncated_flights > limits.truncated_flights {
+            warnings.push(format!(
+                "{} flights ended at elastic fabric till the next step: gas caught between sheets that touch presses too little",
+                grouped(self.truncated_flights)
+            ));
+        }
         for (vent, share) in &self.clipped_vents {
             if !within(*share, limits.clipped_fraction) {
                 warnings.push(format!(
