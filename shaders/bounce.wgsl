@@ -193,7 +193,11 @@ fn bounce(thread: Thread) {
             break;
         }
         if (bounces == MOST_BOUNCES || pushes == MOST_PUSHES) {
-            atomicAdd(&counters[TRUNCATED], 1u);
+            if (bounces == MOST_BOUNCES) {
+                atomicAdd(&counters[TRUNCATED], 1u);
+            } else {
+                atomicAdd(&counters[CAUGHT], 1u);
+            }
             end = time;
             ended = true;
             break;

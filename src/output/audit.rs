@@ -16,7 +16,7 @@
 
 mod elastic_fabric;
 
-pub use elastic_fabric::FabricAccount;
+pub use elastic_fabric::{CaughtFlights, FabricAccount};
 
 use super::table::{aligned, grouped};
 
@@ -67,6 +67,8 @@ pub struct Audit {
     pub wall_overshoot: f64,
     /// Flights that used up their bounces in a step and were cut short.
     pub truncated_flights: u64,
+    /// Flights that used up those at elastic fabric; `None` without.
+    pub caught_flights: Option<CaughtFlights>,
     /// Of each vent its name, and the hits whose probability of passing was clipped to one, over those that passed.
     pub clipped_vents: Vec<(String, f64)>,
     /// Walls whose heat-transfer coefficient asked for more than all hits, and how many times as much at most.
@@ -97,6 +99,9 @@ pub struct AuditLimits {
     /// m.
     pub wall_overshoot: f64,
     pub truncated_flights: u64,
+    /// Over the particles of all steps: above the one a warning, above the other the run fails. A flight that is caught presses less
+    /// than it would, and so the gas less by at most the share of such flights: by no more than 1 %.
+    pub caught_share: [f64; 2],
     /// Above it a warning (docs/explanation/method.md, "Collisions": 3 %).
     pub lost_collision_fraction: f64,
     /// Of the account of elastic fabric; above it a warning.
@@ -113,6 +118,7 @@ impl Default for AuditLimits {
             momentum_error: 1e-4,
             wall_overshoot: 1e-6,
             truncated_flights: 0,
+            caught_share: [1e-4, 0.01],
             lost_collision_fraction: 0.03,
             fabric_error: 0.02,
             clipped_fraction: 0.01,
@@ -195,12 +201,20 @@ impl Audit {
                 self.wall_overshoot, limits.wall_overshoot
             ));
         }
-        // (Between sheets of elastic fabric that touch flights end at one of them till the next step.)
-        if self.truncated_flights > limits.truncated_flights && self.fabric.is_none() {
+        if self.truncated_flights > limits.truncated_flights {
             failures.push(format!(
                 "{} flights had more bounces in a step than are followed; {} are allowed",
                 grouped(self.truncated_flights),
                 grouped(limits.truncated_flights)
+            ));
+        }
+        if let Some(caught) = self.caught_flights
+            && !within(caught.share, limits.caught_share[1])
+        {
+            failures.push(format!(
+                "{}; {:.0} % is allowed, by so much the gas may press too little",
+                caught.told(),
+                100.0 * limits.caught_share[1]
             ));
         }
         for name in &self.overflows {
@@ -226,15 +240,19 @@ impl Audit {
         {
             warnings.push(format!(
                 "the energy of elastic fabric is off by {:+.1} % of the largest amount of its account (more than {:.0} %): its steps \
-                 are too long for how it moves",
+                 are too long for how it moves, or hits of few heavy particles shake it",
                 100.0 * account.error(),
                 100.0 * limits.fabric_error
             ));
         }
-        if self.fabric.is_some() && self.truncated_flights > limits.truncated_flights {
+        if let Some(caught) = self.caught_flights
+            && !within(caught.share, limits.caught_share[0])
+            && within(caught.share, limits.caught_share[1])
+        {
+            let allowed = 100.0 * limits.caught_share[0];
             warnings.push(format!(
-                "{} flights ended at elastic fabric till the next step: gas caught between sheets that touch presses too little",
-                grouped(self.truncated_flights)
+                "{} (more than {allowed:.2} %): gas between sheets that touch presses too little",
+                caught.told()
             ));
         }
         for (vent, share) in &self.clipped_vents {
@@ -304,6 +322,9 @@ impl Audit {
         facts.extend([
             ("largest wall overshoot, m", format!("{:.2e}", self.wall_overshoot)),
             ("truncated flights", grouped(self.truncated_flights)),
+        ]);
+        facts.extend(self.caught_flights.map(|caught| ("flights caught by fabric", caught.amount())));
+        facts.extend([
             ("overflows", overflows),
             ("momentum, kg m/s, start", vector(self.momentum_start)),
             ("  injected", vector(self.momentum_injected)),

@@ -26,7 +26,9 @@ pub struct Counters {
     pub outside: u32,
     /// Quanta.
     pub overshoot: u32,
+    /// Flights cut short after the last bounce, and at elastic fabric.
     pub truncated: u32,
+    pub caught: u32,
     pub tally_overflow: u32,
     pub capacity_failed: u32,
     pub bounces: u32,
@@ -73,6 +75,7 @@ impl Counters {
             outside: word(OUTSIDE),
             overshoot: word(OVERSHOOT),
             truncated: word(TRUNCATED),
+            caught: word(CAUGHT),
             tally_overflow: word(TALLY_OVERFLOW),
             capacity_failed: word(CAPACITY_FAILED),
             bounces: word(BOUNCES),
@@ -99,12 +102,13 @@ impl Counters {
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 19] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 20] {
         [
             &mut self.lost,
             &mut self.sampled,
             &mut self.outside,
             &mut self.truncated,
+            &mut self.caught,
             &mut self.tally_overflow,
             &mut self.capacity_failed,
             &mut self.bounces,

@@ -68,7 +68,7 @@ registry! {
         OUTSIDE = 37,
         /// Largest distance behind a wall, quanta.
         OVERSHOOT = 38,
-        /// Flights cut short after the last bounce.
+        /// Flights cut short after the last bounce off walls.
         TRUNCATED = 39,
         /// Values beyond the range of a tally.
         TALLY_OVERFLOW = 40,
@@ -106,6 +106,8 @@ registry! {
         FREE_FLIGHTS = 118,
         CUT_GROUPS = 119,
         UNFITTED = 120,
+        /// Flights that ended at elastic fabric after as many hits as are followed there in a step.
+        CAUGHT = 121,
         /// The lengths of sharded lists (`shaders/shared/sharded_lists.gpu.wgsl`), by shard: each shard's so far
         /// behind the one before that another part of a GPU's cache has them.
         LENGTHS_OF_SHARDS = 128,

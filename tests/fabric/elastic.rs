@@ -22,6 +22,7 @@ fn assert_closed(run: &Run, tolerance: f64) {
     );
     assert!(off.abs() < tolerance, "{account:?}");
     assert!(audit.energy_error().abs() < 1e-6, "{}", audit.energy_error());
+    assert_eq!(audit.truncated_flights, 0);
 }
 
 /// A bag that the gas inflates: nothing passes, and gas, fabric, damping and the ledger of hits have together what was there.

@@ -30,6 +30,7 @@ fn clean() -> Audit {
         collision_cells: None,
         wall_overshoot: 1e-9,
         truncated_flights: 0,
+        caught_flights: None,
         overflows: Vec::new(),
     }
 }
@@ -68,6 +69,26 @@ fn lost_collisions_warn_and_do_not_fail() {
     assert!(audit.warnings(&limits)[0].starts_with("5.0 % of the collisions were lost"));
     let none = Audit { lost_collision_fraction: None, ..clean() };
     assert!(none.warnings(&limits).is_empty() && none.render().contains("no collisions"));
+}
+
+/// A few flights that fabric caught are told, more make a warning, and many fail the run; those cut short between walls always do.
+#[test]
+fn flights_that_fabric_caught_warn_before_they_fail() {
+    let limits = AuditLimits::default();
+    let caught = |share: f64| Audit { caught_flights: Some(CaughtFlights { flights: 1234, share }), ..clean() };
+    let few = caught(5e-5);
+    assert!(few.verdict(&limits).is_empty() && few.warnings(&limits).is_empty());
+    assert!(few.render().contains("flights caught by fabric   1,234, 0.0050 % of particle-steps"), "{}", few.render());
+    let more = caught(2e-3);
+    assert!(more.verdict(&limits).is_empty());
+    assert!(more.warnings(&limits)[0].contains("till the next step: 1,234, 0.2000 % of particle-steps"), "{more:?}");
+    for share in [0.02, f64::NAN] {
+        let many = caught(share);
+        let verdict = many.verdict(&limits);
+        assert!(verdict.len() == 1 && verdict[0].contains("were caught by elastic fabric"), "{verdict:?}");
+    }
+    let cut_short = Audit { truncated_flights: 1, ..few };
+    assert!(cut_short.verdict(&limits)[0].contains("1 flights had more bounces"));
 }
 
 /// The gas keeps what it had and got less what the walls received: checked where that is known.

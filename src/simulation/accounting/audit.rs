@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::averages::Averages;
 use crate::gas::Inflow;
 use crate::geometry::{Bag, Vessel};
-use crate::output::{Audit, AuditLimits, CollisionCells, FabricAccount, PhaseTable};
+use crate::output::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::simulation::accounting::phases::{once_an_interval, order_of};
@@ -78,6 +78,7 @@ pub struct AccountState {
     lost: u64,
     sampled: u64,
     truncated: u64,
+    caught: u64,
     /// With the method `half-turn`: particles that flew on alone, that collided without a velocity gradient, and groups that walls made.
     free_flights: u64,
     unfitted: u64,
@@ -120,6 +121,7 @@ impl Account {
             lost: 0,
             sampled: 0,
             truncated: 0,
+            caught: 0,
             free_flights: 0,
             unfitted: 0,
             cut_groups: 0,
@@ -283,6 +285,7 @@ impl Account {
             _ => u64::from(counters.sampled),
         };
         self.counted.truncated += u64::from(counters.truncated);
+        self.counted.caught += u64::from(counters.caught);
         self.counted.free_flights += u64::from(counters.free_flights);
         self.counted.unfitted += u64::from(counters.unfitted);
         self.counted.cut_groups += u64::from(counters.cut_groups);
@@ -381,6 +384,10 @@ impl Account {
                 .then(|| self.counted.lost as f64 / events),
             wall_overshoot: f64::from(self.counted.overshoot) * plan.grid.quantum(),
             truncated_flights: self.counted.truncated,
+            caught_flights: model.fabric.is_elastic().then(|| CaughtFlights {
+                flights: self.counted.caught,
+                share: self.counted.caught as f64 / self.counted.particle_steps.max(1) as f64,
+            }),
             overflows: Vec::new(),
         }
     }
