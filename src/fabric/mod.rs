@@ -13,6 +13,7 @@ mod layout;
 mod membrane;
 pub mod model;
 mod obstacles;
+mod principal;
 pub mod registry;
 mod shaders;
 mod smoothing;
@@ -28,6 +29,7 @@ pub use layout::{
     GpuObstacle, GpuSubstep,
 };
 pub use membrane::Membrane;
-pub use model::Model;
+pub use model::{Model, Triangle};
+pub use principal::Principal;
 pub use shaders::KERNELS;
-pub use state::MembraneState;
+pub use state::{MembraneState, place};

@@ -98,6 +98,8 @@ pub enum OutputError {
     BadTriangle { triangle: usize, vertex: u32, vertices: usize },
     #[error("{triangles} wall triangles came with {indices} wall indices")]
     WallIndexCount { triangles: usize, indices: usize },
+    #[error("the fields of fabric are of {found} {what}, and there are {expected}")]
+    FieldCount { what: &'static str, found: usize, expected: usize },
     #[error("{found} runs have no spread: two are the least")]
     NoSpread { found: usize },
     #[error("the histories of {one} and {other} {what}")]

@@ -18,6 +18,7 @@ mod history;
 mod local_temperature;
 mod map;
 mod marker;
+mod membrane_fields;
 mod meshes;
 mod names;
 mod phases;
@@ -36,7 +37,7 @@ mod vtk;
 mod vtk_read;
 
 pub use appended::{AppendedFile, AppendedState};
-pub use audit::{Audit, AuditLimits, CollisionCells, FabricAccount};
+pub use audit::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount};
 pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{
@@ -49,6 +50,7 @@ pub use folder::{Claim, Content, OutputFolder};
 pub use history::{Column, History, HistoryState, HistoryWriter};
 pub use map::{MapCell, MapRow, map_chart};
 pub use marker::{check_marker, has_ended};
+pub use membrane_fields::{FabricSnapshot, MembraneFields, TriangleField};
 pub use meshes::{MeshRecord, mesh_paths, meshes_of};
 pub use names::{
     AUDIT_FILE, BALANCE_FILE, CHECKPOINT_FOLDER, ENVIRONMENT_FILE, HISTORY_FILE, HISTORY_MEAN_FILE, LOG_FILE,

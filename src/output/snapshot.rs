@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::OutputError;
 use super::error::write_atomically;
+use super::membrane_fields::MembraneFields;
 use super::names::{SNAPSHOT_FOLDER, is_snapshot_file};
 use super::vtk::{Array, DataSet, Section};
 
@@ -185,19 +186,20 @@ impl SnapshotWriter {
     pub fn write_walls(&self, walls: TriangleSet<'_>) -> Result<PathBuf, OutputError> {
         walls.check()?;
         let path = self.folder.join("walls.vtp");
-        let data = surface_data(["wall", "wall_names", r#" Scalars="wall""#], None, walls);
+        let data = surface_data(["wall", "wall_names", r#" Scalars="wall""#], None, walls, None);
         write_atomically(&path, |out| data.write(out))?;
         Ok(path)
     }
 
-    /// Writes the fabric of the last snapshot beside it.
+    /// Writes the fabric of the last snapshot beside it, of elastic fabric with its fields.
     ///
-    /// Errors: as of walls.
-    pub fn write_fabric(&self, fabric: TriangleSet<'_>) -> Result<(), OutputError> {
+    /// Errors: as of walls, or fields of other fabric.
+    pub fn write_fabric(&self, fabric: TriangleSet<'_>, fields: Option<&MembraneFields>) -> Result<(), OutputError> {
         let Some(last) = self.written.last() else { return Ok(()) };
         fabric.check()?;
+        fields.map_or(Ok(()), |fields| fields.check(fabric.vertices.len(), fabric.triangles.len()))?;
         let path = self.folder.join(fabric_name(self.written.len() - 1));
-        let data = surface_data(["fabric", "fabric_names", r#" Scalars="fabric""#], Some(last.time), fabric);
+        let data = surface_data(["fabric", "fabric_names", r#" Scalars="fabric""#], Some(last.time), fabric, fields);
         write_atomically(&path, |out| data.write(out))?;
         self.write_list("fabric.pvd", fabric_name)
     }
@@ -268,9 +270,12 @@ fn surface_data<'a>(
     [array, list, attributes]: [&'static str; 3],
     time: Option<f64>,
     surfaces: TriangleSet<'a>,
+    fields: Option<&'a MembraneFields>,
 ) -> DataSet<'a> {
     let TriangleSet { vertices, triangles, owners, names } = surfaces;
-    DataSet {
+    let owner = Array::new(array, "UInt32", owners.iter(), |owner| [owner.to_le_bytes()]);
+    let of_triangles = std::iter::once(owner).chain(fields.into_iter().flat_map(MembraneFields::of_triangles));
+    let mut data = DataSet {
         kind: "PolyData",
         counts: format!(
             r#"NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}""#,
@@ -280,11 +285,7 @@ fn surface_data<'a>(
         time,
         names: vec![(list, names)],
         sections: vec![
-            Section {
-                element: "CellData",
-                attributes,
-                arrays: vec![Array::new(array, "UInt32", owners.iter(), |owner| [owner.to_le_bytes()])],
-            },
+            Section { element: "CellData", attributes, arrays: of_triangles.collect() },
             Section {
                 element: "Points",
                 attributes: "",
@@ -305,7 +306,11 @@ fn surface_data<'a>(
                 ],
             },
         ],
+    };
+    if let Some(fields) = fields {
+        data.sections.insert(0, fields.of_nodes());
     }
+    data
 }
 
 #[cfg(test)]

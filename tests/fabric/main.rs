@@ -6,6 +6,7 @@ mod whole_run;
 
 mod bags;
 mod elastic;
+mod fields;
 mod paddle;
 mod refused;
 mod scenes;

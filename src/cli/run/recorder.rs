@@ -6,8 +6,8 @@ use super::checkpoints::Checkpoints;
 use super::reference::Reference;
 use super::table::{Owners, columns, time_column, values, volume_column};
 use crate::output::{
-    BalanceRow, BalanceWriter, Column, Frame, History, HistoryWriter, OutputError, OutputState, ParticleRow, Progress,
-    SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, TriangleSet, over_mean, subdomain_chart,
+    BalanceRow, BalanceWriter, Column, FabricSnapshot, Frame, History, HistoryWriter, OutputError, OutputState,
+    ParticleRow, Progress, SUBDOMAIN_CHART_FILE, Shown, SnapshotWriter, TriangleSet, over_mean, subdomain_chart,
 };
 use crate::simulation::{
     BalanceRecord, GuardWarning, Model, Moment, Observer, Outcome, Request, Row, RowObserver, SimulationError,
@@ -25,8 +25,8 @@ pub struct Recorder<'a> {
     checkpoints: Option<Checkpoints<'a>>,
     /// `None` on a rank alone.
     among: Option<Among>,
-    /// Where the nodes of fabric are at the next snapshot, m.
-    fabric: Vec<[f64; 3]>,
+    /// The fabric of the next snapshot.
+    fabric: FabricSnapshot,
     /// A line for each vent; empty until the end.
     vents: Vec<VentWatch>,
 }
@@ -113,7 +113,7 @@ impl<'a> Recorder<'a> {
             progress,
             checkpoints: None,
             among: None,
-            fabric: Vec::new(),
+            fabric: FabricSnapshot::default(),
             vents: Vec::new(),
         }
     }
@@ -221,12 +221,9 @@ impl<'a> Recorder<'a> {
         let owners: Vec<u32> =
             (0..).zip(&fabric.all).flat_map(|(k, own)| own.triangles.clone().map(move |_| k)).collect();
         let names: Vec<String> = fabric.all.iter().map(|own| own.name.clone()).collect();
-        writer.write_fabric(TriangleSet {
-            vertices: &self.fabric,
-            triangles: &fabric.triangles,
-            owners: &owners,
-            names: &names,
-        })
+        let triangles =
+            TriangleSet { vertices: &self.fabric.nodes, triangles: &fabric.triangles, owners: &owners, names: &names };
+        writer.write_fabric(triangles, self.fabric.fields.as_ref())
     }
 }
 
@@ -324,8 +321,8 @@ impl Observer for Recorder<'_> {
         self.write_snapshot(time, particles, owners).map_err(stop)
     }
 
-    fn fabric(&mut self, nodes: &[[f64; 3]]) {
-        self.fabric = nodes.to_vec();
+    fn fabric(&mut self, fabric: FabricSnapshot) {
+        self.fabric = fabric;
     }
 
     fn boxes(&mut self, boxes: &[[[f64; 3]; 2]]) {

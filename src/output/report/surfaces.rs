@@ -179,7 +179,7 @@ mod tests {
         let set = TriangleSet { vertices: &vertices, triangles: &triangles, owners: &owners, names: &names };
         let mut writer = SnapshotWriter::create(dir.path()).unwrap();
         writer.write(0.0, &[]).unwrap();
-        writer.write_fabric(set).unwrap();
+        writer.write_fabric(set, None).unwrap();
         let entry = snapshots_of(dir.path()).unwrap().remove(0);
         let few = Surfaces::fabric(&entry, 20).unwrap();
         assert_eq!((few.coarser_than, few.meshes[0].triangles.len()), (None, 12_800));

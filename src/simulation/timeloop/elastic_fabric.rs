@@ -8,9 +8,11 @@
 
 use glam::DVec3;
 
-use crate::fabric::{Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState, Obstacle};
+use crate::fabric::{
+    Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState, Obstacle, Principal, Taut, Triangle, place,
+};
 use crate::gpu::{Device, Readback, Recording};
-use crate::output::FabricAccount;
+use crate::output::{FabricAccount, MembraneFields, TriangleField};
 use crate::ranks::Communicator;
 use crate::scene::{GasSide, Scene, Shape};
 use crate::simulation::accounting::row::FabricEnergies;
@@ -202,6 +204,37 @@ impl<'a> ElasticFabric<'a> {
             FabricEnergies { kinetic: own.kinetic, strain: own.strain, damped: own.damped }
         };
         (0..self.initial_volumes.len()).map(of).collect()
+    }
+
+    /// Of nodes and triangles, at the end of the last interval read; those of fabric at rest have none.
+    pub fn fields(&self) -> MembraneFields {
+        let membrane = self.membrane.model();
+        let places = self.state.iter().map(|node| place(node, membrane)).collect::<Vec<_>>();
+        let elastic = self.model.scene.fabrics.iter().map(|fabric| fabric.membrane.is_some());
+        let surfaces = self.model.fabric.all.iter().zip(elastic);
+        let of_triangles = surfaces.flat_map(|(surface, elastic)| {
+            let own = membrane.triangles[surface.triangles.clone()].iter();
+            own.map(move |triangle| (triangle, elastic))
+        });
+        let field = |(triangle, elastic): (&Triangle, bool)| {
+            let corners = triangle.nodes.map(|node| places[node as usize]);
+            let Principal { strains, stresses, taut } = membrane.principal(triangle, corners);
+            let tension = match taut {
+                Taut::Nothing => 0,
+                Taut::Along(_) => 1,
+                Taut::Both => 2,
+            };
+            let known = TriangleField {
+                strain: strains.map(|strain| strain as f32),
+                stress: stresses.map(|stress| stress as f32),
+                tension,
+            };
+            if elastic { known } else { TriangleField::default() }
+        };
+        MembraneFields {
+            velocities: self.state.iter().map(|node| node.velocity).collect(),
+            triangles: of_triangles.map(field).collect(),
+        }
     }
 
     /// The account since the start of the run, but for what it has from the gas; nothing is under way. Collective.

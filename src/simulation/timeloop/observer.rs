@@ -2,7 +2,7 @@
 
 use super::interrupt::Request;
 use super::setup::Shuffle;
-use crate::output::{Audit, PhaseTable};
+use crate::output::{Audit, FabricSnapshot, PhaseTable};
 use crate::ranks::Communicator;
 use crate::simulation::accounting::guards::GuardWarning;
 use crate::simulation::error::SimulationError;
@@ -51,8 +51,8 @@ pub trait Observer: RowObserver {
         Ok(())
     }
 
-    /// Where the nodes of fabric are, m: at a snapshot, before it.
-    fn fabric(&mut self, _nodes: &[[f64; 3]]) {}
+    /// The fabric: at a snapshot, before it.
+    fn fabric(&mut self, _fabric: FabricSnapshot) {}
 
     /// The boxes of the ranks, by rank, as low and high corner (m): at a snapshot, before it.
     fn boxes(&mut self, _boxes: &[[[f64; 3]; 2]]) {}
@@ -120,8 +120,7 @@ pub struct Outcome {
     pub particles: Vec<GpuParticle>,
     /// The rank that owned each of them.
     pub owners: Vec<u32>,
-    /// Where the nodes of fabric are, m.
-    pub fabric: Vec<[f64; 3]>,
+    pub fabric: FabricSnapshot,
     pub audit: Audit,
     /// What a control volume did after the particles.
     pub continued: Option<Continued>,

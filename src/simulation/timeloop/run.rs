@@ -141,7 +141,7 @@ impl Simulation<'_> {
             continued,
             warnings: self.books.guards.told().to_vec(),
             phases: self.books.account.phases(),
-            fabric: self.fabric_nodes(),
+            fabric: self.fabric_snapshot(),
             steps: self.control.clock.steps,
             particle_steps: self.books.account.state().particle_steps,
             collisions: self.books.account.state().collisions,

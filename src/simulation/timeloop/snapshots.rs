@@ -1,6 +1,8 @@
 //! The particles of all ranks, at the times that the scene asks for and at the end.
 
+use super::elastic_fabric::ElasticFabric;
 use super::simulation::Simulation;
+use crate::output::FabricSnapshot;
 use crate::simulation::SimulationError;
 use crate::simulation::timeloop::observer::Observer;
 use crate::subdomain::GpuParticle;
@@ -26,7 +28,7 @@ impl Simulation<'_> {
                 observer.boxes(&decomposition.boxes(&self.model.plan.grid));
             }
             if !self.model.fabric.is_empty() {
-                observer.fabric(&self.fabric_nodes());
+                observer.fabric(self.fabric_snapshot());
             }
             observer.snapshot(self.control.clock.time(), &particles, &owners)?;
         }
@@ -34,6 +36,12 @@ impl Simulation<'_> {
             self.progress.next_snapshot += 1;
         }
         Ok(())
+    }
+
+    /// The fabric at the time of the clock, with nothing under way.
+    pub(super) fn fabric_snapshot(&self) -> FabricSnapshot {
+        let fields = self.fabric.as_ref().map(ElasticFabric::fields);
+        FabricSnapshot { nodes: self.fabric_nodes(), fields }
     }
 
     /// All particles by id, and the rank that owns each, at rank 0. Collective.
