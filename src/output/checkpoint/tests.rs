@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 
-use super::layout::{ID_OFFSET, MANIFEST, PLAN, SCENE, STATE, folder_name};
+use super::layout::{FORMAT, ID_OFFSET, MANIFEST, PLAN, SCENE, STATE, folder_name};
 use super::*;
 use crate::output::AppendedState;
 use crate::scene::UnitSystem;
@@ -235,8 +235,9 @@ fn each_fault_has_its_reason() {
     let manifest = String::from_utf8(whole[MANIFEST].clone()).unwrap();
     let foreign = altered(whole, MANIFEST, Some(b"[package]\nname = 1\n"));
     assert!(foreign.contains("no checkpoint's manifest") && foreign.contains("[package]"), "{foreign}");
-    let other = altered(whole, MANIFEST, Some(manifest.replace("format 10", "format 11").as_bytes()));
-    assert!(other.contains("checkpoint format 11, this program reads format 10"), "{other}");
+    let [own, next] = [FORMAT, FORMAT + 1].map(|format| format!("format {format}"));
+    let other = altered(whole, MANIFEST, Some(manifest.replace(&own, &next).as_bytes()));
+    assert!(other.contains(&format!("checkpoint {next}, this program reads {own}")), "{other}");
     let edited = altered(whole, MANIFEST, Some(manifest.replace("step = 320", "step = 321").as_bytes()));
     assert!(edited.contains("truncated or altered"), "{edited}");
 }
