@@ -123,7 +123,8 @@ fn twins() -> Vec<Twin> {
             pad3,
             seen,
             pad4,
-            work
+            work,
+            pad5
         ),
         twin!(
             "Element",
@@ -142,7 +143,7 @@ fn twins() -> Vec<Twin> {
             pad2,
             pad3
         ),
-        twin!("Elastic", GpuElastic, stiffness, compliance, young, share, isotropic, pad, pad2),
+        twin!("Elastic", GpuElastic, stiffness, compliance, young, share, isotropic, loose, tightening),
         twin!(
             "ElementForces",
             GpuElementForces,
@@ -151,15 +152,15 @@ fn twins() -> Vec<Twin> {
             third,
             state,
             damped_second,
-            pad,
+            relaxed,
             damped_third,
             pad2,
             pressed,
             pad3
         ),
-        twin!("Obstacle", GpuObstacle, place, friction, normal, pad, whole_normal, pad2, velocity, pad3),
+        twin!("Obstacle", GpuObstacle, place, friction, normal, pad, whole_normal, last, velocity, pad3),
         twin!("Neighbour", GpuNeighbour, node, share),
-        twin!("NodeConstants", GpuNodeConstants, mass, held, first, end),
+        twin!("NodeConstants", GpuNodeConstants, mass, held, first, end, friction),
     ]
 }
 

@@ -7,8 +7,9 @@
 // `seen`, J.seen in energy; each of the step's `substeps` here takes J/substeps. The ledger has the difference: J.seen less all of J/substeps.(v + v')/2.
 // (Where they are smoothed, by J and `seen`: the sum over all nodes of the one smoothed with the other is the same either way.)
 //
-// Obstacles are rigid half-spaces. A node that would end behind one ends on it: that takes an impulse P along its normal, and with it friction takes up to
-// mu P of the slip. One that is behind it already comes no deeper.
+// Obstacles are rigid convex bodies, each behind all of its faces. A node whose flight would enter one ends on the face that it would enter
+// through: that takes an impulse P along its normal, and with it friction takes up to mu P of the slip. One that is in it already comes no deeper
+// behind the face that it is nearest to.
 //
 // Reads `element_forces`, `corners`, `node_constants`, `prescribed`, `obstacles`; reads and writes `membrane_nodes`, takes `given` in the first substep; writes
 // `nodes`, where the gas sees them at the start and at the end of its step, and `node_velocities`, with which it sees them fly. One thread per node; its triangles are added in the order of `corners`.
@@ -36,19 +37,23 @@ struct NodeConstants {
     // Its triangles.
     first: u32,
     end: u32,
+    // mu on obstacles, beside theirs.
+    friction: f32,
 }
 
+// A face of a body.
 struct Obstacle {
     // One that is on it at the start of the interval, quanta.
     place: vec3<u32>,
     // mu.
     friction: f32,
-    // Towards the free side; 0: no obstacle, nor any behind it.
+    // Towards the free side; 0: no face, nor any behind it.
     normal: vec3<f32>,
     pad: f32,
     // The same times 2^22: floats would round the heights of nodes far from the place by some quanta, and their velocities by that over a step.
     whole_normal: vec3<i32>,
-    pad2: u32,
+    // 1: the last of its body.
+    last: u32,
     // m/s.
     velocity: vec3<f32>,
     pad3: f32,
@@ -60,29 +65,83 @@ struct Stopped {
     rubbed: vec3<f32>,
 }
 
-fn stopped_by_obstacles(node: MembraneNode, velocity: vec3<f32>) -> Stopped {
+// How a flight meets a body, of whose faces some were seen.
+struct Meeting {
+    // A face that it stays before.
+    apart: bool,
+    // When it is behind all faces, over its time: from the last that it goes behind to the first that it comes out of.
+    enters: f32,
+    leaves: f32,
+    // The face that it enters through; if it is behind all from the start, the one that it is least behind.
+    face: u32,
+    // Above that at the start, m.
+    height: f32,
+}
+
+fn met_nothing() -> Meeting {
+    return Meeting(false, -1.0, 2.0, 0u, -1e30);
+}
+
+fn met_face(seen: Meeting, face: u32, height: f32, end: f32) -> Meeting {
+    var met = seen;
+    let fraction = height / (height - end);
+    if (height >= 0.0) {
+        met.apart = met.apart || end >= 0.0;
+        if (end < 0.0 && fraction > met.enters) {
+            met.enters = fraction;
+            met.face = face;
+            met.height = height;
+        }
+    } else {
+        if (end >= 0.0) {
+            met.leaves = min(met.leaves, fraction);
+        }
+        if (met.enters < 0.0 && height > met.height) {
+            met.face = face;
+            met.height = height;
+        }
+    }
+    return met;
+}
+
+fn stopped_by_obstacles(node: MembraneNode, velocity: vec3<f32>, friction: f32) -> Stopped {
     var found = Stopped();
     let time = f32(substep.slot) * membrane_step.gas_dt + f32(substep.substep) * membrane_step.dt;
+    var met = met_nothing();
     for (var k = 0u; k < MOST_OBSTACLES; k += 1u) {
-        let obstacle = obstacles[k];
-        let normal = obstacle.normal;
-        if (all(normal == vec3<f32>(0.0))) {
+        let face = obstacles[k];
+        if (all(face.normal == vec3<f32>(0.0))) {
             break;
         }
-        let whole = dot64(bitcast<vec3<i32>>(node.place - obstacle.place), obstacle.whole_normal, vec2<u32>(0u));
-        let quanta = whole / 4194304.0 + dot(node.remainder, normal);
-        let room = max(membrane_step.quantum * quanta - time * dot(obstacle.velocity, normal), 0.0);
-        let relative = velocity + found.pushed + found.rubbed - obstacle.velocity;
-        let away = dot(relative, normal);
-        let push = -room / membrane_step.dt - away;
-        if (push > 0.0) {
-            let slip = relative - away * normal;
-            let speed = length(slip);
-            found.pushed += push * normal;
-            found.rubbed -= select(vec3<f32>(0.0), slip * (min(speed, obstacle.friction * push) / speed), speed > 0.0);
+        let whole = dot64(bitcast<vec3<i32>>(node.place - face.place), face.whole_normal, vec2<u32>(0u));
+        let quanta = whole / 4194304.0 + dot(node.remainder, face.normal);
+        let height = membrane_step.quantum * quanta - time * dot(face.velocity, face.normal);
+        let away = dot(velocity + found.pushed + found.rubbed - face.velocity, face.normal);
+        met = met_face(met, k, height, height + away * membrane_step.dt);
+        if (face.last == 1u) {
+            if (!met.apart && met.enters <= met.leaves) {
+                let stop = stopped_by_face(obstacles[met.face], met.height, velocity + found.pushed + found.rubbed, friction);
+                found.pushed += stop.pushed;
+                found.rubbed += stop.rubbed;
+            }
+            met = met_nothing();
         }
     }
     return found;
+}
+
+fn stopped_by_face(face: Obstacle, height: f32, velocity: vec3<f32>, friction: f32) -> Stopped {
+    let relative = velocity - face.velocity;
+    let away = dot(relative, face.normal);
+    let push = -max(height, 0.0) / membrane_step.dt - away;
+    if (push <= 0.0) {
+        return Stopped();
+    }
+    let slip = relative - away * face.normal;
+    let speed = length(slip);
+    let most = (face.friction + friction) * push;
+    let rubbed = select(vec3<f32>(0.0), slip * (min(speed, most) / speed), speed > 0.0);
+    return Stopped(push * face.normal, -rubbed);
 }
 
 // Kahan's sum.
@@ -96,6 +155,8 @@ struct Forces {
     strain: vec3<f32>,
     damping: vec3<f32>,
     pressure: vec3<f32>,
+    // J.
+    relaxed: f32,
 }
 
 fn forces_on(constants: NodeConstants) -> Forces {
@@ -118,6 +179,7 @@ fn forces_on(constants: NodeConstants) -> Forces {
             }
         }
         sum.pressure += forces.pressed;
+        sum.relaxed += forces.relaxed / 3.0;
     }
     return sum;
 }
@@ -150,7 +212,7 @@ fn move_nodes(thread: Thread) {
     var stopped = Stopped();
     if (constants.held == 0u) {
         velocity = node.velocity + sum / mass;
-        stopped = stopped_by_obstacles(node, velocity);
+        stopped = stopped_by_obstacles(node, velocity, constants.friction);
         velocity += stopped.pushed + stopped.rubbed;
     }
     let mean = 0.5 * (node.velocity + velocity);
@@ -159,6 +221,7 @@ fn move_nodes(thread: Thread) {
     node.work[WORK_GRAVITY] = added(node.work[WORK_GRAVITY], dot(weight, mean));
     node.work[WORK_OBSTACLES] = added(node.work[WORK_OBSTACLES], mass * dot(stopped.pushed, mean));
     node.work[WORK_FRICTION] = added(node.work[WORK_FRICTION], mass * dot(stopped.rubbed, mean));
+    node.work[WORK_REFERENCE] = added(node.work[WORK_REFERENCE], forces.relaxed);
     let gas = dot(node.given, mean);
     node.work[WORK_GAS] = added(node.work[WORK_GAS], gas);
     node.work[WORK_LEDGER] = added(node.work[WORK_LEDGER], -gas);

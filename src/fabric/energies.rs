@@ -3,7 +3,8 @@
 //! Velocities are those of half a step before the places. The energy of motion is exactly that of these velocities; that of strain is taken half a step back, where the
 //! nodes were then. So to the square of the step, from the start on,
 //!
-//! kinetic + strain + damped + friction = (both at the start) + pressure + gravity + holds + obstacles + gas, and gas + ledger = what the gas gave.
+//! kinetic + strain + damped + friction = (both at the start) + pressure + gravity + holds + obstacles + reference + gas, and gas + ledger = what
+//! the gas gave.
 
 use std::ops::Range;
 
@@ -13,6 +14,7 @@ use super::layout::GpuMembraneNode;
 use super::model::Model;
 use super::registry::{
     WORK_DAMPING, WORK_FRICTION, WORK_GAS, WORK_GRAVITY, WORK_HOLDS, WORK_LEDGER, WORK_OBSTACLES, WORK_PRESSURE,
+    WORK_REFERENCE,
 };
 use super::state::place;
 
@@ -38,6 +40,8 @@ pub struct Energies {
     pub obstacles: f64,
     /// What friction on obstacles took; negative where one that moves has dragged more along.
     pub friction: f64,
+    /// What references that change their size did on strain.
+    pub reference: f64,
 }
 
 impl Energies {
@@ -71,12 +75,13 @@ impl Energies {
             ledger: work(WORK_LEDGER),
             obstacles: work(WORK_OBSTACLES),
             friction: -work(WORK_FRICTION),
+            reference: work(WORK_REFERENCE),
         }
     }
 
     /// What is there less what was put in; its change from the start is what the integration lost or made.
     pub fn balance(&self) -> f64 {
         let there = self.kinetic + self.strain + self.damped + self.friction;
-        there - self.pressure - self.gravity - self.holds - self.obstacles - self.gas
+        there - self.pressure - self.gravity - self.holds - self.obstacles - self.reference - self.gas
     }
 }

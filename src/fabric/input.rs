@@ -14,17 +14,41 @@ pub enum Hold {
     Prescribed([f64; 3]),
 }
 
-/// A rigid half-space that nodes do not enter.
+/// A face of a rigid convex body that nodes do not enter: of a half-space, if it has no other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Obstacle {
-    /// On its face, m, to half a quantum of the grid; of one that moves at the start of the next interval.
+    /// On it, m, to half a quantum of the grid; of one that moves at the start of the next interval.
     pub place: [f64; 3],
-    /// Of its face, of any length, towards the side where nodes may be.
+    /// Of any length, towards the side where nodes may be.
     pub normal: [f64; 3],
     /// m/s.
     pub velocity: [f64; 3],
-    /// mu of fabric on it.
+    /// mu of fabric on it, beside that of the fabric.
     pub friction: f64,
+}
+
+/// The size of a reference over time: that of its lengths over the true ones goes from `scale` at the start linearly to 1 at `time`, s; without
+/// `time` it stays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relaxation {
+    pub scale: f64,
+    pub time: Option<f64>,
+}
+
+impl Relaxation {
+    pub const NONE: Relaxation = Relaxation { scale: 1.0, time: None };
+
+    /// At a time, s.
+    pub fn at(&self, time: f64) -> f64 {
+        let left = self.time.map_or(1.0, |whole| (1.0 - time / whole).max(0.0));
+        1.0 + (self.scale - 1.0) * left
+    }
+
+    /// By how much lengths are larger than true at a time, s, if that did not end, and how fast it becomes less, 1/s.
+    pub(super) fn line(&self, time: f64) -> [f64; 2] {
+        let rate = self.time.map_or(0.0, |whole| (self.scale - 1.0) / whole);
+        [self.scale - 1.0 - rate * time, rate]
+    }
 }
 
 /// A triangle of fabric, free of stress where its first corner is the origin of a plane and the others are at `second` and `third`, m.
@@ -87,6 +111,8 @@ pub struct MembraneInput<'a> {
     pub materials: &'a [Material],
     /// kg, of each node beside its share of the fabric.
     pub added_masses: &'a [f64],
+    /// mu on obstacles, of each node; none at all if there are none here.
+    pub frictions: &'a [f64],
     /// Of each node.
     pub holds: &'a [Hold],
     /// m/s2.

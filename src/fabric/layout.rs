@@ -49,6 +49,7 @@ pub struct GpuMembraneNode {
     pub pad4: f32,
     /// J, and what each sum is too large by.
     pub work: [[f32; 2]; WORK_TABLE.len()],
+    pub pad5: [f32; 2],
 }
 
 #[repr(C)]
@@ -85,8 +86,8 @@ pub struct GpuElastic {
     pub young: f32,
     pub share: f32,
     pub isotropic: u32,
-    pub pad: u32,
-    pub pad2: u32,
+    pub loose: f32,
+    pub tightening: f32,
 }
 
 #[repr(C)]
@@ -100,7 +101,8 @@ pub struct GpuElementForces {
     /// 0 slack, 1 wrinkled, 2 taut.
     pub state: u32,
     pub damped_second: [f32; 3],
-    pub pad: u32,
+    /// J, of a reference that changes.
+    pub relaxed: f32,
     pub damped_third: [f32; 3],
     pub pad2: u32,
     /// On each corner.
@@ -118,6 +120,8 @@ pub struct GpuNodeConstants {
     /// Its part of the list of corners.
     pub first: u32,
     pub end: u32,
+    /// mu on obstacles.
+    pub friction: f32,
 }
 
 #[repr(C)]
@@ -130,7 +134,8 @@ pub struct GpuObstacle {
     pub pad: f32,
     /// 2^22 times the normal.
     pub whole_normal: [i32; 3],
-    pub pad2: u32,
+    /// 1: the last face of its body.
+    pub last: u32,
     /// m/s.
     pub velocity: [f32; 3],
     pub pad3: f32,

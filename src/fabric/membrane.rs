@@ -4,7 +4,7 @@ use crate::gpu::{BoundKernel, Device, GpuError, Kernel, Pass, Recording, fold};
 
 use super::energies::Energies;
 use super::error::MembraneError;
-use super::input::{Hold, MembraneInput, Obstacle};
+use super::input::{Hold, MembraneInput, Obstacle, Relaxation};
 use super::law::Law;
 use super::layout::{
     GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNodeConstants, GpuObstacle,
@@ -34,6 +34,7 @@ pub struct Membrane {
     pub state: wgpu::Buffer,
     /// A word: how often a node would have left the grid, or was nowhere. A run with any is wrong.
     pub faults: wgpu::Buffer,
+    elastic: wgpu::Buffer,
     element_forces: wgpu::Buffer,
     membrane_step: wgpu::Buffer,
     prescribed: wgpu::Buffer,
@@ -64,13 +65,13 @@ impl Membrane {
         let nodes = device.storage::<[u32; 4]>("nodes", slots)?;
         let impulses = device.storage::<u32>("impulses", (count * IMPULSE_WORDS) as u64)?;
         let element_forces = device.storage::<GpuElementForces>("element_forces", elements as u64)?;
-        let (corners, constants) = corners_of_nodes(&model);
+        let (corners, constants) = corners_of_nodes(&model, input.frictions);
         let corners = device.storage_of("corners", &corners)?;
         let constants = device.storage_of("node_constants", &constants)?;
         let of_device: Vec<GpuElement> = model.triangles.iter().map(element).collect();
         let of_device = device.storage_of("elements", &of_device)?;
-        let elastic: Vec<GpuElastic> = model.laws.iter().map(elastic).collect();
-        let elastic = device.storage_of("elastic", &elastic)?;
+        let laws: Vec<GpuElastic> = model.laws.iter().map(elastic).collect();
+        let elastic = device.storage_of("elastic", &laws)?;
         let prescribed = device.storage_of("prescribed", &held_velocities(&model.holds))?;
         let obstacles = device.storage::<GpuObstacle>("obstacles", u64::from(MOST_OBSTACLES))?;
         let faults = device.storage::<u32>("faults", 1)?;
@@ -124,6 +125,7 @@ impl Membrane {
             impulses,
             state,
             faults,
+            elastic,
             element_forces,
             membrane_step,
             prescribed,
@@ -189,13 +191,32 @@ impl Membrane {
         Ok(())
     }
 
-    /// The obstacles from the next submission on; one that moves anew for each interval.
+    /// The obstacles from the next submission on, half-spaces; one that moves anew for each interval.
     ///
     /// # Errors
     /// If there are too many, or one is none.
     pub fn set_obstacles(&self, device: &Device, obstacles: &[Obstacle]) -> Result<(), MembraneError> {
-        device.write(&self.obstacles, 0, &on_device(obstacles, &self.model, self.no_step.limit)?);
+        self.set_bodies(device, &obstacles.iter().map(|&face| vec![face]).collect::<Vec<_>>())
+    }
+
+    /// The same of convex bodies, each by its faces.
+    ///
+    /// # Errors
+    /// If they have too many, or one is none.
+    pub fn set_bodies(&self, device: &Device, bodies: &[Vec<Obstacle>]) -> Result<(), MembraneError> {
+        device.write(&self.obstacles, 0, &on_device(bodies, &self.model, self.no_step.limit)?);
         Ok(())
+    }
+
+    /// The references of the materials from a time on, s, and the next submission, for an interval.
+    pub fn relax(&self, device: &Device, relaxations: &[Relaxation], time: f64) {
+        let laws = self.model.laws.iter().zip(relaxations);
+        let of_device = laws.map(|(law, relaxation)| {
+            let [loose, tightening] = relaxation.line(time).map(|number| number as f32);
+            GpuElastic { loose, tightening, ..elastic(law) }
+        });
+        let of_device: Vec<GpuElastic> = of_device.collect();
+        device.write(&self.elastic, 0, &of_device);
     }
 
     /// The steps of the fabric in step `slot` of an interval of the gas: takes `impulses`, writes its part of `nodes`.
@@ -211,8 +232,9 @@ impl Membrane {
         self.take_impulses.dispatch(&mut pass, 0, self.node_groups);
         self.smooth(&mut pass, given);
         for substep in 0..substeps {
-            self.forces_of_elements.dispatch(&mut pass, 0, self.element_groups);
-            self.move_nodes.dispatch(&mut pass, (first + substep) * self.stride, self.node_groups);
+            let at = (first + substep) * self.stride;
+            self.forces_of_elements.dispatch(&mut pass, at, self.element_groups);
+            self.move_nodes.dispatch(&mut pass, at, self.node_groups);
         }
         self.smooth(&mut pass, velocities);
     }
@@ -323,7 +345,7 @@ fn initial_nodes(input: &MembraneInput<'_>) -> Result<Vec<GpuMembraneNode>, Memb
 }
 
 /// Of each node its triangles, four times each and which corner it is, by rising triangle; and what does not change.
-fn corners_of_nodes(model: &Model) -> (Vec<u32>, Vec<GpuNodeConstants>) {
+fn corners_of_nodes(model: &Model, frictions: &[f64]) -> (Vec<u32>, Vec<GpuNodeConstants>) {
     let mut of_nodes = vec![Vec::new(); model.masses.len()];
     for (k, triangle) in model.triangles.iter().enumerate() {
         for (corner, &node) in triangle.nodes.iter().enumerate() {
@@ -332,11 +354,12 @@ fn corners_of_nodes(model: &Model) -> (Vec<u32>, Vec<GpuNodeConstants>) {
     }
     let mut corners = Vec::with_capacity(3 * model.triangles.len());
     let mut constants = Vec::with_capacity(of_nodes.len());
-    for ((own, &mass), hold) in of_nodes.iter().zip(&model.masses).zip(&model.holds) {
+    for (node, ((own, &mass), hold)) in of_nodes.iter().zip(&model.masses).zip(&model.holds).enumerate() {
         let first = corners.len() as u32;
         corners.extend(own);
         let held = u32::from(*hold != Hold::Free);
-        constants.push(GpuNodeConstants { mass: mass as f32, held, first, end: corners.len() as u32 });
+        let friction = frictions.get(node).copied().unwrap_or(0.0) as f32;
+        constants.push(GpuNodeConstants { mass: mass as f32, held, first, end: corners.len() as u32, friction });
     }
     (corners, constants)
 }

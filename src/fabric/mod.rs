@@ -22,7 +22,7 @@ mod state;
 pub use elastic::{Elasticity, Material};
 pub use energies::Energies;
 pub use error::MembraneError;
-pub use input::{Element, Hold, MembraneInput, Obstacle, longest_step};
+pub use input::{Element, Hold, MembraneInput, Obstacle, Relaxation, longest_step};
 pub use law::{Law, Stress, Taut, principal};
 pub use layout::{
     GpuElastic, GpuElement, GpuElementForces, GpuMembraneNode, GpuMembraneStep, GpuNeighbour, GpuNodeConstants,

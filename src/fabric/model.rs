@@ -4,6 +4,9 @@
 //! F = e2 g2^T + e3 g3^T, E = (F^T F - I)/2 = sum of (e_i.e_j - e0_i.e0_j) g_i g_j^T / 2, and the force on corner a is -V F S g_a, V the reference's volume.
 //! Damping adds S = 2 eta dE/dt along what bears tension, eta = xi rho c h/2 with the wave speed c and the least height h. Pressure p puts p A n/3 on each
 //! corner. Masses are lumped: a third of a triangle's on each corner.
+//!
+//! A reference whose lengths are s times the true ones ([`Model::sizes`]) has (C/s^2 - 1)/2 in place of E, with C = 1 + 2E, and s^2 V in place of V; forces
+//! stay -V F S g_a.
 
 use std::ops::Range;
 
@@ -53,6 +56,8 @@ pub struct Model {
     pub quantum: f64,
     pub triangles: Vec<Triangle>,
     pub laws: Vec<Law>,
+    /// Of each material the lengths of its reference over the true ones: 1, but of one that changes.
+    pub sizes: Vec<f64>,
     /// kg.
     pub masses: Vec<f64>,
     pub holds: Vec<Hold>,
@@ -94,6 +99,7 @@ impl Model {
             quantum: input.grid.quantum(),
             triangles,
             laws: input.materials.iter().map(|material| Law::new(&material.elasticity)).collect(),
+            sizes: vec![1.0; input.materials.len()],
             masses,
             holds: input.holds.to_vec(),
         })
@@ -104,7 +110,15 @@ impl Model {
         let [e2, e3] = edges;
         let metric = [e2.length_squared(), e3.length_squared(), e2.dot(e3)];
         let unit = self.quantum * self.quantum;
-        by_gradients(triangle, std::array::from_fn(|i| metric[i] - triangle.metric[i] as f64 * unit))
+        let strain = by_gradients(triangle, std::array::from_fn(|i| metric[i] - triangle.metric[i] as f64 * unit));
+        let square = self.square(triangle);
+        let grown = 0.5 * (1.0 - square);
+        [(strain[0] + grown) / square, (strain[1] + grown) / square, strain[2] / square]
+    }
+
+    /// s^2.
+    fn square(&self, triangle: &Triangle) -> f64 {
+        self.sizes[triangle.material].powi(2)
     }
 
     /// Of a triangle whose corners are at these places, m; in the axes of its fibre.
@@ -123,12 +137,13 @@ impl Model {
             2.0 * edges[1].dot(rates[1]),
             edges[0].dot(rates[1]) + edges[1].dot(rates[0]),
         ];
-        let rate = in_tension(found.taut, by_gradients(triangle, metric_rate));
+        let square = self.square(triangle);
+        let rate = in_tension(found.taut, by_gradients(triangle, metric_rate).map(|rate| rate / square));
         Forces {
             strain: triangle.pull(edges, found.stress),
             damping: triangle.pull(edges, rate.map(|rate| 2.0 * triangle.viscosity * rate)),
             pressure: edges[0].cross(edges[1]) * (triangle.pressure / 6.0),
-            energy: triangle.volume * found.energy,
+            energy: triangle.volume * square * found.energy,
             taut: found.taut,
         }
     }
@@ -141,7 +156,8 @@ impl Model {
     /// Of these triangles.
     pub fn strain_energy_of(&self, triangles: Range<usize>, places: &[DVec3]) -> f64 {
         let energy = |triangle: &Triangle| {
-            triangle.volume * self.stress(triangle, triangle.nodes.map(|node| places[node as usize])).energy
+            let corners = triangle.nodes.map(|node| places[node as usize]);
+            triangle.volume * self.square(triangle) * self.stress(triangle, corners).energy
         };
         self.triangles[triangles].iter().map(energy).sum()
     }
@@ -153,6 +169,7 @@ fn check_lists(input: &MembraneInput<'_>) -> Result<(), MembraneError> {
         ("velocities", input.velocities.len(), nodes),
         ("added masses", input.added_masses.len(), nodes),
         ("holds", input.holds.len(), nodes),
+        ("frictions", if input.frictions.is_empty() { nodes } else { input.frictions.len() }, nodes),
         ("elements", input.elements.len(), input.triangles.len()),
     ];
     for (what, found, expected) in lists {

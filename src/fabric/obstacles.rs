@@ -1,4 +1,4 @@
-//! Rigid half-spaces that nodes do not enter, as the device has them.
+//! Rigid convex bodies that nodes do not enter, as the device has their faces.
 
 use glam::DVec3;
 
@@ -11,20 +11,21 @@ use super::registry::MOST_OBSTACLES;
 /// Quanta from the middle of the grid: nodes and a place on the face so near to it differ by less than 2^31.
 const FARTHEST: f64 = 1_073_741_824.0;
 
-/// Of all that there is room for, those that are none behind; `limit` is where the grid ends, quanta.
+/// All faces that there is room for, those that are none behind; `limit` is where the grid ends, quanta.
 ///
 /// # Errors
 /// If there are more, or one is none.
 pub(super) fn on_device(
-    obstacles: &[Obstacle],
+    bodies: &[Vec<Obstacle>],
     model: &Model,
     limit: [u32; 3],
 ) -> Result<[GpuObstacle; MOST_OBSTACLES as usize], MembraneError> {
-    let (found, most) = (obstacles.len(), MOST_OBSTACLES as usize);
-    let expected = "no more than there is room for, 8";
-    check(found <= most, || "the number of obstacles".into(), found as f64, expected)?;
+    let (found, most) = (bodies.iter().map(Vec::len).sum::<usize>(), MOST_OBSTACLES as usize);
+    let expected = "no more than there is room for, 64";
+    check(found <= most, || "the number of faces of obstacles".into(), found as f64, expected)?;
+    let faces = bodies.iter().flat_map(|body| body.iter().enumerate().map(|(k, face)| (face, k + 1 == body.len())));
     let mut all = [GpuObstacle::default(); MOST_OBSTACLES as usize];
-    for (k, (obstacle, of_device)) in obstacles.iter().zip(&mut all).enumerate() {
+    for (k, ((obstacle, last), of_device)) in faces.zip(&mut all).enumerate() {
         let numbers = [obstacle.place, obstacle.velocity].concat();
         let number = numbers.iter().copied().find(|x| !x.is_finite()).unwrap_or(0.0);
         check(number.is_finite(), || format!("place and velocity of obstacle {k}"), number, "finite numbers")?;
@@ -47,6 +48,7 @@ pub(super) fn on_device(
             normal: normal.as_vec3().to_array(),
             whole_normal: normal.to_array().map(|n| (4_194_304.0 * n).round() as i32),
             velocity: obstacle.velocity.map(|v| v as f32),
+            last: u32::from(last),
             ..GpuObstacle::default()
         };
     }

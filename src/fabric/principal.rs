@@ -68,6 +68,7 @@ mod tests {
             elements: &[Element::of_places(places, 3e-4, 0)],
             materials: &[Material { elasticity, density: 800.0, damping: 0.0 }],
             added_masses: &[0.0; 3],
+            frictions: &[],
             holds: &[Hold::Free; 3],
             gravity: [0.0; 3],
             substeps: 1,

@@ -27,13 +27,15 @@ registry! {
         /// Of obstacles: what pushes nodes off, and what rubs them.
         WORK_OBSTACLES = 6,
         WORK_FRICTION = 7,
+        /// Of a reference that changes its size, on strain.
+        WORK_REFERENCE = 8,
     }
 }
 
 registry! {
-    /// Room for obstacles.
+    /// Room for faces of obstacles.
     OBSTACLE_TABLE {
-        MOST_OBSTACLES = 8,
+        MOST_OBSTACLES = 64,
     }
 }
 

@@ -31,6 +31,13 @@ pub struct Membrane {
     /// STL or OBJ with the same triangles as the mesh, free of stress; the mesh itself if there is none.
     pub reference: Option<PathBuf>,
     pub fixed: Fixed,
+    /// Lengths of the reference over those of its file at the start, and when they are as in the file, s; `None`: they stay.
+    pub reference_scale: f64,
+    pub reference_time: Option<f64>,
+    /// Beside that of the material, kg/m2 of the reference as it is in its file.
+    pub added_mass: f64,
+    /// Coulomb's coefficient on walls.
+    pub wall_friction: f64,
 }
 
 /// What a membrane is of, SI.

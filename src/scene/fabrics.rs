@@ -79,7 +79,24 @@ fn membrane(
         material: material(raw, units)?,
         reference: fabric.reference.as_ref().map(|at| file(at, MESHES, base_dir)).transpose()?,
         fixed: fixed(fabric, units)?,
+        reference_scale: fabric.reference_scale.as_ref().map_or(Ok(1.0), |at| positive(at, Quantity::Pure, units))?,
+        reference_time: reference_time(fabric, units)?,
+        added_mass: or_none(fabric.added_mass.as_ref(), Quantity::SurfaceDensity, units)?,
+        wall_friction: or_none(fabric.wall_friction.as_ref(), Quantity::Pure, units)?,
     })
+}
+
+fn or_none(at: Option<&At<f64>>, quantity: Quantity, units: UnitSystem) -> Result<f64, Problem> {
+    at.map_or(Ok(0.0), |at| not_negative(at, quantity, units))
+}
+
+fn reference_time(fabric: &RawFabric, units: UnitSystem) -> Result<Option<f64>, Problem> {
+    let Some(at) = &fabric.reference_time else { return Ok(None) };
+    if fabric.reference_scale.is_none() {
+        let found = "`reference_time` without `reference_scale`";
+        return Err(Problem::value(&at.span, found, "both: the scale goes to 1 in that time"));
+    }
+    positive(at, Quantity::Time, units).map(Some)
 }
 
 fn fixed(fabric: &RawFabric, units: UnitSystem) -> Result<Fixed, Problem> {
@@ -97,9 +114,13 @@ fn fixed(fabric: &RawFabric, units: UnitSystem) -> Result<Fixed, Problem> {
 
 /// What only a membrane has.
 fn no_membrane(fabric: &RawFabric) -> Result<Option<Membrane>, Problem> {
-    let given: [(&str, Option<&Range<usize>>); 2] = [
+    let given: [(&str, Option<&Range<usize>>); 6] = [
         ("reference", fabric.reference.as_ref().map(|at| &at.span)),
         ("fixed", fabric.fixed.as_ref().map(|at| &at.span)),
+        ("reference_scale", fabric.reference_scale.as_ref().map(|at| &at.span)),
+        ("reference_time", fabric.reference_time.as_ref().map(|at| &at.span)),
+        ("added_mass", fabric.added_mass.as_ref().map(|at| &at.span)),
+        ("wall_friction", fabric.wall_friction.as_ref().map(|at| &at.span)),
     ];
     match given.into_iter().find_map(|(key, span)| Some((key, span?))) {
         None => Ok(None),

@@ -25,6 +25,14 @@ pub struct RawFabric {
     pub material: Option<At<RawMaterial>>,
     /// Of a membrane: path of a mesh file with the same triangles, free of stress; the surface at the start unless given.
     pub reference: Option<At<String>>,
+    /// Of a membrane: lengths of the reference over those of its file at the start, above 0; 1 unless given.
+    pub reference_scale: Option<At<f64>>,
+    /// With `reference_scale`: the time in which it goes linearly to 1 (SI: s), above 0; unless given it stays.
+    pub reference_time: Option<At<f64>>,
+    /// Of a membrane: mass per area of the reference beside that of its material (SI: kg/m2), at least 0; 0 unless given.
+    pub added_mass: Option<At<f64>>,
+    /// Of a membrane: coefficient of its friction on walls, at least 0; 0 unless given.
+    pub wall_friction: Option<At<f64>>,
     /// Of a membrane: the nodes that are held, by regions in which they are at the start, or `"edge"` for those of the
     /// open edge; none unless given.
     pub fixed: Option<At<RawFixed>>,

@@ -16,6 +16,8 @@ pub enum Quantity {
     Volume,
     Mass,
     Density,
+    /// Mass per area.
+    SurfaceDensity,
     Time,
     Velocity,
     Acceleration,
@@ -59,6 +61,8 @@ impl UnitSystem {
             (TMmS, Mass) => 1e3,
             (KgMmMs, Density) => 1e9,
             (TMmS, Density) => 1e12,
+            (KgMmMs, SurfaceDensity) => 1e6,
+            (TMmS, SurfaceDensity) => 1e9,
             (KgMmMs, Time) => 1e-3,
             (KgMmMs, Velocity) => 1.0,
             (TMmS, Velocity) => 1e-3,
@@ -92,6 +96,9 @@ impl UnitSystem {
             (Si, Density) => "kg/m3",
             (KgMmMs, Density) => "kg/mm3",
             (TMmS, Density) => "t/mm3",
+            (Si, SurfaceDensity) => "kg/m2",
+            (KgMmMs, SurfaceDensity) => "kg/mm2",
+            (TMmS, SurfaceDensity) => "t/mm2",
             (Si | TMmS, Time) => "s",
             (Si, Velocity) => "m/s",
             (KgMmMs, Velocity) => "mm/ms",
@@ -137,6 +144,7 @@ mod tests {
             near(Quantity::Area, length * length);
             near(Quantity::Volume, length.powi(3));
             near(Quantity::Mass, mass);
+            near(Quantity::SurfaceDensity, mass / (length * length));
             near(Quantity::Time, time);
             near(Quantity::Pressure, mass / (length * time * time));
             near(Quantity::MassFlow, mass / time);

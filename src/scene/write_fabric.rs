@@ -33,6 +33,17 @@ fn write_membrane(out: &mut TomlLines, membrane: &Membrane) {
             out.entry("fixed", &format!("[{}]", regions.join(", ")));
         }
     }
+    if membrane.reference_scale != 1.0 || membrane.reference_time.is_some() {
+        out.number("reference_scale", membrane.reference_scale);
+    }
+    if let Some(time) = membrane.reference_time {
+        out.number("reference_time", time);
+    }
+    for (key, value) in [("added_mass", membrane.added_mass), ("wall_friction", membrane.wall_friction)] {
+        if value != 0.0 {
+            out.number(key, value);
+        }
+    }
     let material = &membrane.material;
     out.header("[fabric.material]");
     out.number("thickness", material.thickness);

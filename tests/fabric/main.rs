@@ -12,3 +12,4 @@ mod refused;
 mod scenes;
 mod sheets;
 mod vents;
+mod walls;

@@ -26,6 +26,8 @@ pub struct Scene {
     pub elastic: String,
     /// Of elastic fabric, free of stress.
     pub reference: Option<TriangleMesh>,
+    /// m/s2.
+    pub gravity: [f64; 3],
 }
 
 pub const ALIKE: &str = "[[chamber]]\nname = \"all\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n";
@@ -54,6 +56,7 @@ impl Scene {
             chambers: ALIKE.into(),
             elastic: String::new(),
             reference: None,
+            gravity: [0.0; 3],
         }
     }
 
@@ -69,9 +72,10 @@ impl Scene {
             "reference = \"reference.obj\"\n"
         });
         let Scene { method, low, high, particles, seed, end, rows, chambers, elastic, .. } = self;
+        let gravity = if self.gravity == [0.0; 3] { String::new() } else { format!("gravity = {:?}\n", self.gravity) };
         let step = self.step.map_or(String::new(), |step| format!("time_step = {step:e}\n"));
         format!(
-            "end_time = {end:e}\nseed = {seed}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+            "end_time = {end:e}\nseed = {seed}\n{gravity}[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
              [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = {low:?}\nmax = {high:?}\ngas = \"inside\"\n\
              [[fabric]]\nname = \"bag\"\nfile = \"bag.obj\"\n{motion}{reference}{elastic}{chambers}\
              [model]\nmethod = \"{}\"\nparticles = {particles}\n{step}[output]\nrows = {rows}\nsnapshots = 0\n",

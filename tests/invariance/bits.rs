@@ -34,7 +34,7 @@ fn row_bits(row: &Row) -> Vec<u64> {
 #[derive(Clone, PartialEq)]
 pub struct Bits {
     pub history: Vec<Vec<u64>>,
-    /// Of each snapshot, then of the end.
+    /// Of each snapshot, then of the end; behind it the nodes of fabric.
     pub state: Vec<u8>,
     /// Steps, particle-steps, collisions, bounces.
     pub counts: [u64; 4],
@@ -59,6 +59,12 @@ fn assert_kernels_are_compiled_once() {
     );
 }
 
+fn fabric_bytes(run: &Run) -> Vec<u8> {
+    let fabric = &run.outcome.fabric;
+    let velocities = fabric.fields.as_ref().map_or(&[][..], |fields| &fields.velocities);
+    [bytemuck::cast_slice(&fabric.nodes), bytemuck::cast_slice(velocities)].concat()
+}
+
 impl Bits {
     pub fn of(run: &Run) -> Bits {
         assert_kernels_are_compiled_once();
@@ -70,6 +76,7 @@ impl Bits {
                 .map(|(_, particles)| particles)
                 .chain([&run.outcome.particles])
                 .flat_map(|particles| bytemuck::cast_slice::<_, u8>(particles).to_vec())
+                .chain(fabric_bytes(run))
                 .collect(),
             counts: [run.outcome.steps, run.outcome.particle_steps, run.outcome.collisions, run.outcome.bounces],
             audit: format!(

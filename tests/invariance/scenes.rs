@@ -250,10 +250,12 @@ pub fn inflated_bag(method: Method) -> Model {
     elastic_bag(method, "", "")
 }
 
-/// The same of warm, rough fabric with a vent.
+/// The same of warm, rough and heavy fabric with a vent, whose reference shrinks.
 pub fn vented_bag(method: Method) -> Model {
     let vent = "[[vent]]\nname = \"vent\"\nfabric = \"bag\"\nface = \"upper\"\narea = 0.001\ndischarge = 0.7\n";
-    elastic_bag(method, "temperature = 350.0\naccommodation = 0.3\nfriction = 0.5\n", vent)
+    let keys = "temperature = 350.0\naccommodation = 0.3\nfriction = 0.5\nreference_scale = 1.02\nreference_time = 2e-4\n\
+                added_mass = 0.05\nwall_friction = 0.3\n";
+    elastic_bag(method, keys, vent)
 }
 
 /// With more keys of its fabric, and more entries.

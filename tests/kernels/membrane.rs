@@ -89,6 +89,7 @@ impl Triangles {
             elements: &self.elements,
             materials: &MATERIALS,
             added_masses: &vec![0.0; count],
+            frictions: &[],
             holds: &vec![Hold::Free; count],
             gravity: [0.0; 3],
             substeps: 1,

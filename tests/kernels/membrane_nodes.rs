@@ -50,6 +50,7 @@ impl Sheet {
             elements: &elements,
             materials: &MATERIALS,
             added_masses: &[1e-5; 9],
+            frictions: &[],
             holds: &self.holds,
             gravity: GRAVITY,
             substeps: self.substeps,
@@ -214,7 +215,7 @@ fn obstacles_stop_nodes() {
     assert!(bad(Obstacle { normal: [0.0; 3], ..good }).contains("the normal of obstacle 0"));
     assert!(bad(Obstacle { friction: -1.0, ..good }).contains("the friction of obstacle 0"));
     assert!(bad(Obstacle { place: [0.0, 0.0, 1e9], ..good }).contains("the distance of obstacle 0"));
-    assert!(membrane.set_obstacles(device(), &[good; 9]).is_err());
+    assert!(membrane.set_obstacles(device(), &[good; 65]).is_err());
 }
 
 /// A node slower than a quantum a step moves by its remainder.
@@ -293,6 +294,7 @@ fn bad_membranes_are_refused() {
         elements: &elements,
         materials: &MATERIALS,
         added_masses: &[0.0; 3],
+        frictions: &[],
         holds: &[Hold::Free; 3],
         gravity: [0.0; 3],
         substeps: 1,

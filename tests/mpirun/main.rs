@@ -36,7 +36,7 @@ const CASE: &str = "CORPUSCLE_TEST_CASE";
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// `half-turn`: by that method; `midway`: from a state in the middle of the run.
-const SCENES: [&str; 10] = [
+const SCENES: [&str; 11] = [
     "tank",
     "box",
     "effusion",
@@ -47,10 +47,11 @@ const SCENES: [&str; 10] = [
     "vent-half-turn",
     "tank-half-turn-midway",
     "tank-half-turn",
+    "bag",
 ];
 const MODES: [&str; 4] = ["off", "initial", "dynamic", "forced"];
 /// Scene, mode, ranks: each of them once at least.
-const SOME: [(&str, &str, usize); 15] = [
+const SOME: [(&str, &str, usize); 16] = [
     ("tank", "dynamic", 2),
     ("tank", "initial", 4),
     ("tank", "forced", 3),
@@ -66,6 +67,7 @@ const SOME: [(&str, &str, usize); 15] = [
     ("vent-half-turn", "forced", 2),
     ("tank-half-turn", "forced", 2),
     ("tank-half-turn-midway", "dynamic", 2),
+    ("bag", "forced", 2),
 ];
 
 fn main() -> ExitCode {
@@ -112,6 +114,8 @@ fn model(scene: &str) -> Model {
         "box" => scenes::gas_box(),
         "effusion" => scenes::effusion(),
         "vent" => scenes::venting(),
+        // Elastic, by `half-turn`.
+        "bag" => scenes::vented_bag(Method::HalfTurn),
         "other" => {
             let mut scene = scenes::gas_box().scene;
             scene.seed += 1;

@@ -46,7 +46,8 @@ struct MembraneNode {
     seen: vec3<f32>,
     pad4: f32,
     // Energies, J, and what their sums are too large by.
-    work: array<vec2<f32>, 8>,
+    work: array<vec2<f32>, 9>,
+    pad5: vec2<f32>,
 }
 
 struct Element {
@@ -81,7 +82,8 @@ struct ElementForces {
     state: u32,
     // Of damping.
     damped_second: vec3<f32>,
-    pad: u32,
+    // What the change of its reference does on strain, J.
+    relaxed: f32,
     damped_third: vec3<f32>,
     pad2: u32,
     // Of pressure, on each corner.

@@ -18,8 +18,10 @@ struct Elastic {
     share: f32,
     // 1: alike in all directions.
     isotropic: u32,
-    pad: u32,
-    pad2: u32,
+    // By how much lengths of the reference are larger than true at the start of the interval, over these, and how fast that goes to zero and ends
+    // there, 1/s; 0: it stays.
+    loose: f32,
+    tightening: f32,
 }
 
 const SLACK: u32 = 0u;

@@ -24,6 +24,10 @@ name = 'woven'
 file = 'scenes/bag.obj'
 scale = <1.0 0 1 0>
 reference = 'scenes/bag.obj'
+reference_scale = 1.05
+reference_time = <2e-3 0 0 1>
+added_mass = <0.1 1 -2 0>
+wall_friction = 0.2
 external_pressure = <101325.0 1 -1 -2>
 fixed = [{ box = { min = [<0.0 0 1 0>, <0.0 0 1 0>, <0.0 0 1 0>], max = [<0.1 0 1 0>, <0.1 0 1 0>, <0.01 0 1 0>] } }, \
 { sphere = { center = [<0.05 0 1 0>, <0.05 0 1 0>, <0.09 0 1 0>], radius = <0.02 0 1 0> } }]
@@ -84,6 +88,8 @@ fn materials_are_read_and_written_as_they_were() {
     assert_eq!(woven.material.elasticity, Elasticity::Woven { young: [4e8, 3e8], shear: 5e6, fibre: [0.0, 0.6, 0.8] });
     assert_eq!([woven.material.damping, membrane(1).material.damping], [0.1, 0.05]);
     assert_eq!(membrane(1).fixed, Fixed::Edge);
+    let keys = |of: &Membrane| (of.reference_scale, of.reference_time, of.added_mass, of.wall_friction);
+    assert_eq!([0, 1].map(|index| keys(membrane(index))), [(1.05, Some(2e-3), 0.1, 0.2), (1.0, None, 0.0, 0.0)]);
     assert_eq!(membrane(2).fixed, Fixed::Nothing);
     let Fixed::Within(regions) = &woven.fixed else { panic!() };
     assert_eq!(regions.len(), 2);

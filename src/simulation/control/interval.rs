@@ -19,6 +19,8 @@ pub struct Span {
 
 /// An interval as it was decided.
 pub struct Interval {
+    /// s.
+    pub start: f64,
     pub dt: f64,
     pub first_step: u64,
     pub steps: u32,
@@ -59,6 +61,7 @@ impl Interval {
         let scales = Scales::new(plan);
         let born: Vec<Newborn> = inflow.take_until(end);
         let mut interval = Interval {
+            start,
             dt,
             first_step,
             steps,

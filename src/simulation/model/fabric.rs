@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::ModelError;
+use super::fabric_obstacles::Bodies;
 use super::membranes::Membranes;
 use crate::geometry::{Bag, GeometryError, Grid, NodeFrames, TriangleMesh};
 use crate::scene::{Chamber, Dimension, Scene, UnitSystem};
@@ -158,7 +159,11 @@ impl Surfaces {
         bends.sort_by(f64::total_cmp);
         bends.dedup();
         let fastest = frames.iter().map(NodeFrames::top_speed).fold(0.0, f64::max);
-        let places = move |time: f64| frames.iter().flat_map(|own| own.at(time)).collect();
+        let places = move |time: f64| -> Vec<[f64; 3]> { frames.iter().flat_map(|own| own.at(time)).collect() };
+        if is_elastic {
+            membranes.bodies = Bodies::of(scene, membranes.thickest, &places(0.0));
+            notes.extend(membranes.bodies.notes());
+        }
         let course = Course { places: Arc::new(places), bends, fastest };
         let surfaces = Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) };
         Ok(if is_elastic { surfaces.elastic(membranes) } else { surfaces })

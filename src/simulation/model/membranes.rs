@@ -1,9 +1,11 @@
-//! What elastic fabric is made of: of each triangle its stress-free shape and material, of each node whether it is held.
+//! What elastic fabric is made of: of each triangle its stress-free shape and material, of each node whether it is held, its added mass and
+//! friction.
 
 use glam::DVec3;
 
 use super::error::ModelError;
-use crate::fabric::{Elasticity, Element, Hold, Material, longest_step};
+use super::fabric_obstacles::Bodies;
+use crate::fabric::{Elasticity, Element, Hold, Material, Relaxation, longest_step};
 use crate::geometry::{TriangleMesh, region_contains};
 use crate::scene::{self, Fixed};
 
@@ -12,13 +14,22 @@ use crate::scene::{self, Fixed};
 pub struct Membranes {
     pub elements: Vec<Element>,
     pub materials: Vec<Material>,
+    /// Of each material.
+    pub relaxations: Vec<Relaxation>,
+    /// Of each node.
     pub holds: Vec<Hold>,
+    /// kg.
+    pub added_masses: Vec<f64>,
+    /// mu on walls.
+    pub frictions: Vec<f64>,
     /// The longest step of the fabric, s; infinite if none is elastic.
     pub longest_step: f64,
     /// Of the thickest, m.
     pub thickest: f64,
     /// kg, of those that are free.
     pub lightest_node: f64,
+    /// What stops nodes.
+    pub bodies: Bodies,
 }
 
 /// Of surfaces at rest beside elastic ones: their nodes are held, and whatever they are of has no stress.
@@ -43,7 +54,10 @@ impl Membranes {
             let corners = |triangle: &[u32; 3]| triangle.map(|node| mesh.nodes[node as usize]);
             let element = |triangle| Element::of_places(corners(triangle), THICKNESS_AT_REST, material);
             self.elements.extend(mesh.triangles.iter().map(element));
+            self.relaxations.push(Relaxation::NONE);
             self.holds.extend(vec![Hold::Fixed; mesh.nodes.len()]);
+            self.added_masses.extend(vec![0.0; mesh.nodes.len()]);
+            self.frictions.extend(vec![0.0; mesh.nodes.len()]);
             return Ok(());
         };
         let reference = match &membrane.reference {
@@ -60,7 +74,10 @@ impl Membranes {
         let of = &membrane.material;
         let known = Material { elasticity: elasticity(&of.elasticity), density: of.density, damping: of.damping };
         self.materials.push(known);
-        self.longest_step = self.longest_step.min(longest_step(&own, &self.materials));
+        self.relaxations.push(Relaxation { scale: membrane.reference_scale, time: membrane.reference_time });
+        // (A small reference is stiff.)
+        let shortest = membrane.reference_scale.min(1.0);
+        self.longest_step = self.longest_step.min(shortest * longest_step(&own, &self.materials));
         let holds = holds(&membrane.fixed, mesh);
         if holds.iter().all(|hold| *hold == Hold::Fixed) {
             return Err(refused(
@@ -68,15 +85,21 @@ impl Membranes {
             ));
         }
         self.thickest = self.thickest.max(of.thickness);
-        let mut masses = vec![0.0; mesh.nodes.len()];
+        let mut added = vec![0.0; mesh.nodes.len()];
+        let mut masses = added.clone();
         for (triangle, element) in mesh.triangles.iter().zip(&own) {
-            let share = of.density * element.thickness * element.area() / 3.0;
-            triangle.iter().for_each(|&node| masses[node as usize] += share);
+            let (more, material) = (membrane.added_mass, of.density * element.thickness);
+            for &node in triangle {
+                added[node as usize] += more * element.area() / 3.0;
+                masses[node as usize] += (more + material) * element.area() / 3.0;
+            }
         }
         let free = masses.iter().zip(&holds).filter(|(_, hold)| **hold == Hold::Free).map(|(mass, _)| *mass);
         self.lightest_node = free.fold(self.lightest_node, f64::min);
         self.elements.extend(own);
         self.holds.extend(holds);
+        self.added_masses.extend(added);
+        self.frictions.extend(vec![membrane.wall_friction; mesh.nodes.len()]);
         Ok(())
     }
 }

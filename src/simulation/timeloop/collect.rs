@@ -95,7 +95,7 @@ impl Simulation<'_> {
         }
         self.submissions.spare.extend(before.spare());
         if let (Some(elastic), Some(FabricInFlight { after, .. })) = (&mut self.fabric, fabric) {
-            let grown = elastic.read(self.device, after)?;
+            let grown = elastic.read(self.device, after, &interval)?;
             let gained = Surfaces::gained(&self.model.scene, &grown);
             let initial = self.books.averages.initial_volumes();
             interval.volumes = initial.iter().zip(gained).map(|(initial, gained)| initial + gained).collect();

@@ -6,19 +6,22 @@
 //!
 //! What the host knows of it comes with the tallies of an interval: where nodes were when zones were tallied, and the state at its end.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use crate::fabric::{
-    Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState, Obstacle, Principal, Taut, Triangle, place,
+    Energies, GpuMembraneNode, Membrane, MembraneInput, MembraneState, Principal, Relaxation, Taut, Triangle, place,
 };
 use crate::gpu::{Device, Readback, Recording};
 use crate::output::{FabricAccount, MembraneFields, TriangleField};
 use crate::ranks::Communicator;
-use crate::scene::{GasSide, Scene, Shape};
 use crate::simulation::accounting::row::FabricEnergies;
+use crate::simulation::control::interval::Interval;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
+use crate::simulation::model::membranes::Membranes;
 use crate::simulation::run_state::FabricState;
 use crate::subdomain::{Scales, Subdomain};
 
@@ -27,9 +30,10 @@ const PLACE: u64 = size_of::<[u32; 4]>() as u64;
 
 pub struct ElasticFabric<'a> {
     model: &'a Model,
+    membranes: &'a Membranes,
     membrane: Membrane,
-    /// Of the fabric, s.
-    longest_step: f64,
+    /// Of the state, s.
+    time: f64,
     /// kg m/s.
     impulse_unit: f64,
     /// The state at the end of the last interval read.
@@ -72,7 +76,8 @@ impl<'a> ElasticFabric<'a> {
             triangles: &model.fabric.triangles,
             elements: &membranes.elements,
             materials: &membranes.materials,
-            added_masses: &vec![0.0; places.len()],
+            added_masses: &membranes.added_masses,
+            frictions: &membranes.frictions,
             holds: &membranes.holds,
             gravity: model.scene.gravity,
             substeps: substeps(plan.time_step, membranes.longest_step),
@@ -81,19 +86,21 @@ impl<'a> ElasticFabric<'a> {
             drag: 0.0,
         };
         let membrane = Membrane::new(device, &input)?.smoothed(model.smoothings());
-        membrane.set_obstacles(device, &obstacles(&model.scene, membranes.thickest))?;
+        membrane.set_bodies(device, &membranes.bodies.faces)?;
+        membrane.relax(device, &membranes.relaxations, 0.0);
         subdomain.follow_fabric(device, [&membrane.nodes, &membrane.impulses, &membrane.node_velocities])?;
         let state = membrane.read_state(device)?.nodes;
-        let energies = Energies::of(membrane.model(), &state);
+        let energies = Energies::of(&host_model(membranes, &membrane, 0.0), &state);
         let nodes = lattice_places(model, &state);
         let measures = model.fabric.measures_of(&nodes);
         Ok(Some(ElasticFabric {
             model,
             impulse_unit,
-            longest_step: membranes.longest_step,
             start: [energies.kinetic, energies.strain],
             initial_volumes: measures.iter().map(|[volume, _]| *volume).collect(),
             window: (0, vec![[0.0; 2]; measures.len()]),
+            membranes,
+            time: 0.0,
             membrane,
             state,
             nodes,
@@ -110,14 +117,15 @@ impl<'a> ElasticFabric<'a> {
         &self.membrane.impulses
     }
 
-    /// From here on steps are this long, s; keeps what there is before them.
+    /// Steps are those of an interval from here on; keeps what there is before them.
     ///
     /// # Errors
     /// If the device has no memory for that.
-    pub fn begin_interval(&self, rec: &mut Recording<'_>, dt: f64) -> Result<SavedFabric, SimulationError> {
-        let device = rec.device();
-        let substeps = substeps(dt, self.longest_step);
+    pub fn begin_interval(&self, rec: &mut Recording<'_>, interval: &Interval) -> Result<SavedFabric, SimulationError> {
+        let (device, dt) = (rec.device(), interval.dt);
+        let substeps = substeps(dt, self.membranes.longest_step);
         self.membrane.divide_step(device, dt, substeps);
+        self.membrane.relax(device, &self.membranes.relaxations, interval.start);
         Ok(SavedFabric { state: self.membrane.save(device, rec.encoder())?, substeps })
     }
 
@@ -158,7 +166,13 @@ impl<'a> ElasticFabric<'a> {
     ///
     /// # Errors
     /// If the device failed, or a node left the grid.
-    pub fn read(&mut self, device: &Device, readback: Readback) -> Result<Vec<f64>, SimulationError> {
+    pub fn read(
+        &mut self,
+        device: &Device,
+        readback: Readback,
+        interval: &Interval,
+    ) -> Result<Vec<f64>, SimulationError> {
+        self.time = interval.start + interval.dt * f64::from(interval.steps);
         let (bytes, _) = readback.finish(device, <[u8]>::to_vec)?;
         let (state, rest) = bytes.split_at(size_of::<GpuMembraneNode>() * self.nodes.len());
         let (faults, moments) = rest.split_at(PLACE as usize);
@@ -198,9 +212,10 @@ impl<'a> ElasticFabric<'a> {
 
     /// Of each surface, at the end of the last interval read.
     pub fn energies(&self) -> Vec<FabricEnergies> {
+        let host = self.half_a_step_before();
         let of = |surface: usize| {
             let (triangles, nodes) = self.model.fabric.parts(surface);
-            let own = Energies::of_part(self.membrane.model(), &self.state, triangles, nodes);
+            let own = Energies::of_part(&host, &self.state, triangles, nodes);
             FabricEnergies { kinetic: own.kinetic, strain: own.strain, damped: own.damped }
         };
         (0..self.initial_volumes.len()).map(of).collect()
@@ -208,7 +223,7 @@ impl<'a> ElasticFabric<'a> {
 
     /// Of nodes and triangles, at the end of the last interval read; those of fabric at rest have none.
     pub fn fields(&self) -> MembraneFields {
-        let membrane = self.membrane.model();
+        let membrane = &*host_model(self.membranes, &self.membrane, self.time);
         let places = self.state.iter().map(|node| place(node, membrane)).collect::<Vec<_>>();
         let elastic = self.model.scene.fabrics.iter().map(|fabric| fabric.membrane.is_some());
         let surfaces = self.model.fabric.all.iter().zip(elastic);
@@ -237,18 +252,24 @@ impl<'a> ElasticFabric<'a> {
         }
     }
 
+    /// As it is for the energies, whose strain is that of then.
+    fn half_a_step_before(&self) -> Cow<'_, crate::fabric::Model> {
+        let step = self.state.first().map_or(0.0, |node| f64::from(node.dt));
+        host_model(self.membranes, &self.membrane, self.time - 0.5 * step)
+    }
+
     /// The account since the start of the run, but for what it has from the gas; nothing is under way. Collective.
     ///
     /// # Errors
     /// If the device or another rank fails.
     pub fn account(&self, device: &Device, comm: &dyn Communicator) -> Result<FabricAccount, SimulationError> {
-        let now = Energies::of(self.membrane.model(), &self.state);
+        let now = Energies::of(&self.half_a_step_before(), &self.state);
         let [kinetic, strain] = self.start;
         Ok(FabricAccount {
             from_gas: 0.0,
             from_pressure: now.pressure,
             from_gravity: now.gravity,
-            from_supports: now.holds + now.obstacles - now.friction,
+            from_supports: now.holds + now.obstacles - now.friction + now.reference,
             kinetic: [kinetic, now.kinetic],
             strain: [strain, now.strain],
             damped: now.damped,
@@ -284,11 +305,17 @@ impl<'a> ElasticFabric<'a> {
         })
     }
 
-    /// Goes on from a state; one rank has the impulses that all have given together.
+    /// Goes on from a state at a time, s; one rank has the impulses that all have given together.
     ///
     /// # Errors
     /// If it is that of another fabric.
-    pub fn put(&mut self, device: &Device, known: &FabricState, is_first: bool) -> Result<(), SimulationError> {
+    pub fn put(
+        &mut self,
+        device: &Device,
+        known: &FabricState,
+        (is_first, time): (bool, f64),
+    ) -> Result<(), SimulationError> {
+        self.time = time;
         let words = size_of::<GpuMembraneNode>() / 4 * self.nodes.len();
         for (what, found, expected) in [
             ("words of nodes of fabric", known.membrane.len(), words),
@@ -313,22 +340,14 @@ impl<'a> ElasticFabric<'a> {
     }
 }
 
-/// The sides of the box around the gas, if that is what is around it: smooth, and half the thickness of the fabric before the walls.
-fn obstacles(scene: &Scene, thickness: f64) -> Vec<Obstacle> {
-    let mut rooms = scene.walls.iter().filter_map(|wall| match wall.shape {
-        Shape::Box { min, max, thickness: None, .. } if wall.gas == GasSide::Inside => Some([min, max]),
-        Shape::Box { min, max, thickness: Some(_), ref holes } if holes.is_empty() => Some([min, max]),
-        _ => None,
-    });
-    let (Some([min, max]), None) = (rooms.next(), rooms.next()) else { return Vec::new() };
-    let side = |axis: usize, corner: [f64; 3], sign: f64| {
-        let mut normal = [0.0; 3];
-        normal[axis] = sign;
-        let mut place = corner;
-        place[axis] += sign * 0.5 * thickness;
-        Obstacle { place, normal, velocity: [0.0; 3], friction: 0.0 }
-    };
-    (0..3).flat_map(|axis| [side(axis, min, 1.0), side(axis, max, -1.0)]).collect()
+/// On the host, with references as they are at a time, s.
+fn host_model<'m>(membranes: &Membranes, membrane: &'m Membrane, time: f64) -> Cow<'m, crate::fabric::Model> {
+    if membranes.relaxations.iter().all(|relaxation| *relaxation == Relaxation::NONE) {
+        return Cow::Borrowed(membrane.model());
+    }
+    let mut model = membrane.model().clone();
+    model.sizes = membranes.relaxations.iter().map(|relaxation| relaxation.at(time)).collect();
+    Cow::Owned(model)
 }
 
 /// Steps of the fabric in one of the gas, s.

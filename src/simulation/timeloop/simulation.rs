@@ -258,7 +258,7 @@ impl<'a> Simulation<'a> {
         }
         self.books.vents.clone_from(&state.vents);
         if let (Some(fabric), Some(known)) = (&mut self.fabric, &state.fabric) {
-            fabric.put(self.device, known, self.ranks.comm().rank() == 0)?;
+            fabric.put(self.device, known, (self.ranks.comm().rank() == 0, self.control.clock.time()))?;
         }
         self.submissions.submitted = state.submitted as usize;
         self.progress.next_row = state.next_row;

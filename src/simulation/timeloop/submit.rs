@@ -96,7 +96,7 @@ impl Machine<'_, '_> {
             }
         };
         let mut rec = Recording::new(device);
-        let fabric_before = self.fabric.map(|fabric| fabric.begin_interval(&mut rec, interval.dt)).transpose()?;
+        let fabric_before = self.fabric.map(|fabric| fabric.begin_interval(&mut rec, &interval)).transpose()?;
         let (mut present, mut cells) = (0, GridCells::default());
         for (k, mut slot) in (done..).zip(slots) {
             let sampling = Sampling { lost: k == 0, tally: interval.tallied[k as usize] };

@@ -131,6 +131,7 @@ impl Sheet {
             elements: &self.elements,
             materials: &[self.material],
             added_masses: &vec![0.0; self.mesh.nodes.len()],
+            frictions: &[],
             holds: &self.holds,
             gravity: self.gravity,
             substeps: 1,
