@@ -228,8 +228,7 @@ pub fn mean_states(scene: &Scene, measured: &Measured, amounts: &Amounts, partic
         number_density: count / volume,
         thermal_square: kinetics::thermal_square(temperature, molar_mass),
     };
-    let final_volume = measured.motion.map_or(measured.gas_volume, |motion| motion.final_gas_volume);
-    let end = state(particles[1], final_volume, amounts.final_temperature, final_mass);
+    let end = state(particles[1], measured.final_volume(), amounts.final_temperature, final_mass);
     // Without initial gas there is no state to limit the step.
     let start = if particles[0] > 0.0 {
         state(particles[0], measured.gas_volume, amounts.initial_temperature, initial_mass)

@@ -23,6 +23,16 @@ pub fn smoothings(ratio: f64) -> u32 {
 }
 
 pub fn reasons(scene: &Scene, measured: &Measured, moles_per_particle: f64, reasons: &mut Vec<Reason>) {
+    if let Some(inflated) = measured.inflated {
+        reasons.push(Reason {
+            quantity: "volume of bags".into(),
+            value: format!("{} L", significant(1e3 * inflated)),
+            why: format!(
+                "about what their fabric holds inflated, or what they hold at the start: {} L",
+                significant(1e3 * measured.gas_volume)
+            ),
+        });
+    }
     let Some(node) = measured.lightest_node else { return };
     let heaviest = scene.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max) * moles_per_particle;
     let ratio = heaviest / node;

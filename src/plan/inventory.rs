@@ -115,7 +115,7 @@ impl Inventory {
             .zip(volumes)
             .map(|(chamber, &v)| (chamber.name.clone(), at_start(scene, chamber, v)))
             .collect();
-        let volume = measured.motion.map_or(measured.gas_volume, |motion| motion.final_gas_volume);
+        let volume = measured.final_volume();
         let end = Contents {
             volume,
             mass: amounts.mass(scene),
@@ -125,7 +125,7 @@ impl Inventory {
         let opens = |(vent, place): (&Vent, &MeasuredVent)| {
             let absolute = vent.external_pressure + vent.opening_pressure;
             let highest = end.pressure.max(scene.chambers[place.chamber].pressure);
-            let reached = highest >= absolute || measured.motion.is_some();
+            let reached = highest >= absolute || measured.motion.is_some() || measured.inflated.is_some();
             (vent.name.clone(), Opens { absolute, outside: vent.external_pressure, reached })
         };
         let vents: Vec<(String, Opens)> = scene.vents.iter().zip(&measured.vents).map(opens).collect();

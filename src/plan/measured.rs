@@ -7,7 +7,7 @@ use crate::scene::{Opening, SurfaceId};
 /// What the plan needs to know of the geometry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// m3.
+    /// m3: of the vessel, or of bags that all gas is in.
     pub gas_volume: f64,
     /// m3, one per chamber of the scene.
     pub chamber_volumes: Vec<f64>,
@@ -60,11 +60,19 @@ pub struct Measured {
     pub split_chambers: Vec<SplitChamber>,
     /// Orifices with a wall right before them.
     pub facing_orifices: Vec<FacingOrifice>,
+    /// m3, about what bags of elastic fabric hold when they are inflated, where all gas is in bags.
+    pub inflated: Option<f64>,
     /// kg, the lightest node of elastic fabric that is free, where there is any.
     pub lightest_node: Option<f64>,
 }
 
 impl Measured {
+    /// m3 of all gas at the end of the run, of elastic bags about.
+    pub(super) fn final_volume(&self) -> f64 {
+        let moved = self.motion.map_or(self.gas_volume, |motion| motion.final_gas_volume);
+        self.inflated.unwrap_or(moved)
+    }
+
     /// m3 of gas space in no chamber.
     pub(super) fn empty_space(&self) -> f64 {
         self.gas_volume - self.chamber_volumes.iter().sum::<f64>()

@@ -39,7 +39,7 @@ pub fn wanted(scene: &Scene, measured: &Measured, amounts: &Amounts, method: Met
     if let Some(count) = scene.model.particles {
         return give(count, "asked for; initial and injected gas together at the end".into());
     }
-    let volume = measured.gas_volume;
+    let volume = measured.inflated.unwrap_or(measured.gas_volume);
     let (molar_mass, _) = amounts.mean_molar_masses(scene);
     let speed = kinetics::mean_speed(kinetics::thermal_square(amounts.final_temperature, molar_mass));
     let area = libm::pow(volume, 2.0 / 3.0) / 16.0;

@@ -88,6 +88,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         sources: vec![],
         backed_vents: vec![],
         facing_orifices: vec![],
+        inflated: None,
         lightest_node: None,
     };
     (scene, measured)

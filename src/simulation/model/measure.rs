@@ -50,6 +50,7 @@ pub fn measured(
         sources: scene.orifices.iter().map(|orifice| source(scene, vessel, orifice)).collect(),
         facing_orifices: facing_orifices(scene, vessel),
         openings,
+        inflated: None,
         lightest_node: None,
         smallest_gap: gap,
         thinnest_body: body,

@@ -5,6 +5,7 @@ mod behind;
 pub(super) mod build;
 mod clearances;
 mod contact;
+mod enclosed;
 pub(super) mod error;
 pub(super) mod fabric;
 mod fabric_obstacles;

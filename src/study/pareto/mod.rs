@@ -20,7 +20,7 @@ use crate::study::StudyError;
 
 pub use point::{Point, Timed, measure};
 pub use setting::{Range, Setting, collision_time, denser, model_with};
-pub use trials::{Build, Extent, Judge, Trials};
+pub use trials::{Build, Extent, Judge, Norm, Trials};
 
 /// A problem with a known answer.
 pub struct Case {

@@ -5,7 +5,7 @@ use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::verify::holes::{RADIUS, VOLUME, discharge_of, emptying_scene};
 
-use super::{Extent, Range, Trials, model_with};
+use super::{Extent, Norm, Range, Trials, model_with};
 
 /// Rows that a discharge needs: two of the start, and a window.
 const LEAST_ROWS: usize = 4;
@@ -65,7 +65,8 @@ pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
         judge: Box::new(|_, run| {
             // An interval of long steps may be longer than a row should be.
             let enough = run.rows.len() >= LEAST_ROWS;
-            enough.then(|| (discharge_of(&run.rows).0 / CONTINUUM_COEFFICIENT - 1.0).abs())
+            enough.then(|| vec![discharge_of(&run.rows).0 / CONTINUUM_COEFFICIENT - 1.0])
         }),
+        norm: Norm::Mean,
     })
 }

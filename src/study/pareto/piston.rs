@@ -4,7 +4,7 @@ use crate::scene::Method;
 use crate::study::StudyError;
 use crate::study::verify::piston::{Piston, on_piston, shock_pressure};
 
-use super::{Extent, Range, Trials, model_with};
+use super::{Extent, Norm, Range, Trials, model_with};
 
 /// Of the piston, in c0.
 const SPEED: f64 = 0.5;
@@ -58,7 +58,8 @@ pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
         }),
         judge: Box::new(move |model, run| {
             let (pressure, _) = on_piston(&of(model.plan.particles), run);
-            Some((pressure / shock_pressure(SPEED) - 1.0).abs())
+            Some(vec![pressure / shock_pressure(SPEED) - 1.0])
         }),
+        norm: Norm::Mean,
     })
 }

@@ -45,6 +45,8 @@ pub struct Point {
     pub step: f64,
     /// Of each seed; empty if the setting cannot be run, and of the reference itself.
     pub errors: Vec<f64>,
+    /// Of the mean over the seeds; `None` with one seed.
+    pub error_of_mean: Option<f64>,
     /// s, of each seed.
     pub seconds: Vec<f64>,
     pub timed: Timed,
@@ -73,6 +75,7 @@ impl Point {
             rounds: plan.map_or(0, |plan| plan.rounds),
             step: 0.0,
             errors: Vec::new(),
+            error_of_mean: None,
             seconds: Vec::new(),
             timed: Timed::Wall,
             steps: 0,
@@ -113,10 +116,10 @@ impl Point {
         place.iter().all(|value| value.is_finite() && *value > 0.0).then_some(place)
     }
 
-    fn add(&mut self, model: &Model, volume: Option<f64>, run: &Run, error: Option<f64>) {
+    fn add(&mut self, model: &Model, trials: &Trials, run: &Run, deviations: Option<&[f64]>) {
         let outcome = &run.outcome;
         let limits = audit_limits(&model.plan);
-        match error.filter(|error| error.is_finite()) {
+        match deviations.map(|all| trials.norm.of(all)).filter(|error| error.is_finite()) {
             Some(error) => self.errors.push(error),
             None => self.trouble = Some("the run says nothing of the quantity".into()),
         }
@@ -126,7 +129,7 @@ impl Point {
         self.steps += outcome.steps;
         self.particle_steps += outcome.particle_steps;
         let mean_step = outcome.time / outcome.steps.max(1) as f64;
-        let tau = collision_time(&model.plan, volume);
+        let tau = collision_time(&model.plan, trials.volume);
         self.step = if tau.is_finite() { mean_step / tau } else { 0.0 };
         if let Some(lost) = outcome.audit.lost_collision_fraction {
             self.lost = Some(self.lost.unwrap_or(0.0).max(lost));
@@ -159,6 +162,8 @@ fn seconds(phases: &PhaseTable, stepping: f64) -> (f64, Timed) {
 /// If the device fails.
 pub fn measure(device: &Device, trials: &Trials, setting: &Setting, repeat: u32) -> Result<Point, StudyError> {
     let mut point: Option<Point> = None;
+    // Of the deviations over the seeds.
+    let mut sums: Option<Vec<f64>> = Some(Vec::new());
     for seed in 0..u64::from(repeat) {
         let model = match (trials.model)(setting, seed) {
             Ok(model) => model,
@@ -177,20 +182,39 @@ pub fn measure(device: &Device, trials: &Trials, setting: &Setting, repeat: u32)
             continue;
         }
         match run(device, &model, Options::default()) {
-            Ok(run) => point.add(&model, trials.volume, &run, (trials.judge)(&model, &run)),
+            Ok(run) => {
+                let found = (trials.judge)(&model, &run);
+                point.add(&model, trials, &run, found.as_deref());
+                sums = added(sums, found);
+            }
             Err(error @ StudyError::Simulation(SimulationError::Ladder { .. } | SimulationError::Lost { .. })) => {
                 return Ok(failed(Some(point.clone()), setting, trials, &error));
             }
             Err(error) => return Err(error),
         }
     }
-    Ok(point.unwrap_or_else(|| Point::new(setting, None, trials.volume)))
+    let mut point = point.unwrap_or_else(|| Point::new(setting, None, trials.volume));
+    if point.errors.len() > 1 {
+        let seeds = f64::from(repeat);
+        let mean = |sums: Vec<f64>| trials.norm.of(&sums.iter().map(|sum| sum / seeds).collect::<Vec<f64>>());
+        point.error_of_mean = sums.map(mean);
+    }
+    Ok(point)
+}
+
+/// Sums of deviations with those of one seed more; `None` if seeds do not have the same ones.
+fn added(sums: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
+    let (sums, more) = (sums?, more?);
+    if sums.is_empty() {
+        return Some(more);
+    }
+    (sums.len() == more.len()).then(|| sums.iter().zip(&more).map(|(sum, more)| sum + more).collect())
 }
 
 fn failed(point: Option<Point>, setting: &Setting, trials: &Trials, error: &StudyError) -> Point {
     let point = point.unwrap_or_else(|| Point::new(setting, None, trials.volume));
     // The mean of some seeds is not that of all.
-    Point { errors: Vec::new(), beyond: true, trouble: Some(error.to_string()), ..point }
+    Point { errors: Vec::new(), error_of_mean: None, beyond: true, trouble: Some(error.to_string()), ..point }
 }
 
 /// Whether the step asked for is beyond the limit of the plan that was not asked for one.
@@ -204,6 +228,7 @@ fn exceeds(model: &Model, setting: &Setting, trials: &Trials) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::pareto::Norm;
 
     fn point(errors: &[f64], seconds: &[f64]) -> Point {
         Point { errors: errors.to_vec(), seconds: seconds.to_vec(), ..Point::new(&Setting::default(), None, None) }
@@ -235,6 +260,19 @@ mod tests {
             PhaseTable { rows: vec![("bin".into(), 0.5, 1), ("sort".into(), 0.25, 1)], ..PhaseTable::default() };
         assert_eq!(seconds(&phases, 9.0), (0.75, Timed::Device));
         assert_eq!(seconds(&PhaseTable::default(), 9.0), (9.0, Timed::Wall));
+    }
+
+    /// Deviations of opposite signs cancel in the mean over seeds, not in the mean of their errors.
+    #[test]
+    fn the_error_of_the_mean_is_that_of_the_mean_deviations() {
+        let sums = [[0.3, -0.1], [-0.1, -0.1]]
+            .into_iter()
+            .fold(Some(Vec::new()), |sums, of_seed| added(sums, Some(of_seed.to_vec())));
+        let mean: Vec<f64> = sums.unwrap().iter().map(|sum| sum / 2.0).collect();
+        assert!((Norm::Mean.of(&mean) - 0.1).abs() < 1e-12);
+        assert!((Norm::RootMeanSquare.of(&[0.3, -0.1]) - 0.05f64.sqrt()).abs() < 1e-12);
+        assert_eq!(added(Some(vec![1.0]), None), None);
+        assert_eq!(added(Some(vec![1.0]), Some(vec![1.0, 2.0])), None);
     }
 
     /// What a plan decides is unwished whatever the number of particles; any other wish is one.

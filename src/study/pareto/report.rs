@@ -30,7 +30,7 @@ pub fn front_of(points: &[Point]) -> Vec<usize> {
     front(&places)
 }
 
-const HEADER: [&str; 22] = [
+const HEADER: [&str; 23] = [
     "method",
     "particles",
     "occupancy",
@@ -38,6 +38,7 @@ const HEADER: [&str; 22] = [
     "rounds",
     "error",
     "error_se",
+    "error_of_mean",
     "seconds",
     "seconds_min",
     "seconds_max",
@@ -74,6 +75,7 @@ impl Chart<'_> {
                 point.rounds.to_string(),
                 optional(point.error()),
                 optional(point.standard_error()),
+                optional(point.error_of_mean),
                 optional(seconds),
                 optional(least),
                 optional(most),
@@ -173,6 +175,7 @@ impl Chart<'_> {
             text += "\n## Seconds for an error\n\nOf the cheapest setting within its limits that has at most this error.\n\n";
             text += &self.levels_table(&levels);
         }
+        text += &self.means();
         text += "\n## What follows\n\n";
         for line in self.conclusions(&levels) {
             text += &format!("- {line}\n");
@@ -207,6 +210,31 @@ impl Chart<'_> {
             ]
         };
         table(&head.map(str::to_owned), &indices.iter().map(row).collect::<Vec<_>>())
+    }
+
+    /// The front of each method by the error of the mean over the seeds and the seconds of all seeds; empty with one seed.
+    fn means(&self) -> String {
+        let place = |point: &Point| Some([point.seconds.iter().sum(), point.error_of_mean.filter(|_| !point.beyond)?]);
+        let front_of_method = |method: Method| {
+            let own = |point: &Point| place(point).filter(|_| point.method == method).unwrap_or([f64::NAN; 2]);
+            front(&self.points.iter().map(own).collect::<Vec<_>>())
+        };
+        let row = |index: usize| {
+            let point = &self.points[index];
+            let figure = |value: f64| figure(value, 3);
+            let [seconds, error] = place(point)?;
+            Some(vec![figure(seconds), figure(error), described(point)])
+        };
+        let rows: Vec<Vec<String>> = self.methods().into_iter().flat_map(front_of_method).filter_map(row).collect();
+        if rows.is_empty() {
+            return String::new();
+        }
+        format!(
+            "\n## The mean of the {} seeds\n\nError of the mean, and seconds of all seeds together: the front of each \
+             method.\n\n{}",
+            self.seeds,
+            table(&["seconds", "error", "setting"].map(str::to_owned), &rows)
+        )
     }
 
     /// Round errors between the least and the largest of the front.

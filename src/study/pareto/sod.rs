@@ -2,9 +2,9 @@
 
 use crate::scene::Method;
 use crate::study::StudyError;
-use crate::study::verify::tube::SOD;
+use crate::study::verify::tube::{SOD, Slice};
 
-use super::{Extent, Range, Trials, model_with};
+use super::{Extent, Norm, Range, Trials, model_with};
 
 const QUICK: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[1000, 4000], &[0.12], &[0.3], &[1, 8]),
@@ -20,7 +20,9 @@ const NORMAL: &[Range<'static>] = &[
     Range::new(Method::Cell, &[2500, 10_000], &[0.05, 0.12, 0.3], &[0.3, 1.0, 2.0], &[]),
     Range::new(Method::HalfTurn, &[2500, 10_000], &[], &[], &[]),
     Range::new(Method::Cell, &[40_000], &[0.05, 0.12, 0.3], &[0.3, 2.0], &[]),
-    Range::new(Method::HalfTurn, &[40_000], &[], &[], &[]),
+    Range::new(Method::Cell, &[160_000], &[0.12, 0.3], &[1.0, 2.0], &[]),
+    Range::new(Method::Cell, &[640_000], &[0.12], &[1.0], &[]),
+    Range::new(Method::HalfTurn, &[20_000, 40_000, 160_000], &[], &[], &[]),
     Range::new(Method::HardSphere, &[2500, 10_000], &[0.01, 0.03, 0.1], &[0.1, 0.3], &[2, 8]),
     Range::new(Method::HardSphere, &[40_000], &[0.01, 0.03], &[0.3], &[8]),
     Range::new(Method::None, &[2500, 10_000, 40_000], &[], &[], &[]),
@@ -55,6 +57,10 @@ pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
             scene.seed += seed;
             model_with("tube", scene, setting, None)
         }),
-        judge: Box::new(|model, run| SOD.errors(model, SOD.end, &run.outcome.particles).map(|[density, _]| density)),
+        judge: Box::new(|model, run| {
+            let slices = SOD.profile(model, SOD.end, &run.outcome.particles)?;
+            Some(slices.iter().map(|Slice { density: [found, exact], .. }| found - exact).collect())
+        }),
+        norm: Norm::Mean,
     })
 }

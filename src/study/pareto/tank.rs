@@ -5,7 +5,7 @@ use crate::simulation::{Model, Row, reference};
 use crate::study::StudyError;
 use crate::study::verify::{model_from, scene_of};
 
-use super::{Extent, Range, Setting, Trials, model_with};
+use super::{Extent, Norm, Range, Setting, Trials, model_with};
 
 /// s, of a window of the history.
 const WINDOW: f64 = 1e-3;
@@ -75,7 +75,8 @@ pub fn trials(extent: Extent) -> Result<Trials, StudyError> {
             scene.seed += seed;
             model_with("tank", scene, setting, None)
         }),
-        judge: Box::new(move |_, run| expected.error(&run.rows)),
+        judge: Box::new(move |_, run| expected.deviations(&run.rows)),
+        norm: Norm::RootMeanSquare,
     })
 }
 
@@ -117,16 +118,17 @@ impl Expected {
         (at(end) - at(start)) * self.spacing / (end - start)
     }
 
-    fn error(&self, rows: &[Row]) -> Option<f64> {
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for row in rows {
-            let length = row.window[1] - row.window[0];
-            for (chamber, state) in row.chambers.iter().enumerate() {
-                sum += length * (state.pressure / self.mean(chamber, row.window) - 1.0).powi(2);
-                weight += length;
-            }
-        }
-        (weight > 0.0).then(|| (sum / weight).sqrt())
+    /// Of every chamber in every window, weighed by the root of the window's length over the mean one, so that their mean
+    /// square is that over the time.
+    fn deviations(&self, rows: &[Row]) -> Option<Vec<f64>> {
+        let length = |row: &Row| row.window[1] - row.window[0];
+        let mean = rows.iter().map(length).sum::<f64>() / rows.len() as f64;
+        let of_row = |row: &Row| {
+            let weight = (length(row) / mean).sqrt();
+            let of_chamber = |(chamber, state): (usize, f64)| weight * (state / self.mean(chamber, row.window) - 1.0);
+            row.chambers.iter().map(|state| state.pressure).enumerate().map(of_chamber).collect::<Vec<f64>>()
+        };
+        (!rows.is_empty()).then(|| rows.iter().flat_map(of_row).collect())
     }
 }
 
@@ -146,12 +148,13 @@ mod tests {
         let mut witness = Witness::default();
         run_uniform(&model, &mut witness).unwrap();
         let expected = Expected::new(&model);
-        let error = expected.error(&witness.rows).unwrap();
-        assert!(error < 5e-3, "{error}");
+        let error = |rows: &[Row]| expected.deviations(rows).map(|all| Norm::RootMeanSquare.of(&all));
+        let found = error(&witness.rows).unwrap();
+        assert!(found < 5e-3, "{found}");
         for row in &mut witness.rows {
             row.chambers.iter_mut().for_each(|chamber| chamber.pressure *= 1.05);
         }
-        assert!((expected.error(&witness.rows).unwrap() - 0.05).abs() < 3e-3);
-        assert_eq!(expected.error(&[]), None);
+        assert!((error(&witness.rows).unwrap() - 0.05).abs() < 3e-3);
+        assert_eq!(error(&[]), None);
     }
 }

@@ -101,8 +101,11 @@ fn a_report_says_what_its_numbers_say() {
 /// Several seeds have their standard error; without any point there is still a report.
 #[test]
 fn a_report_has_error_bars_and_may_be_empty() {
-    report(vec![point(Method::Cell, 1000, 1.0, &[0.08, 0.1])], 2, |chart| {
+    let two = Point { error_of_mean: Some(0.07), ..point(Method::Cell, 1000, 1.5, &[0.08, 0.1]) };
+    report(vec![two], 2, |chart| {
         let text = chart.text();
+        // Of both seeds together.
+        assert!(text.contains("The mean of the 2 seeds") && text.contains("0.0700") && text.contains("3.00"), "{text}");
         // sd .01414, over sqrt 2.
         assert!(text.contains("2 seeds each") && text.contains("0.0100") && !text.contains("one seed"), "{text}");
     });

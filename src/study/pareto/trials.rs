@@ -36,8 +36,27 @@ impl Extent {
 /// The model of a setting and of a seed that is counted from 0.
 pub type Build = Box<dyn Fn(&Setting, u64) -> Result<Model, StudyError>>;
 
-/// The error of a run; `None` if it says nothing.
-pub type Judge = Box<dyn Fn(&Model, &Run) -> Option<f64>>;
+/// The deviations of a run from the law; `None` if it says nothing.
+pub type Judge = Box<dyn Fn(&Model, &Run) -> Option<Vec<f64>>>;
+
+/// What makes one error of deviations. The error of the mean over seeds is that of their mean deviations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Norm {
+    /// Mean of the magnitudes.
+    Mean,
+    /// Root of the mean square.
+    RootMeanSquare,
+}
+
+impl Norm {
+    pub fn of(self, deviations: &[f64]) -> f64 {
+        let mean = |of: fn(f64) -> f64| deviations.iter().copied().map(of).sum::<f64>() / deviations.len() as f64;
+        match self {
+            Norm::Mean => mean(f64::abs),
+            Norm::RootMeanSquare => mean(|deviation| deviation * deviation).sqrt(),
+        }
+    }
+}
 
 /// What a case runs.
 pub struct Trials {
@@ -53,6 +72,7 @@ pub struct Trials {
     pub volume: Option<f64>,
     pub model: Build,
     pub judge: Judge,
+    pub norm: Norm,
 }
 
 impl Trials {
