@@ -15,8 +15,10 @@
 //! Every comparison is written so that a NaN fails it.
 
 mod elastic_fabric;
+mod passed;
 
 pub use elastic_fabric::{CaughtFlights, FabricAccount};
+pub use passed::PassedParticles;
 
 use super::table::{aligned, grouped};
 
@@ -30,8 +32,8 @@ pub struct Audit {
     pub particles_inside: u64,
     /// At the end, outside the vessel: each one has passed a closed wall.
     pub particles_outside: u64,
-    /// At the end, on the wrong side of closed fabric: each one has passed it. `None` in a scene without.
-    pub particles_passed: Option<u64>,
+    /// On the wrong side of closed fabric; `None` in a scene without.
+    pub passed: Option<PassedParticles>,
     /// What passed vents and pores of fabric to gas on its other side, and so stays: particles, and kg. `None` where no vent leads there.
     pub through_fabric: Option<(u64, f64)>,
     /// kg.
@@ -102,6 +104,8 @@ pub struct AuditLimits {
     /// Over the particles of all steps: above the one a warning, above the other the run fails. A flight that is caught presses less
     /// than it would, and so the gas less by at most the share of such flights: by no more than 1 %.
     pub caught_share: [f64; 2],
+    /// Of elastic fabric: of the particles at a time, on its wrong side; above it the run fails.
+    pub passed_share: f64,
     /// Above it a warning (docs/explanation/method.md, "Collisions": 3 %).
     pub lost_collision_fraction: f64,
     /// Of the account of elastic fabric; above it a warning.
@@ -119,6 +123,7 @@ impl Default for AuditLimits {
             wall_overshoot: 1e-6,
             truncated_flights: 0,
             caught_share: [1e-4, 0.01],
+            passed_share: 0.01,
             lost_collision_fraction: 0.03,
             fabric_error: 0.02,
             clipped_fraction: 0.01,
@@ -174,9 +179,7 @@ impl Audit {
         if self.particles_outside > 0 {
             failures.push(format!("{} particles are outside the vessel", grouped(self.particles_outside)));
         }
-        if let Some(passed) = self.particles_passed.filter(|&passed| passed > 0) {
-            failures.push(format!("{} particles are on the wrong side of closed fabric", grouped(passed)));
-        }
+        failures.extend(self.passed.and_then(|passed| passed.failure(limits.passed_share)));
         // A run without any gas has nothing to balance. (A control volume has gas without particles.)
         if entered > 0 || self.mass_start + self.mass_injected > 0.0 {
             for (what, error, limit) in
@@ -235,6 +238,7 @@ impl Audit {
                 100.0 * limits.lost_collision_fraction
             ));
         }
+        warnings.extend(self.passed.and_then(|passed| passed.warning(limits.passed_share)));
         if let Some(account) = &self.fabric
             && !within(account.error().abs(), limits.fabric_error)
         {
@@ -316,7 +320,7 @@ impl Audit {
             _ if entered == 0 => ("none: there are no particles".to_owned(), "unknown".to_owned()),
             _ => ("not tallied: no surfaces".to_owned(), "unknown".to_owned()),
         };
-        let passed = self.particles_passed.map(|passed| ("on the wrong side of fabric", grouped(passed)));
+        let passed = self.passed.map(|passed| ("on the wrong side of fabric", passed.amount()));
         let mut facts = vec![("outside the vessel", grouped(self.particles_outside))];
         facts.extend(passed);
         facts.extend([

@@ -37,7 +37,7 @@ mod vtk;
 mod vtk_read;
 
 pub use appended::{AppendedFile, AppendedState};
-pub use audit::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount};
+pub use audit::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount, PassedParticles};
 pub use balance::{BalanceRow, BalanceWriter, over_mean};
 pub use chart::{PALETTE, Series, line_chart};
 pub use checkpoint::{

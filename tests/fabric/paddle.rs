@@ -76,7 +76,7 @@ fn turned(particles: u32, seeds: u32) -> (f64, f64) {
                 ..Scene::new(Method::None, placed.clone(), Some(frames.clone()))
             };
             let (_, run) = scene.run();
-            assert_eq!(run.outcome.audit.particles_passed, Some(0));
+            assert_eq!(run.outcome.audit.passed.map(|passed| passed.particles), Some(0));
             run.rows.last().expect("rows").fabrics[0].work / run.outcome.time
         })
         .collect();

@@ -48,7 +48,7 @@ fn a_bag_blows_down_as_a_vessel_does() {
         let last = run.rows.last().expect("rows");
         [last.vents[0].mass / audit.mass_start, last.chambers[0].pressure, audit.enthalpy_vented / audit.energy_start]
     });
-    assert_eq!(of_bag.outcome.audit.particles_passed, Some(0));
+    assert_eq!(of_bag.outcome.audit.passed.map(|passed| passed.particles), Some(0));
     eprintln!("left, pressure, enthalpy: bag {bag:?}, vessel {vessel:?}");
     assert!(bag[0] > 0.2, "{bag:?}");
     for (of_bag, of_vessel) in bag.iter().zip(vessel) {
@@ -72,7 +72,11 @@ fn pores_pass_what_their_law_says_to_the_other_side() {
         let (model, run) = scene.run();
         let (audit, name) = (&run.outcome.audit, method.name());
         assert_eq!(run.outcome.particles.len() as u64, audit.particles_initial, "{name}");
-        assert!(on_the_wrong_side(&model, &run, scene.end).is_empty() && audit.particles_passed == Some(0), "{name}");
+        assert!(
+            on_the_wrong_side(&model, &run, scene.end).is_empty()
+                && audit.passed.is_some_and(|passed| passed.particles == 0),
+            "{name}"
+        );
         assert!(audit.energy_error().abs() < 1e-5 && audit.mass_error() == 0.0, "{name}: {audit:?}");
         let (passed, mass) = audit.through_fabric.expect("pores");
         let inside = run.outcome.particles.iter().filter(|particle| particle.is_inside()).count() as u64;
@@ -125,7 +129,7 @@ fn nothing_is_lost_through_fabric_that_is_shaken() {
         let wrong = on_the_wrong_side(&model, &run, end);
         let last = run.rows.last().expect("rows");
         eprintln!("{name}: {:?}, wrong {}, energy off {:.1e}", audit.through_fabric, wrong.len(), audit.energy_error());
-        assert!(wrong.is_empty() && audit.particles_passed == Some(0), "{name}: {wrong:?}");
+        assert!(wrong.is_empty() && audit.passed.is_some_and(|passed| passed.particles == 0), "{name}: {wrong:?}");
         assert_eq!((audit.particles_outside, audit.truncated_flights), (0, 0), "{name}");
         assert_eq!(run.outcome.particles.len() as u64, audit.particles_initial, "{name}");
         assert!(audit.energy_error().abs() < 1e-5, "{name}: {audit:?}");

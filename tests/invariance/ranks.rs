@@ -260,7 +260,7 @@ fn a_porous_bag_has_the_same_bits_on_any_number_of_ranks() {
         let runs = same(&porous_bag(method), &ways);
         let audit = &runs[0].outcome.audit;
         assert!(audit.through_fabric.is_some_and(|(passed, _)| passed > 20), "{audit:?}");
-        assert_eq!(audit.particles_passed, Some(0));
+        assert_eq!(audit.passed.map(|passed| passed.particles), Some(0));
     }
     let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
     let runs = same(&vented_bag(Method::HalfTurn), &ways);

@@ -8,7 +8,7 @@ fn clean() -> Audit {
         particles_inside: 19_000,
         particles_outside: 0,
         through_fabric: None,
-        particles_passed: None,
+        passed: None,
         mass_start: 0.07,
         mass_injected: 0.08,
         mass_vented: 0.01,

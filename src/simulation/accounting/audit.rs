@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::averages::Averages;
 use crate::gas::Inflow;
 use crate::geometry::{Bag, Vessel};
-use crate::output::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount, PhaseTable};
+use crate::output::{Audit, AuditLimits, CaughtFlights, CollisionCells, FabricAccount, PassedParticles, PhaseTable};
 use crate::plan::Plan;
 use crate::scene::Method;
 use crate::simulation::accounting::phases::{once_an_interval, order_of};
@@ -35,8 +35,6 @@ pub struct AtEnd<'a> {
     pub inflow: &'a Inflow,
     /// Particles that were found in no gas.
     pub outside: u64,
-    /// And on the wrong side of closed fabric, if there is any.
-    pub passed: Option<u64>,
     /// Of elastic fabric, if there is any, but for what it has from the gas.
     pub fabric: Option<FabricAccount>,
     pub averages: &'a Averages,
@@ -84,6 +82,9 @@ pub struct AccountState {
     unfitted: u64,
     cut_groups: u64,
     overshoot: u32,
+    /// The most particles on the wrong side of closed fabric at a time when this was counted, and all particles then; `None` if it
+    /// never was.
+    passed: Option<[u64; 2]>,
     /// What walls took and vents let out in the intervals read, J and particles.
     energy_lost: f64,
     left: u64,
@@ -126,6 +127,7 @@ impl Account {
             unfitted: 0,
             cut_groups: 0,
             overshoot: 0,
+            passed: None,
             energy_lost: 0.0,
             left: 0,
             clipped: Vec::new(),
@@ -312,6 +314,12 @@ impl Account {
         }
     }
 
+    /// Particles on the wrong side of closed fabric, and all particles, at a time.
+    pub fn passed(&mut self, now: [u64; 2]) {
+        let most = self.counted.passed.unwrap_or(now);
+        self.counted.passed = Some(if now[0] > most[0] { now } else { most });
+    }
+
     pub fn state(&self) -> &AccountState {
         &self.counted
     }
@@ -339,7 +347,7 @@ impl Account {
 
     /// The account at the end.
     pub fn close(&self, model: &Model, at_end: &AtEnd<'_>) -> Audit {
-        let &AtEnd { tallies, inflow, outside, passed, fabric, averages, surface_states } = at_end;
+        let &AtEnd { tallies, inflow, outside, fabric, averages, surface_states } = at_end;
         let end = self.totals(tallies);
         let plan = &model.plan;
         let (entered, before) = (self.entered(inflow), self.counted.before);
@@ -353,7 +361,11 @@ impl Account {
             particles_vented,
             particles_inside: end.number - outside,
             particles_outside: outside,
-            particles_passed: passed,
+            passed: self.counted.passed.map(|[particles, of]| PassedParticles {
+                particles,
+                of,
+                elastic: model.fabric.is_elastic(),
+            }),
             through_fabric: averages.total_through_fabric().map(|(particles, mass, _)| (particles, mass)),
             mass_start: self.counted.start.mass,
             mass_injected: entered.mass - before.mass,

@@ -111,7 +111,7 @@ impl Simulation<'_> {
         let vessel = self.model.vessel_at(self.control.clock.time());
         let outside = count_outside(&vessel, &self.model.plan, &own);
         let outside = self.ranks.comm().sum(vec![outside])?[0];
-        let passed = self.passed(&own)?;
+        self.count_passed(&own)?;
         let fabric = match &self.fabric {
             Some(elastic) => Some(elastic.account(self.device, self.ranks.comm())?),
             None => None,
@@ -121,7 +121,6 @@ impl Simulation<'_> {
             tallies: &at_end,
             inflow: &self.inflow,
             outside,
-            passed,
             averages: &self.books.averages,
             surface_states: &self.control.surfaces,
         };
@@ -162,7 +161,8 @@ impl Simulation<'_> {
         }
         (self.requests.wish, self.requests.agreed) = (Request::None, Request::None);
         let own = self.subdomain.particles(self.device)?;
-        if let Some(passed) = self.passed(&own)?.filter(|&passed| passed > 0) {
+        // (Sheets that cross let a few particles of elastic bags out: the audit tells of these.)
+        if let Some(passed) = self.count_passed(&own)?.filter(|&passed| passed > 0 && !self.model.fabric.is_elastic()) {
             let what = format!("{passed} particles are on the wrong side of closed fabric");
             return Err(SimulationError::Lost { time: self.control.clock.time(), what });
         }
@@ -196,14 +196,16 @@ impl Simulation<'_> {
         }
     }
 
-    /// Particles of all ranks on the wrong side of closed fabric, if there is any. Collective.
-    fn passed(&self, own: &[GpuParticle]) -> Result<Option<u64>, SimulationError> {
+    /// Counts the particles of all ranks on the wrong side of closed fabric, if there is any. Collective.
+    pub(super) fn count_passed(&mut self, own: &[GpuParticle]) -> Result<Option<u64>, SimulationError> {
         let fabric = &self.model.fabric;
         if !fabric.all.iter().any(|surface| surface.closed) {
             return Ok(None);
         }
         let bags = fabric.bags_of(&self.fabric_nodes())?;
-        Ok(Some(self.ranks.comm().sum(vec![count_passed(&bags, &self.model.plan, own)])?[0]))
+        let passed = self.ranks.comm().sum(vec![count_passed(&bags, &self.model.plan, own), own.len() as u64])?;
+        self.books.account.passed([passed[0], passed[1]]);
+        Ok(Some(passed[0]))
     }
 
     /// Tallies of the particles as they are, of all ranks.

@@ -23,6 +23,7 @@ impl Simulation<'_> {
             return Ok(());
         }
         let own = self.subdomain.particles(self.device)?;
+        self.count_passed(&own)?;
         if let Some((particles, owners)) = self.gather(own)? {
             if let Some(decomposition) = &self.parallel.decomposition {
                 observer.boxes(&decomposition.boxes(&self.model.plan.grid));
