@@ -1,6 +1,7 @@
 //! The gas at rest at the start of a run.
 //!
-//! Positions are uniform in each chamber (rejection from its bounding box); velocities Maxwell, spin energy
+//! Positions are uniform in each chamber (drawn in a box around it, or in the bag that it is the inside of, and rejected where they are not of
+//! its gas); velocities Maxwell, spin energy
 //! Gamma(zeta/2) kT (method.md, "The gas") or as its modes have it ([`Species`]). Then each chamber is made exact: its total momentum is
 //! shifted to zero and its translational energy scaled to 3/2 N kT by one factor for all its gases (several
 //! factors would bring the momentum back), and the spin energy of each gas to its mean. A chamber with a
@@ -20,11 +21,29 @@ pub struct Filling<'a> {
     pub counts: &'a [u64],
     /// K.
     pub temperature: f64,
-    /// A box that contains the chamber, m; the tighter, the fewer tries.
-    pub min: [f64; 3],
-    pub max: [f64; 3],
+    pub space: Space<'a>,
     /// Whether a point belongs to the chamber (asked before `is_gas`, which may be dearer).
     pub in_chamber: &'a dyn Fn([f64; 3]) -> bool,
+}
+
+/// What contains a chamber, in which places are drawn; the tighter, the fewer tries.
+#[derive(Clone, Copy)]
+pub enum Space<'a> {
+    /// m.
+    Box { min: [f64; 3], max: [f64; 3] },
+    /// The uniform point of it for four numbers between 0 and 1, m.
+    Solid(&'a dyn Fn([f64; 4]) -> [f64; 3]),
+}
+
+impl Space<'_> {
+    fn point(&self, draws: &mut Draws) -> [f64; 3] {
+        match self {
+            Space::Box { min, max } => {
+                std::array::from_fn(|axis| min[axis] + (max[axis] - min[axis]) * draws.uniform())
+            }
+            Space::Solid(point) => point(std::array::from_fn(|_| draws.uniform())),
+        }
+    }
 }
 
 /// Tries per particle before a chamber is taken for empty.
@@ -233,8 +252,7 @@ impl Correction {
 fn place(chamber: &Filling, is_gas: &dyn Fn([f64; 3]) -> bool, seed: u64, id: u32) -> Option<[f64; 3]> {
     let mut draws = Draws::new(seed, Purpose::InitialPosition, id);
     for _ in 0..MOST_TRIES {
-        let point: [f64; 3] =
-            std::array::from_fn(|axis| chamber.min[axis] + (chamber.max[axis] - chamber.min[axis]) * draws.uniform());
+        let point = chamber.space.point(&mut draws);
         if (chamber.in_chamber)(point) && is_gas(point) {
             return Some(point);
         }
@@ -263,8 +281,7 @@ mod tests {
         let chamber = |counts, temperature, in_chamber| Filling {
             counts,
             temperature,
-            min: [0.0; 3],
-            max: [1.0, 1.0, 2.0],
+            space: Space::Box { min: [0.0; 3], max: [1.0, 1.0, 2.0] },
             in_chamber,
         };
         let chambers = [chamber(counts[0], 300.0, &left as _), chamber(counts[1], 600.0, &right as _)];
@@ -285,8 +302,7 @@ mod tests {
         let chamber = |counts, temperature, in_chamber| Filling {
             counts,
             temperature,
-            min: [0.0; 3],
-            max: [1.0, 1.0, 2.0],
+            space: Space::Box { min: [0.0; 3], max: [1.0, 1.0, 2.0] },
             in_chamber,
         };
         let counts: [&[u64]; 3] = [&[300, 50], &[0, 1], &[0, 70]];
@@ -366,8 +382,12 @@ mod tests {
     #[test]
     fn a_chamber_without_gas_space_is_an_error() {
         let nowhere = |_: [f64; 3]| false;
-        let chamber =
-            Filling { counts: &[1, 0], temperature: 300.0, min: [0.0; 3], max: [1.0; 3], in_chamber: &nowhere };
+        let chamber = Filling {
+            counts: &[1, 0],
+            temperature: 300.0,
+            space: Space::Box { min: [0.0; 3], max: [1.0; 3] },
+            in_chamber: &nowhere,
+        };
         let (chambers, gases) = ([chamber], gases());
         let gas = gas(&chambers, &gases, &|_| true);
         assert_eq!(gas.all(), Err(FillError::NoRoom { chamber: 0, tries: MOST_TRIES }));

@@ -31,7 +31,7 @@ pub use discharge::{
     continuum_coefficient, exchange, isentropic, published, specified,
 };
 pub use inflow::{Inflow, InflowParticles, InflowState, InflowStateError, Newborn, Unrepresented, jet_mach, jet_state};
-pub use initial::{Correction, FillError, Filling, InitialGas};
+pub use initial::{Correction, FillError, Filling, InitialGas, Space};
 pub use modes::{MOST_MODES, fit};
 pub use philox::philox4x32_10;
 pub use random::{Draws, Purpose, key};

@@ -1,12 +1,19 @@
 //! What a closed surface encloses at the start of a run.
 
+use std::sync::OnceLock;
+
 use super::GeometryError;
 use super::meshes::ClosedSurface;
+use super::tetrahedra::Tetrahedra;
 use glam::DVec3;
 
 #[derive(Debug, Clone)]
 pub struct Bag {
     surface: ClosedSurface,
+    nodes: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    /// Cut once gas is to be put into it.
+    tetrahedra: OnceLock<Tetrahedra>,
     /// m3.
     pub volume: f64,
     /// Its corners, m.
@@ -23,6 +30,9 @@ impl Bag {
         let vertices: Vec<DVec3> = nodes.iter().map(|&node| DVec3::from(node)).collect();
         Ok(Bag {
             surface: ClosedSurface::new(nodes, triangles, subject)?,
+            nodes: nodes.to_vec(),
+            triangles: triangles.to_vec(),
+            tetrahedra: OnceLock::new(),
             volume: super::closed::signed_volume_about(bounds.0, &vertices, triangles),
             bounds: (bounds.0.to_array(), bounds.1.to_array()),
         })
@@ -30,5 +40,12 @@ impl Bag {
 
     pub fn contains(&self, point: [f64; 3]) -> bool {
         self.surface.contains(point)
+    }
+
+    /// A uniform point of its inside for four numbers between 0 and 1; rounding may put one next to the surface behind it.
+    pub fn point(&self, uniform: [f64; 4]) -> [f64; 3] {
+        let cut = || Tetrahedra::new(&self.surface, &self.nodes, &self.triangles);
+        // (One that encloses nothing has no point in it anyway.)
+        self.tetrahedra.get_or_init(cut).point(uniform).unwrap_or(self.bounds.0)
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! `Vessel::build` turns the walls of a scene into one checked mesh (`build` of
 //! `primitives`, `round`, `plate`, `polygon`, `mesh_file` of `stl`, `obj` and `facet`, `mend`, `closed`, `crossings`) and answers where the gas is (`lines`) and how much of it
-//! (`vessel`, `region`, `blocks`, with `sampling`). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
+//! (`vessel`, `region`, `blocks`, with `sampling`; `bag` and `tetrahedra` of closed fabric). `TriangleGrid` lays its triangles on the cells of a `Grid`, and `clearance` has planes
 //! that part the gas near them from them. `meshes` makes meshes of fabric, reads, writes and measures them, and
 //! `node_frames` has the motion of their nodes.
 
@@ -34,6 +34,7 @@ mod sampling;
 mod soup;
 mod spaces;
 mod stl;
+mod tetrahedra;
 mod triangle_grid;
 mod vessel;
 mod wall_mesh;

@@ -42,6 +42,15 @@ impl ClosedSurface {
         crossings % 2 == 1
     }
 
+    /// What of the line along x through (y, z) it encloses, from and to, m.
+    #[cfg(test)]
+    pub fn within(&self, y: f64, z: f64) -> Vec<(f64, f64)> {
+        let mut crossings = Vec::new();
+        self.lines.cross(y, z, |crossing| crossings.push(crossing.x));
+        crossings.sort_by(f64::total_cmp);
+        crossings.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
+    }
+
     /// Of each point, on all cores.
     pub fn inside(&self, points: &[[f64; 3]]) -> Vec<bool> {
         let chunk = |k: usize| &points[k * CHUNK..points.len().min((k + 1) * CHUNK)];

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::gas::{Correction, FillError, Filling, InitialGas, Particle};
+use crate::gas::{Correction, FillError, Filling, InitialGas, Particle, Space};
 use crate::geometry::{Bag, Grid, region_bounds};
 use crate::output::Checkpoint;
 use crate::ranks::{Communicator, RankError};
@@ -135,6 +135,9 @@ pub fn find_room(model: &Model) -> Result<(), SimulationError> {
     with_gas(model, |gas| Ok(gas.find_room()?))
 }
 
+/// The uniform point of a solid for four numbers between 0 and 1, m.
+type PointOf<'a> = Box<dyn Fn([f64; 4]) -> [f64; 3] + 'a>;
+
 fn with_gas<T>(
     model: &Model,
     act: impl FnOnce(&InitialGas<'_>) -> Result<T, SimulationError>,
@@ -145,15 +148,28 @@ fn with_gas<T>(
             Box::new(move |point| scene.chambers.iter().position(|chamber| vessel.is_of(chamber, point)) == Some(index))
         })
         .collect();
+    let in_bags: Vec<Option<PointOf<'_>>> = scene
+        .chambers
+        .iter()
+        .map(|asked| -> Option<PointOf<'_>> {
+            let bag = vessel.bag_of(asked)?;
+            Some(Box::new(|uniform| bag.point(uniform)))
+        })
+        .collect();
     let fillings: Vec<Filling<'_>> = scene
         .chambers
         .iter()
         .zip(&plan.chambers)
-        .zip(&in_chamber)
-        .map(|((asked, planned), inside)| {
-            let bag = vessel.bag_of(asked).map(|bag| bag.bounds);
-            let (min, max) = asked.region.as_ref().map(region_bounds).or(bag).unwrap_or(vessel.bounds);
-            Filling { counts: &planned.particles, temperature: asked.temperature, min, max, in_chamber: inside }
+        .zip(in_chamber.iter().zip(&in_bags))
+        .map(|((asked, planned), (inside, bag))| {
+            let space = match bag {
+                Some(point) => Space::Solid(point),
+                None => {
+                    let (min, max) = asked.region.as_ref().map_or(vessel.bounds, region_bounds);
+                    Space::Box { min, max }
+                }
+            };
+            Filling { counts: &planned.particles, temperature: asked.temperature, space, in_chamber: inside }
         })
         .collect();
     act(&InitialGas {
