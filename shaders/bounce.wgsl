@@ -223,7 +223,8 @@ fn bounce(thread: Thread) {
                         // To the other side of the sheet, as far from it.
                         let beyond = shifted(where_hit, wall.normal, wall.lift - 2.0 * SHEET_GAP);
                         particle.position = shifted(beyond, -old, hit.time);
-                        particle.tag ^= INSIDE;
+                        // (What is beside an open sheet is inside of nothing.)
+                        particle.tag ^= select(0u, INSIDE, fabric[wall.sheet].closed != 0u);
                         time = hit.time;
                         continue;
                     }

@@ -85,7 +85,7 @@ fn twins() -> Vec<Twin> {
         twin!("Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, body_low, pad3, body_size, pad4),
         twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent, zone, next),
         twin!("Vent", GpuVent, center, radius2, beta, index, passes, pad),
-        twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, pad, pad2, pad3),
+        twin!("Zone", GpuZone, low, kind, high, radius, axis, height, carried, planes, pad2, pad3),
         twin!("Gas", GpuGas, mass, exchange, inverse_beta, inverse_beta1),
         twin!("Update", GpuUpdate, particle, flight, cell, pad, pad2, pad3),
         twin!("Sending", GpuSending, index, peer, place),

@@ -11,9 +11,10 @@ struct Zone {
     // Cylinder: unit axis and height, m.
     axis: vec3<f32>,
     height: f32,
-    // Box: the motions that its sides go along with, from 1, four bits for each: low x, y, z, high x, y, z.
+    // Box: the motions that its sides go along with, from 1, four bits for each: low x, y, z, high x, y, z. Inside of fabric: the first of its planes.
     carried: u32,
-    pad: u32,
+    // Inside of fabric: how many planes part it from other closed fabric. They are behind the zones; low is a point, and the axis points out.
+    planes: u32,
     pad2: u32,
     pad3: u32,
 }
@@ -43,7 +44,15 @@ fn sides_moved(carried: u32) -> vec3<u32> {
 // Whether a place, inside of closed fabric or not, is in a zone.
 fn contains(zone: Zone, p: vec3<u32>, inside: bool) -> bool {
     if (FABRIC && zone.kind == INSIDE_FABRIC) {
-        return inside && all(p >= zone.low) && all(p < zone.high);
+        if (!inside || any(p < zone.low) || any(p >= zone.high)) {
+            return false;
+        }
+        for (var k = zone.carried; k < zone.carried + zone.planes; k++) {
+            if (dot(between(zones[k].low, p), zones[k].axis) > 0.0) {
+                return false;
+            }
+        }
+        return true;
     }
     if (zone.kind == BOX) {
         if (MOVING && zone.carried != 0u) {

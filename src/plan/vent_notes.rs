@@ -35,7 +35,7 @@ pub fn of_vents(scene: &Scene, measured: &Measured, end: &Contents) -> Vec<Strin
         let held = leaks_without_pressure(scene, vent);
         [looks_absolute(scene, vent), curve, wide(scene, vent, place), shut(vent), held].into_iter().flatten()
     });
-    own.chain(below_outside(scene, measured)).chain(backed(scene, measured)).collect()
+    own.chain(below_outside(scene, measured)).chain(backed(scene, measured)).chain(of_bags(scene)).collect()
 }
 
 /// A pressure of opening that no gas reaches but would as an absolute one: " Is ...?", or nothing.
@@ -138,6 +138,22 @@ fn other_unit(scene: &Scene, vent: &Vent, above: f64) -> Option<String> {
 fn significant_pressure(scene: &Scene, si: f64) -> String {
     let unit = scene.units.symbol(Dimension::Pressure);
     format!("{} {unit}", significant(si / scene.units.factor(Dimension::Pressure)))
+}
+
+/// Vents of fabric that moves: a bag that grows may have less pressure than is around it.
+fn of_bags(scene: &Scene) -> Option<String> {
+    let moves = |vent: &&Vent| {
+        let fabric = scene.fabric_at(vent.wall).map(|index| &scene.fabrics[index]);
+        fabric.is_some_and(|fabric| fabric.motion.is_some() || fabric.turn.is_some() || fabric.membrane.is_some())
+    };
+    let names: Vec<String> = scene.vents.iter().filter(moves).map(|vent| format!("`{}`", vent.name)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "nothing flows in through {}: the end of a run tells for how long gas would have, where fabric that grows had less pressure \
+             inside than around it",
+            names.join(", ")
+        )
+    })
 }
 
 /// Chambers with less pressure at the start than outside of a vent: the first vent of each.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::region::Region;
 use super::surface_model::SurfaceModel;
+use super::types::Course;
 
 /// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +15,8 @@ pub struct Fabric {
     pub scale: f64,
     /// Where its nodes are over time; not of a membrane. Without either its nodes rest.
     pub motion: Option<PathBuf>,
+    /// It turns as a whole; then it has no file of its motion, and is no membrane.
+    pub turn: Option<Turn>,
     /// The gas moves it.
     pub membrane: Option<Membrane>,
     /// What both of its sides do to the gas that hits them.
@@ -22,6 +25,17 @@ pub struct Fabric {
     pub parts: Vec<String>,
     /// Pa, the same everywhere outside of closed fabric, where no gas is then.
     pub external_pressure: Option<f64>,
+}
+
+/// A turn about an axis at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turn {
+    /// Of unit length; the turn is counter-clockwise seen from where it points to.
+    pub axis: [f64; 3],
+    /// On the axis, m.
+    pub center: [f64; 3],
+    /// Radians in place of m.
+    pub course: Course,
 }
 
 /// An elastic surface.

@@ -4,13 +4,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::errors::{Problem, quote};
-use super::fabric::{Fabric, Fixed, Membrane};
+use super::fabric::{Fabric, Fixed, Membrane, Turn};
 use super::fabric_material::material;
-use super::numbers::{not_negative, number, positive};
+use super::motions::{AngularLaw, law};
+use super::numbers::{direction, not_negative, number, point, positive};
 use super::parts::Parts;
 use super::places::region;
 use super::raw::RawScene;
-use super::raw_fabric::{RawFabric, RawFixed, RawMaterial};
+use super::raw_fabric::{RawFabric, RawFixed, RawMaterial, RawTurn};
 use super::raw_values::At;
 use super::types::UnitSystem;
 use super::units::Quantity;
@@ -42,6 +43,7 @@ pub(super) fn fabric(
         mesh: file(&fabric.file, MESHES, base_dir)?,
         scale,
         motion: fabric.motion.as_ref().map(|motion| file(motion, MOTIONS, base_dir)).transpose()?,
+        turn: fabric.turn.as_ref().map(|turn| self::turn(fabric, turn, units)).transpose()?,
         membrane: match &fabric.material {
             Some(material) => Some(membrane(fabric, material, units, base_dir)?),
             None => no_membrane(fabric)?,
@@ -62,6 +64,23 @@ fn file(named: &At<String>, (endings, allowed): (&[&str], &str), base_dir: &Path
         return Err(Problem::value(&named.span, quote(&named.value), allowed));
     }
     existing(named, base_dir)
+}
+
+fn turn(fabric: &RawFabric, raw: &At<RawTurn>, units: UnitSystem) -> Result<Turn, Problem> {
+    let other = [
+        ("motion", fabric.motion.as_ref().map(|at| &at.span)),
+        ("material", fabric.material.as_ref().map(|at| &at.span)),
+    ];
+    if let Some((key, span)) = other.into_iter().find_map(|(key, span)| Some((key, span?))) {
+        let found = format!("`{key}` of a fabric with a `turn`");
+        return Err(Problem::value(span, found, "one of `motion`, `turn`, `material`: what moves its nodes"));
+    }
+    let laws = (&raw.value.angular_velocity, &raw.value.angle);
+    Ok(Turn {
+        axis: direction(&raw.value.axis)?,
+        center: point(&raw.value.center, units)?,
+        course: law::<AngularLaw>(&raw.span, laws, units)?,
+    })
 }
 
 fn membrane(

@@ -21,6 +21,8 @@ pub struct RawFabric {
     pub scale: Option<At<f64>>,
     /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files; not with `material`.
     pub motion: Option<At<String>>,
+    /// How it turns as a whole about an axis at rest; not with `motion` or `material`.
+    pub turn: Option<At<RawTurn>>,
     /// What an elastic membrane is of, which the gas moves; not with `motion`.
     pub material: Option<At<RawMaterial>>,
     /// Of a membrane: path of a mesh file with the same triangles, free of stress; the surface at the start unless given.
@@ -49,6 +51,20 @@ pub struct RawFabric {
     pub friction: Option<At<f64>>,
     /// Of closed fabric: the uniform pressure outside, where no gas is then (SI: Pa).
     pub external_pressure: Option<At<f64>>,
+}
+
+/// A turn about an axis, counter-clockwise seen from where the axis points to.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawTurn {
+    /// Direction of the axis, of any length.
+    pub axis: At<Numbers<3>>,
+    /// A point on the axis.
+    pub center: At<Numbers<3>>,
+    /// Radians per unit of time: a number, or points [time, angular velocity], linear between, constant beyond the ends.
+    pub angular_velocity: Option<At<NumberOr<Numbers<2>>>>,
+    /// Points [time, angle from where it is drawn], in radians, linear between, constant beyond the ends; the first is [0, 0].
+    pub angle: Option<At<Vec<At<Numbers<2>>>>>,
 }
 
 /// What a membrane is of. One `young` is an isotropic material; two, along the warp and along the weft, are a woven one.

@@ -1,7 +1,8 @@
 //! The way back of fabric.
 
-use super::fabric::{Elasticity, Fabric, Fixed, Membrane};
+use super::fabric::{Elasticity, Fabric, Fixed, Membrane, Turn};
 use super::toml_lines::{TomlLines, region_table};
+use super::types::Course;
 use super::write_surface::write_surface;
 
 pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
@@ -18,6 +19,19 @@ pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
     }
     if let Some(membrane) = &fabric.membrane {
         write_membrane(out, membrane);
+    }
+    if let Some(turn) = &fabric.turn {
+        write_turn(out, turn);
+    }
+}
+
+fn write_turn(out: &mut TomlLines, turn: &Turn) {
+    out.header("[fabric.turn]");
+    out.numbers("axis", &turn.axis);
+    out.numbers("center", &turn.center);
+    match &turn.course {
+        Course::Velocity(curve) => out.curve("angular_velocity", curve),
+        Course::Displacement(curve) => out.curve("angle", curve),
     }
 }
 

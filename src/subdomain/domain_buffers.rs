@@ -25,7 +25,7 @@ pub struct DomainBuffers {
 
 impl DomainBuffers {
     pub fn new(device: &Device, input: &DomainInput<'_>) -> Result<DomainBuffers, GpuError> {
-        let &DomainInput { plan, walls, fabric, cells, zones, .. } = input;
+        let &DomainInput { plan, walls, fabric, cells, zones, planes, .. } = input;
         let (gases, modes) = (gas_table(plan), mode_table(plan));
         let mut table = [GpuGas::default(); 16];
         table[..gases.len()].copy_from_slice(&gases);
@@ -46,7 +46,7 @@ impl DomainBuffers {
             cell_class: device.storage_of("cell_class", &walls.class)?,
             parting: device.storage_of("parting", &walls.parting)?,
             fabric: device.storage_of::<GpuSheet>("fabric", &fabric.sheets)?,
-            zones: device.storage_of("zones", zones)?,
+            zones: device.storage_of("zones", &[zones, planes].concat())?,
             cell_volume: device.storage_of("cell_volume", &cells.volume)?,
             cell_parts: device.storage_of("cell_parts", &cells.parts)?,
             still_gas: device.storage_of("still_gas", &cells.still)?,

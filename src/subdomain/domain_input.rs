@@ -18,6 +18,8 @@ pub struct DomainInput<'a> {
     pub cells: &'a CellTable,
     /// Zone 0 is everything, then the chambers, then the probes.
     pub zones: &'a [GpuZone],
+    /// What parts zones inside of closed fabric, numbered behind the zones.
+    pub planes: &'a [GpuZone],
     pub patches: Patches,
     /// Entries of the table of vents.
     pub vent_entries: usize,

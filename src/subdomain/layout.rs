@@ -221,7 +221,7 @@ pub struct GpuZone {
     pub axis: [f32; 3],
     pub height: f32,
     pub carried: u32,
-    pub pad: u32,
+    pub planes: u32,
     pub pad2: u32,
     pub pad3: u32,
 }

@@ -55,7 +55,7 @@ pub use recall::Remembered;
 pub use scales::Scales;
 pub use shaders::{KERNELS, shader};
 pub use sizes::{CHUNK, CROWD, MEMBERS, MOST_MEMBERS, MOTION_ENTRIES, STRETCH, TILE_BITS, WORKGROUP};
-pub use state::{StateError, share_table, zone_inside, zone_of};
+pub use state::{StateError, share_table, zone_inside, zone_of, zone_plane};
 pub use step_slot::{FULL_SHARE, Newborns, StepSlot, Steps, Tables};
 pub use subdomain_box::{Cells, Ghosts, GridCells, SubdomainBox};
 pub use tallies::{BlockSum, SurfaceModelSum, SurfaceSum, Tallies, VentSum, ZoneSum};

@@ -132,6 +132,11 @@ fn within(point: [f64; 3], grid: &Grid) -> [u32; 3] {
     })
 }
 
+/// A plane behind the zones: a point of it, m, and the normal that points out.
+pub fn zone_plane(point: [f64; 3], normal: [f64; 3], grid: &Grid) -> GpuZone {
+    GpuZone { low: within(point, grid), axis: normal.map(|x| x as f32), ..GpuZone::default() }
+}
+
 /// The inside of closed fabric that never leaves a box.
 pub fn zone_inside((low, high): ([f64; 3], [f64; 3]), grid: &Grid) -> GpuZone {
     // A particle may be on its fabric, and a gap beyond.

@@ -56,11 +56,27 @@ fn a_bag_blows_down_as_a_vessel_does() {
     }
 }
 
-/// Gas leaks through pores at the velocity of the law, rho v(p - p') A, and stays in the run: on the other side.
+/// Gas leaks through pores at the velocity of the law, rho v(p - p') A, and stays in the run: on the other side. The mean of some seeds is
+/// as the law, within three standard errors by their scatter and 1 % for a vent that follows the gas of an earlier interval.
 #[test]
 fn pores_pass_what_their_law_says_to_the_other_side() {
     for method in METHODS {
+        let over: Vec<f64> = (1..=6).map(|seed| mass_over_law(method, seed)).collect();
+        let number = over.len() as f64;
+        let mean = over.iter().sum::<f64>() / number;
+        let square: f64 = over.iter().map(|over| (over - mean) * (over - mean)).sum();
+        let error = (square / (number * (number - 1.0))).sqrt();
+        eprintln!("{}: {mean:.4} +- {error:.4} of the law", method.name());
+        assert!(error < 0.01, "{}: {over:?} says nothing", method.name());
+        assert!((mean - 1.0).abs() < 3.0 * error + 0.01, "{}: {over:?}", method.name());
+    }
+}
+
+/// What has passed pores, over their law.
+fn mass_over_law(method: Method, seed: u32) -> f64 {
+    {
         let scene = Scene {
+            seed,
             particles: 20_000,
             end: 4e-4,
             step: Some(5e-7),
@@ -91,7 +107,6 @@ fn pores_pass_what_their_law_says_to_the_other_side() {
         let [first, last] = [&run.rows[0], run.rows.last().expect("rows")];
         eprintln!("{name}: {passed} passed, {mass:.4e} kg where {expected:.4e} is the law");
         assert!(passed > 500 && (last.vents[0].mass / mass - 1.0).abs() < 1e-9, "{name}: {mass}");
-        assert!((mass / expected - 1.0).abs() < 0.06, "{name}: {mass} kg, expected {expected}");
         // With its enthalpy, as gas of the control volume.
         let heat = last.vents[0].enthalpy / (mass * 3.5 * GAS_CONSTANT / 0.029 * 300.0);
         assert!((0.93..1.03).contains(&heat), "{name}: {heat} of the enthalpy at the start");
@@ -103,6 +118,7 @@ fn pores_pass_what_their_law_says_to_the_other_side() {
         // Pressures come together.
         let apart = |row: &Row| row.chambers[0].pressure - row.chambers[1].pressure;
         assert!(apart(last) < 0.9 * apart(first), "{name}");
+        mass / expected
     }
 }
 
@@ -179,7 +195,6 @@ fn what_vents_on_fabric_cannot_be_is_told() {
     open.triangles.pop();
     open.parts.pop();
     for (mesh, text, told) in [
-        (open.clone(), with(ALIKE, ""), "its surface is open"),
         (open, format!("external_pressure = 1e5\n{INSIDE}"), "an open sheet has no outside"),
         (sphere(), with(ALIKE, ""), "none is `inside` of this fabric"),
         (sphere(), with(INSIDE, "face = \"lid\"\n"), "the parts of its mesh are: \"sphere\""),

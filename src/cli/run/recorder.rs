@@ -147,10 +147,11 @@ impl<'a> Recorder<'a> {
         Ok(OutputState { history: self.history.state()?, snapshots })
     }
 
-    /// When each vent opened, or that it did not: a line each, at the end of a run.
+    /// When each vent opened, or that it did not, and for how long it would have let gas in: a line each, at the end of a run.
     pub fn of_vents(&self) -> String {
-        let told = self.vents.iter().enumerate().filter_map(|(index, watch)| watch.told(&self.model.scene, index));
-        told.map(|text| text + "\n").collect()
+        let scene = &self.model.scene;
+        let of_vent = |(index, watch): (usize, &VentWatch)| [watch.told(scene, index), watch.drew(scene, index)];
+        self.vents.iter().enumerate().flat_map(of_vent).flatten().map(|text| text + "\n").collect()
     }
 
     pub fn history(&self) -> &History {

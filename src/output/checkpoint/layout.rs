@@ -8,7 +8,7 @@ use crate::output::marker::check_marker;
 use crate::output::names::CHECKPOINT_FOLDER;
 
 /// The format of the files' layout and of what is in `state.bin`; another is refused.
-pub const FORMAT: u32 = 12;
+pub const FORMAT: u32 = 13;
 /// Complete checkpoints that stay.
 pub const KEPT: usize = 2;
 /// One particle.

@@ -46,6 +46,7 @@ mod tests {
         let text = include_str!("../../../scenes/box.toml");
         let mut scene = crate::scene::parse(text, "box.toml", std::path::Path::new("")).expect("a scene");
         scene.fabrics.push(Fabric {
+            turn: None,
             name: "bag".into(),
             mesh: PathBuf::new(),
             scale: 1.0,

@@ -53,6 +53,19 @@ name = 'coated'
 file = 'scenes/bag.obj'
 scale = <1.0 0 1 0>
 material = { thickness = <1e-4 0 1 0>, density = <900.0 1 -3 0>, young = [<2e8 1 -1 -2>, <3e8 1 -1 -2>], poisson = 0.2, shear = <1e6 1 -1 -2>, fibre = [1, 0, 0] }
+[[fabric]]
+name = 'paddle'
+file = 'scenes/bag.obj'
+scale = <1.0 0 1 0>
+[fabric.turn]
+axis = [0, 3, 4]
+center = [<0.05 0 1 0>, <0.05 0 1 0>, <0.02 0 1 0>]
+angular_velocity = [[<0.0 0 0 1>, <0.0 0 0 -1>], [<0.001 0 0 1>, <100.0 0 0 -1>]]
+[[fabric]]
+name = 'door'
+file = 'scenes/bag.obj'
+scale = <1.0 0 1 0>
+turn = { axis = [0, 0, 1], center = [<0.05 0 1 0>, <0.05 0 1 0>, <0.02 0 1 0>], angle = [[<0.0 0 0 1>, 0.0], [<0.001 0 0 1>, 1.57]] }
 [[chamber]]
 name = 'in'
 inside = 'woven'

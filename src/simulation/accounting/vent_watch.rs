@@ -1,11 +1,14 @@
 //! When vents open: the first time at which the pressure of the chamber before one reaches that at which it opens, and the highest
-//! that was seen. Tells, and changes nothing: what a vent passes follows from the same pressures in `surface_states` and in the control
+//! that was seen; and for how long one that is open had less pressure before it than behind it, so that it would have drawn gas in. Tells, and changes nothing: what a vent passes follows from the same pressures in `surface_states` and in the control
 //! volume.
 
 use serde::{Deserialize, Serialize};
 
 use crate::plan::significant;
 use crate::scene::{Dimension, Scene, Vent};
+
+/// Of the pressure behind a vent: what that before it falls short by without being less than its noise.
+const SAME: f64 = 0.01;
 
 /// What was seen of a vent so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -16,6 +19,8 @@ pub struct VentWatch {
     pub highest: f64,
     /// s and Pa, what was seen last.
     pub last: [f64; 2],
+    /// s, how long it would have drawn gas in, and by how much less the pressure before it was at most, Pa.
+    pub drawn_in: [f64; 2],
 }
 
 impl VentWatch {
@@ -24,6 +29,10 @@ impl VentWatch {
     pub fn see(&mut self, vent: &Vent, [time, pressure]: [f64; 2], between: bool) -> bool {
         let [earlier, before] = std::mem::replace(&mut self.last, [time, pressure]);
         self.highest = self.highest.max(pressure);
+        let missing = vent.external_pressure - pressure;
+        if self.opened.is_some() && missing > SAME * vent.external_pressure {
+            self.drawn_in = [self.drawn_in[0] + (time - earlier).max(0.0), self.drawn_in[1].max(missing)];
+        }
         let opens_at = vent.external_pressure + vent.opening_pressure;
         if self.opened.is_some() || pressure < opens_at {
             return false;
@@ -35,6 +44,20 @@ impl VentWatch {
             [time, pressure]
         });
         true
+    }
+
+    /// That gas would have flowed in through the vent, by its index; nothing of one before which the pressure was high enough.
+    pub fn drew(&self, scene: &Scene, index: usize) -> Option<String> {
+        let [time, missing] = self.drawn_in;
+        let (unit, symbol) = (scene.units.factor(Dimension::Pressure), scene.units.symbol(Dimension::Pressure));
+        (time > 0.0).then(|| {
+            format!(
+                "vent `{}` would have let gas in for {:.4} ms: before it were up to {} {symbol} less than behind it. Vents let nothing in",
+                scene.vents[index].name,
+                1e3 * time,
+                significant(missing / unit),
+            )
+        })
     }
 
     /// What became of the vent, by its index; nothing of one that was open from the start, or has no pressure to open at and did.
@@ -88,5 +111,22 @@ mod tests {
         );
         let open = VentWatch { opened: Some([0.0, 3e5]), ..VentWatch::default() };
         assert_eq!(open.told(&of_scene, 0), None);
+    }
+
+    /// Time counts while it is open and the pressure less than behind it by more than noise.
+    #[test]
+    fn what_would_have_flowed_in_is_counted() {
+        let scene = parse(include_str!("../../../scenes/vent.toml"), "vent.toml", std::path::Path::new("")).unwrap();
+        let vent = Vent { opening_pressure: 1e5, external_pressure: 1e5, ..scene.vents[0].clone() };
+        let mut seen = VentWatch::default();
+        for (time, pressure) in
+            [(0.0, 5e4), (1e-3, 2.5e5), (2e-3, 1.5e5), (3e-3, 9.95e4), (4e-3, 9e4), (6e-3, 8e4), (7e-3, 1e5)]
+        {
+            seen.see(&vent, [time, pressure], false);
+        }
+        assert!((seen.drawn_in[0] - 3e-3).abs() < 1e-15 && seen.drawn_in[1] == 2e4, "{:?}", seen.drawn_in);
+        let told = seen.drew(&scene, 0).unwrap();
+        assert!(told.contains("would have let gas in for 3.0000 ms: before it were up to 20000 Pa less"), "{told}");
+        assert_eq!(VentWatch::default().drew(&scene, 0), None);
     }
 }

@@ -16,20 +16,13 @@ use crate::gas::Species;
 use crate::gas::vent::{LocalGas, flux, opens};
 use crate::gas::wall_heat::accommodation;
 use crate::scene::{GAS_CONSTANT, HeatTransfer, Vent};
+use crate::simulation::control::fabric_seen::{areas_of, side_pressures};
 use crate::simulation::control::state_error::RunStateError;
+use crate::simulation::control::vent_seen::{MOST_RAISED, PAID_BY, PAID_IN, VentSeen};
+use crate::simulation::control::window::Window;
 use crate::simulation::model::build::Model;
 use crate::simulation::model::vent_places::Beyond;
 use crate::subdomain::{GpuSurfaceModel, GpuVent, Scales, Tables, Tallies, ZoneSum};
-
-/// A vent pays what it owes within so many intervals of its flow, or while so many particles leave.
-const PAID_IN: f64 = 8.0;
-const PAID_BY: f64 = 32.0;
-/// Its flow is raised to so many times what the gas gives it, at most.
-const MOST_RAISED: f64 = 4.0;
-/// It is learnt over so many particles at least, and as many intervals as it pays in, what a beta lets out; a beta is corrected
-/// by it so many times at most.
-const LEARNT_BY: f64 = 256.0;
-const MOST_CORRECTED: f64 = 2.0;
 
 /// The gas of a chamber, and what each vent owes, at the end of an interval.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -46,33 +39,10 @@ struct ChamberGas {
     temperature: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-struct VentSeen {
-    open: bool,
-    /// kg; negative if too much has left.
-    owed: f64,
-    /// kg that have lately left, and that its beta would have let out of a gas at rest in the state of the chamber.
-    left: f64,
-    at_rest: f64,
-}
-
-impl VentSeen {
-    /// Takes in what left in an interval, and what of a gas at rest would have; `particle` is the mass of one, kg.
-    fn learn(&mut self, left: f64, at_rest: f64, particle: f64) {
-        self.left += left;
-        self.at_rest += at_rest;
-        let most = (PAID_IN * at_rest).max(LEARNT_BY * particle);
-        let kept = (most / self.at_rest).min(1.0);
-        if kept < 1.0 {
-            self.left *= kept;
-            self.at_rest *= kept;
-        }
-    }
-
-    /// How many times as much leaves as of a gas at rest; one before anything is known.
-    fn eagerness(&self, particle: f64) -> f64 {
-        let unknown = (LEARNT_BY * particle - self.at_rest).max(0.0) / PAID_IN;
-        ((self.left + unknown) / (self.at_rest + unknown)).clamp(1.0 / MOST_CORRECTED, MOST_CORRECTED)
+impl SeenGas {
+    /// Whether an open sheet has more pressure on the side that its normals point away from.
+    fn flows_outwards(&self, vent: usize) -> bool {
+        self.vents.get(vent).is_some_and(|vent| vent.sides[1] > vent.sides[0])
     }
 }
 
@@ -90,18 +60,6 @@ pub struct SurfaceMemory {
 pub struct VentTarget {
     pub mass: f64,
     pub isentropic: f64,
-}
-
-/// When and how an interval was tallied.
-#[derive(Debug, Clone, Copy)]
-pub struct Window<'a> {
-    /// Its start and end, s.
-    pub span: [f64; 2],
-    pub samples: u32,
-    /// The mean ones of the chambers where walls move, m3.
-    pub volumes: &'a [f64],
-    /// What the device had of the vents.
-    pub vents: &'a [GpuVent],
 }
 
 pub struct SurfaceStates<'a> {
@@ -160,7 +118,7 @@ impl<'a> SurfaceStates<'a> {
     /// vents should have passed, by the gas that was there (and not by that of the interval before last, whose state they
     /// followed: so a vessel that empties fast does not lose more than it should).
     pub fn see(&mut self, tallies: &Tallies, window: Window<'_>) -> (SeenGas, Vec<VentTarget>) {
-        let Window { span: [start, end], samples, volumes, vents } = window;
+        let Window { span: [start, end], samples, volumes, vents, .. } = window;
         if self.mirrors() {
             return (SeenGas::default(), Vec::new());
         }
@@ -176,48 +134,87 @@ impl<'a> SurfaceStates<'a> {
                 .collect();
         }
         self.state.latest.vents.resize(model.scene.vents.len(), VentSeen::default());
+        self.see_fabric(tallies, &window);
         let wanted: Vec<VentTarget> =
             (0..model.scene.vents.len()).map(|index| self.flow(&self.state.latest, index, start, end).0).collect();
         for (index, target) in wanted.iter().enumerate() {
             let mut seen = self.state.latest.vents[index];
-            let place = &model.surface_models.vents[index];
-            let gas = self.local(&self.state.latest, place.chamber);
-            let vent = self.vent_against(&self.state.latest, index);
+            let (gas, vent) = self.before(&self.state.latest, index);
             seen.open = opens(&vent, seen.open, gas.map_or(0.0, |gas| gas.pressure));
             let (mass, left) = (target.mass, self.left(tallies, index));
             let most = MOST_RAISED * (PAID_IN * mass).max(PAID_BY * self.scales.reference_mass);
             seen.owed = (seen.owed + mass - left).clamp(-most, most);
             let tally = self.tally_of(index);
-            let beta = vents.iter().find(|known| known.index == tally).map_or(0.0, |known| known.beta.into());
-            let unit = |gas: LocalGas| 0.5 * gas.pressure * gas.molar_mass * place.area * (end - start);
+            // (Of the two sides of an open sheet one has none.)
+            let own = vents.iter().filter(|known| known.index == tally).map(|known| f64::from(known.beta));
+            let beta = own.fold(0.0, f64::max);
+            let area = self.place_area(&self.state.latest, index);
+            let unit = |gas: LocalGas| 0.5 * gas.pressure * gas.molar_mass * area * (end - start);
             seen.learn(left, beta * gas.map_or(0.0, unit) / self.heaviest(), self.scales.reference_mass);
             self.state.latest.vents[index] = seen;
         }
         (self.state.latest.clone(), wanted)
     }
 
+    /// What of the vents on fabric follows from where that is, and from the hits on its sides.
+    fn see_fabric(&mut self, tallies: &Tallies, window: &Window<'_>) {
+        let model = self.model;
+        if !model.surface_models.has_vents_on_fabric() {
+            return;
+        }
+        if !window.nodes.is_empty() {
+            let areas = areas_of(&model.fabric.triangles, &model.surface_models.vent_triangles, window.nodes);
+            for (vent, area) in self.state.latest.vents.iter_mut().zip(areas) {
+                vent.area = area;
+            }
+        }
+        for index in 0..model.scene.vents.len() {
+            let place = &model.surface_models.vents[index];
+            let Some(sheet) = place.open_sheet else { continue };
+            let at_rest = self.local(&self.state.latest, place.chamber).map_or(0.0, |gas| gas.pressure);
+            let vent = &mut self.state.latest.vents[index];
+            match side_pressures(model, &self.scales, (tallies, sheet), window) {
+                // What is around it before any hit was counted.
+                None => vent.sides = [at_rest; 2],
+                Some(now) => {
+                    vent.sides.iter_mut().zip(now).for_each(|(side, [now, share])| *side += share * (now - *side));
+                }
+            }
+        }
+    }
+
     /// The state of the start of a run, before any interval.
     pub fn start(&mut self, at_start: &Tallies) {
-        let window = Window { span: [0.0; 2], samples: 1, volumes: &[], vents: &[] };
+        let window = Window { span: [0.0; 2], samples: 1, volumes: &[], vents: &[], nodes: &[] };
         self.state.current = self.see(at_start, window).0;
     }
 
     /// The pressure of the chamber that a vent empties, Pa, by the tallies that were seen last; before fabric with gas behind it that
     /// which drives the flow, above the vent's external pressure.
     pub fn pressure_before(&self, index: usize) -> f64 {
-        let seen = &self.state.latest;
-        let pressure = |chamber| self.local(seen, chamber).map_or(0.0, |gas| gas.pressure);
-        let vent = &self.model.scene.vents[index];
-        pressure(self.model.surface_models.vents[index].chamber) + vent.external_pressure
-            - self.vent_against(seen, index).external_pressure
+        let (gas, vent) = self.before(&self.state.latest, index);
+        gas.map_or(0.0, |gas| gas.pressure) + self.model.scene.vents[index].external_pressure - vent.external_pressure
     }
 
-    /// A vent of the scene against the gas that is behind it.
-    fn vent_against(&self, seen: &SeenGas, index: usize) -> Cow<'a, Vent> {
-        let vent = &self.model.scene.vents[index];
-        let Beyond::Gas(chamber) = self.model.surface_models.vents[index].beyond else { return Cow::Borrowed(vent) };
+    /// The gas that a vent lets out, and the vent against what is behind it.
+    fn before(&self, seen: &SeenGas, index: usize) -> (Option<LocalGas>, Cow<'a, Vent>) {
+        let (vent, place) = (&self.model.scene.vents[index], &self.model.surface_models.vents[index]);
+        let gas = self.local(seen, place.chamber);
+        let against = |external_pressure: f64| Cow::Owned(Vent { external_pressure, ..vent.clone() });
+        if place.open_sheet.is_some() {
+            // The gas of the chamber, as dense as the pressure on each side has it.
+            let [outer, inner] = seen.vents.get(index).map_or([0.0; 2], |vent| vent.sides);
+            return (gas.map(|gas| LocalGas { pressure: outer.max(inner), ..gas }), against(outer.min(inner)));
+        }
+        let Beyond::Gas(chamber) = place.beyond else { return (gas, Cow::Borrowed(vent)) };
         let behind = chamber.and_then(|chamber| self.local(seen, chamber)).map_or(0.0, |gas| gas.pressure);
-        Cow::Owned(Vent { external_pressure: behind, ..vent.clone() })
+        (gas, against(behind))
+    }
+
+    /// m2, of a vent's place as it was seen.
+    fn place_area(&self, seen: &SeenGas, index: usize) -> f64 {
+        let area = seen.vents.get(index).map_or(0.0, |vent| vent.area);
+        if area > 0.0 { area } else { self.model.surface_models.vents[index].area }
     }
 
     /// Of each vent, whether it has opened.
@@ -292,7 +289,10 @@ impl<'a> SurfaceStates<'a> {
             let first_vent = tables.vents.len() as u32;
             for &vent in &placed.vents {
                 let (center, radius2) = self.disc(vent);
-                let (beta, index, passes) = (betas[vent] as f32, self.tally_of(vent), u32::from(self.passes(vent)));
+                let lets_out = model.surface_models.vents[vent].open_sheet.is_none()
+                    || placed.inner == self.state.current.flows_outwards(vent);
+                let beta = if lets_out { betas[vent] as f32 } else { 0.0 };
+                let (index, passes) = (self.tally_of(vent), u32::from(self.passes(vent)));
                 tables.vents.push(GpuVent { center, radius2, beta, index, passes, pad: 0 });
             }
             let surface = model.scene.surface_model(placed.surface);
@@ -340,13 +340,13 @@ impl<'a> SurfaceStates<'a> {
 
     /// What a vent should pass of the gas of a state, and its beta for the reference mass, s/m.
     fn flow(&self, state: &SeenGas, index: usize, start: f64, end: f64) -> (VentTarget, f64) {
-        let model = self.model;
-        let (vent, place) = (self.vent_against(state, index), &model.surface_models.vents[index]);
-        let Some(gas) = self.local(state, place.chamber) else {
+        let (gas, vent) = self.before(state, index);
+        let Some(gas) = gas.filter(|gas| gas.pressure > 0.0) else {
             return (VentTarget::default(), 0.0);
         };
         let seen = state.vents.get(index).copied().unwrap_or_default();
-        let area = vent.area.unwrap_or(place.area);
+        let place_area = self.place_area(state, index);
+        let area = vent.area.unwrap_or(place_area);
         let over = area * (end - start);
         let isentropic = over * gas.isentropic_flux(vent.external_pressure);
         if !seen.open {
@@ -356,7 +356,7 @@ impl<'a> SurfaceStates<'a> {
         let wanted = VentTarget { mass: over * flux, isentropic };
         let within = (PAID_IN * wanted.mass).max(PAID_BY * self.scales.reference_mass);
         let raised = (1.0 + seen.owed / within) / seen.eagerness(self.scales.reference_mass);
-        let beta = 2.0 * flux * area / place.area / gas.pressure * self.heaviest() / gas.molar_mass;
+        let beta = 2.0 * flux * area / place_area / gas.pressure * self.heaviest() / gas.molar_mass;
         (wanted, beta * raised.clamp(0.0, MOST_RAISED))
     }
 

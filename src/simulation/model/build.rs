@@ -10,6 +10,7 @@ use super::measure::measured;
 use super::moving::Moving;
 use super::orifices::{check_discs, check_orifices};
 use super::outlook::outlook;
+use super::parting_planes::planes_between;
 use super::places::along;
 use super::surface_models::SurfaceModels;
 use crate::gas::{Inflow, InflowParticles};
@@ -146,8 +147,8 @@ struct Survey {
 impl Survey {
     fn new(scene: &Scene) -> Result<Survey, ModelError> {
         let mut vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
-        let fabric = Surfaces::of(scene)?;
-        fabric.refuse_neighbours()?;
+        let mut fabric = Surfaces::of(scene)?;
+        fabric.planes = planes_between(&fabric, &fabric.places(0.0))?;
         vessel.bags = fabric.bags(0.0)?;
         refuse_open_chambers(scene, &vessel)?;
         check_orifices(scene, &vessel)?;

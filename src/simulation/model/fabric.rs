@@ -10,9 +10,11 @@ use glam::DVec3;
 
 use super::error::ModelError;
 use super::fabric_obstacles::Bodies;
+use super::fabric_paths::{Path, read};
 use super::membranes::Membranes;
-use crate::geometry::{Bag, GeometryError, Grid, NodeFrames, TriangleMesh};
-use crate::scene::{Chamber, Dimension, Scene, UnitSystem};
+use super::parting_planes::Plane;
+use crate::geometry::{Bag, GeometryError, Grid};
+use crate::scene::{Chamber, Scene};
 use crate::subdomain::{Fabric, GpuSheet};
 
 /// A mirror.
@@ -21,10 +23,10 @@ const NOBODY: u32 = u32::MAX;
 const MOMENTS: u32 = 64;
 /// Frames of a run at which they are measured, at most.
 const MOST_FRAMES: usize = 4096;
-/// m/s: nodes that are faster have jumped.
-const FASTEST_NODE: f64 = 3000.0;
 /// How far an edge of elastic fabric is thought to stretch at most.
 const STRETCHED: f64 = 1.25;
+/// Places of nodes that are kept of a surface to find what parts it from others, at most.
+const MOST_POINTS: usize = 1 << 20;
 
 /// Where all nodes are at a time, s, in m.
 type Places = dyn Fn(f64) -> Vec<[f64; 3]> + Send + Sync;
@@ -63,10 +65,16 @@ pub struct Surfaces {
     longest_edge: f64,
     /// The corners of what each sweeps in the run, m; of elastic ones, of what they are at the start.
     swept: Vec<[DVec3; 2]>,
+    /// Whether each turns as a whole.
+    turns: Vec<bool>,
+    /// Of each closed one the planes between it and the other closed ones.
+    pub planes: Vec<Vec<Plane>>,
     /// Of elastic ones, whose nodes move by forces: where they are only a run knows.
     pub membranes: Option<Membranes>,
     /// What is doubtful of the files.
     pub notes: Vec<String>,
+    /// Of tests: makes a mistake in what the device knows, to show that they find it.
+    pub mistaken: Option<fn(&mut Fabric)>,
 }
 
 impl Surfaces {
@@ -90,6 +98,8 @@ impl Surfaces {
             }
         }
         Surfaces {
+            turns: vec![false; all.len()],
+            planes: vec![Vec::new(); all.len()],
             all,
             triangles,
             course: Some(course),
@@ -98,6 +108,7 @@ impl Surfaces {
             swept,
             membranes: None,
             notes: Vec::new(),
+            mistaken: None,
         }
     }
 
@@ -127,7 +138,7 @@ impl Surfaces {
         if scene.fabrics.is_empty() {
             return Ok(Surfaces::default());
         }
-        let (mut all, mut triangles, mut frames, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut all, mut triangles, mut paths, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut first_node = 0;
         let mut membranes = Membranes::new();
         refuse_gas_outside(scene)?;
@@ -135,8 +146,9 @@ impl Surfaces {
         for fabric in &scene.fabrics {
             let read = read(fabric, scene.units)?;
             if is_elastic {
-                if fabric.motion.is_some() {
-                    let problem = "it has a `motion`, and another has a `material`: a scene has either".to_owned();
+                let moved = fabric.motion.is_some().then_some("motion").or(fabric.turn.is_some().then_some("turn"));
+                if let Some(key) = moved {
+                    let problem = format!("it has a `{key}`, and another has a `material`: a scene has either");
                     return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
                 }
                 membranes.add(fabric, &read.mesh)?;
@@ -152,20 +164,25 @@ impl Surfaces {
                 parts: read.mesh.parts,
                 names: read.mesh.names,
             });
-            frames.push(read.frames);
+            paths.push(read.path);
         }
-        let mut bends: Vec<f64> =
-            frames.iter().filter(|own| own.frame_count() > 1).flat_map(|own| own.times().to_vec()).collect();
+        let mut bends: Vec<f64> = paths.iter().flat_map(Path::bends).collect();
         bends.sort_by(f64::total_cmp);
         bends.dedup();
-        let fastest = frames.iter().map(NodeFrames::top_speed).fold(0.0, f64::max);
-        let places = move |time: f64| -> Vec<[f64; 3]> { frames.iter().flat_map(|own| own.at(time)).collect() };
+        let fastest = paths.iter().map(Path::fastest).fold(0.0, f64::max);
+        let arcs: Vec<Option<[DVec3; 2]>> = paths.iter().map(|path| path.arcs(scene.end_time)).collect();
+        let places = move |time: f64| -> Vec<[f64; 3]> { paths.iter().flat_map(|own| own.at(time)).collect() };
         if is_elastic {
             membranes.bodies = Bodies::of(scene, membranes.thickest, &places(0.0));
             notes.extend(membranes.bodies.notes());
         }
         let course = Course { places: Arc::new(places), bends, fastest };
-        let surfaces = Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) };
+        let mut surfaces = Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) };
+        surfaces.turns = arcs.iter().map(Option::is_some).collect();
+        for (swept, arcs) in surfaces.swept.iter_mut().zip(arcs) {
+            // (Moments know but places on them.)
+            *swept = arcs.unwrap_or(*swept);
+        }
         Ok(if is_elastic { surfaces.elastic(membranes) } else { surfaces })
     }
 
@@ -200,31 +217,16 @@ impl Surfaces {
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
     }
 
-    /// Particles know whether they are inside of closed fabric, and by their places of which.
-    ///
-    /// # Errors
-    /// If two closed surfaces pass through places near each other.
-    pub fn refuse_neighbours(&self) -> Result<(), ModelError> {
-        let closed: Vec<usize> = (0..self.all.len()).filter(|&index| self.all[index].closed).collect();
-        if self.is_elastic()
-            && let [one, other, ..] = closed[..]
-        {
-            let problem = format!("is elastic and closed, as \"{}\" is: there can be one such", self.all[other].name);
-            return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
+    /// Points whose convex hull holds all that a surface is at in the run, m.
+    pub fn hull(&self, index: usize) -> Vec<DVec3> {
+        let [low, high] = self.swept[index];
+        let (_, nodes) = self.parts(index);
+        // (Moments know but places on arcs.)
+        if self.turns[index] || nodes.len() * self.moments.len() > MOST_POINTS {
+            let corner = |k: u32| std::array::from_fn(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+            return (0..8).map(|k| DVec3::from_array(corner(k))).collect();
         }
-        for (k, &one) in closed.iter().enumerate() {
-            for &other in &closed[k + 1..] {
-                let ([low, high], [other_low, other_high]) = (self.swept[one], self.swept[other]);
-                if low.cmple(other_high).all() && other_low.cmple(high).all() {
-                    let problem = format!(
-                        "the boxes around what it and fabric \"{}\" sweep overlap: closed fabrics are told apart by these",
-                        self.all[other].name
-                    );
-                    return Err(ModelError::Fabric { fabric: self.all[one].name.clone(), problem });
-                }
-            }
-        }
-        Ok(())
+        self.moments.iter().flat_map(|&moment| self.places(moment)[nodes.clone()].to_vec()).map(DVec3::from).collect()
     }
 
     /// What the device knows of them; their works are tallied behind those of so many walls that move, the sides of each, the outer
@@ -255,7 +257,11 @@ impl Surfaces {
             // Of a box as large as the edge stretched, and what it flies in a step.
             edges.map(|edge| (((STRETCHED * edge + grid.cell) / grid.cell).ceil() as u64 + 1).pow(3)).sum()
         });
-        Fabric { nodes: nodes.len(), sheets, gap: Fabric::gap_of(grid, self.longest_edge), elastic }
+        let mut fabric = Fabric { nodes: nodes.len(), sheets, gap: Fabric::gap_of(grid, self.longest_edge), elastic };
+        if let Some(mistaken) = self.mistaken {
+            mistaken(&mut fabric);
+        }
+        fabric
     }
 
     /// Where the nodes are at the start of each of the steps of an interval and at the end of the last, quanta.
@@ -327,53 +333,4 @@ fn refuse_gas_outside(scene: &Scene) -> Result<(), ModelError> {
         return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
     }
     Ok(())
-}
-
-/// A fabric's files, SI.
-struct Read {
-    mesh: TriangleMesh,
-    frames: NodeFrames,
-    notes: Vec<String>,
-}
-
-fn read(fabric: &crate::scene::Fabric, units: UnitSystem) -> Result<Read, ModelError> {
-    let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
-    let mut mesh = TriangleMesh::read(&fabric.mesh).map_err(|error| refused(error.to_string()))?;
-    mesh.nodes.iter_mut().flatten().for_each(|x| *x *= fabric.scale);
-    if mesh.triangles.is_empty() {
-        return Err(refused(format!("{} has no triangle", fabric.mesh.display())));
-    }
-    let frames = match &fabric.motion {
-        None => NodeFrames::new(vec![0.0], vec![mesh.nodes.clone()], Vec::new())
-            .map_err(|error| refused(error.to_string()))?,
-        Some(path) => {
-            let read = NodeFrames::read(path).map_err(|error| refused(error.to_string()))?;
-            let told = |error: &dyn std::fmt::Display| refused(format!("{}: {error}", path.display()));
-            read.scaled(fabric.scale, units.factor(Dimension::Time)).map_err(|error| told(&error))?
-        }
-    };
-    if frames.node_count() != mesh.nodes.len() {
-        return Err(refused(format!(
-            "its motion has {} nodes, and its mesh {}: they must be those of one mesh, in one order",
-            frames.node_count(),
-            mesh.nodes.len()
-        )));
-    }
-    if fabric.external_pressure.is_some() && !mesh.is_closed() {
-        return Err(refused(
-            "it has an `external_pressure`, and its surface is open: an open sheet has no outside".into(),
-        ));
-    }
-    let mut notes = Vec::new();
-    for note in frames.notes(&mesh, FASTEST_NODE).map_err(|error| refused(error.to_string()))? {
-        if matches!(note, crate::geometry::FrameNote::Jump { .. }) {
-            return Err(refused(note.told(units)));
-        }
-        notes.push(format!("fabric `{}`: {}", fabric.name, note.told(units)));
-    }
-    // Turned outwards once the frames are known to be of it: their file has the triangles as the mesh has them.
-    if mesh.is_closed() && mesh.volume() < 0.0 {
-        mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-    }
-    Ok(Read { mesh, frames, notes })
 }

@@ -1,7 +1,8 @@
 //! What fabric does to the gas on its sides: which of its triangles are no mirrors, and where its vents are.
 //!
-//! A vent of closed fabric is a set of triangles: all, those of a part of the mesh, those whose middles are near a place at the
-//! start; of several vents the first has a triangle. The set stays, wherever its triangles go. Gas passes from inside out.
+//! A vent of fabric is a set of triangles: all, those of a part of the mesh, those whose middles are near a place at the
+//! start; of several vents the first has a triangle. The set stays, wherever its triangles go. Gas passes from inside of closed fabric out,
+//! and through an open sheet to the side with less pressure.
 
 use glam::DVec3;
 
@@ -21,6 +22,8 @@ pub struct OnFabric {
     pub placed: Vec<PlacedModel>,
     /// The vents of fabrics, by their indices in the scene.
     pub vents: Vec<(usize, VentPlace)>,
+    /// And their triangles.
+    pub triangles: Vec<(usize, Vec<u32>)>,
 }
 
 impl OnFabric {
@@ -56,12 +59,14 @@ impl OnFabric {
         let is_mirror = scene.surface_model(model).is_mirror();
         let sides = sides(scene, index, surface.closed);
         let mut areas = vec![0.0; own.len()];
+        let mut held = vec![Vec::new(); own.len()];
         let start = self.placed.len();
         for (triangle, corners) in corners.iter().enumerate() {
             let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
             let holder = own.iter().position(|&vent| holds(scene, &scene.vents[vent], (surface, triangle), corners));
             if let Some(holder) = holder {
                 areas[holder] += area;
+                held[holder].push((surface.triangles.start + triangle) as u32);
             }
             if is_mirror && holder.is_none() {
                 self.of_sheet.push(NOBODY);
@@ -70,15 +75,15 @@ impl OnFabric {
             let vents: Vec<usize> = holder.map(|holder| own[holder]).into_iter().collect();
             let known = (start..self.placed.len()).step_by(2).find(|&outer| self.placed[outer + 1].vents == vents);
             let outer = known.unwrap_or_else(|| {
-                let [outside, inside] = sides;
-                self.placed.push(PlacedModel::of_fabric(model, outside, Vec::new()));
-                self.placed.push(PlacedModel::of_fabric(model, inside, vents));
+                let outwards = if surface.closed { Vec::new() } else { vents.clone() };
+                self.placed.extend(PlacedModel::of_fabric(model, sides, [outwards, vents]));
                 self.placed.len() - 2
             });
             self.placed[outer..outer + 2].iter_mut().for_each(|side| side.area += area);
             self.of_sheet.push((first + outer) as u32);
         }
-        for (&vent, area) in own.iter().zip(areas) {
+        for ((&vent, area), triangles) in own.iter().zip(areas).zip(held) {
+            self.triangles.push((vent, triangles));
             self.vents.push((vent, place(scene, (vent, area), (index, surface), sides)?));
         }
         Ok(())
@@ -99,11 +104,13 @@ fn check(scene: &Scene, vent: &Vent, index: usize, surface: &Surface) -> Result<
         fabric: surface.name.clone(),
         problem: format!("vent \"{}\" {problem}", vent.name),
     };
-    if !surface.closed {
-        return Err(refused("leads out of its inside, and its surface is open: close its mesh"));
-    }
-    if scene.chambers.iter().all(|chamber| chamber.inside != Some(index)) {
+    if surface.closed && scene.chambers.iter().all(|chamber| chamber.inside != Some(index)) {
         return Err(refused("lets the gas of a chamber out, and none is `inside` of this fabric"));
+    }
+    if !surface.closed && scene.chambers.iter().all(|chamber| chamber.inside.is_some()) {
+        return Err(refused(
+            "lets gas through an open sheet, and there is none around it: no chamber is outside of all fabric",
+        ));
     }
     if let Some(Face::Part(part)) = vent.face {
         let name = &scene.fabrics[index].parts[part as usize];
@@ -143,5 +150,6 @@ fn place(
         return Err(ModelError::Fabric { fabric: surface.name.clone(), problem });
     };
     let gone = scene.fabrics[index].external_pressure.is_some();
-    Ok(VentPlace { chamber, area, beyond: if gone { Beyond::Nothing } else { Beyond::Gas(outside) } })
+    let beyond = if gone { Beyond::Nothing } else { Beyond::Gas(outside) };
+    Ok(VentPlace { chamber, area, beyond, open_sheet: (!surface.closed).then_some(index) })
 }

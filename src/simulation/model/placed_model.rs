@@ -14,10 +14,27 @@ pub struct PlacedModel {
     /// Of triangles that several chambers share: the model before the gas of the next of them.
     pub next: Option<usize>,
     pub(super) shared: bool,
+    /// Of fabric: it is that of the side which normals point away from.
+    pub inner: bool,
 }
 
 impl PlacedModel {
-    pub(super) fn of_fabric(surface: SurfaceId, chamber: Option<usize>, vents: Vec<usize>) -> PlacedModel {
-        PlacedModel { surface, chamber, area: 0.0, vents, next: None, shared: false }
+    /// Of both sides of fabric, that of the side which its normals point to first.
+    pub(super) fn of_fabric(
+        surface: SurfaceId,
+        chambers: [Option<usize>; 2],
+        vents: [Vec<usize>; 2],
+    ) -> [PlacedModel; 2] {
+        let [outside, inside] = chambers;
+        let [outwards, inwards] = vents;
+        [(outside, outwards, false), (inside, inwards, true)].map(|(chamber, vents, inner)| PlacedModel {
+            surface,
+            chamber,
+            area: 0.0,
+            vents,
+            next: None,
+            shared: false,
+            inner,
+        })
     }
 }

@@ -22,6 +22,8 @@ pub struct SurfaceModels {
     pub placed: Vec<PlacedModel>,
     /// Of the scene's vents.
     pub vents: Vec<VentPlace>,
+    /// Of each vent on fabric its triangles; the area of its place is theirs, wherever they go.
+    pub vent_triangles: Vec<Vec<u32>>,
 }
 
 impl SurfaceModels {
@@ -35,7 +37,7 @@ impl SurfaceModels {
         let places = places(scene, vessel, &fronts)?;
         let mut models = SurfaceModels::default();
         // While walls are placed theirs are known alone; those of fabric are on no wall.
-        let unplaced = VentPlace { chamber: usize::MAX, area: 0.0, beyond: Beyond::Nothing };
+        let unplaced = VentPlace { chamber: usize::MAX, area: 0.0, beyond: Beyond::Nothing, open_sheet: None };
         models.vents = vec![unplaced; scene.vents.len()];
         places.into_iter().for_each(|(index, place)| models.vents[index] = place);
         for (triangle, front) in vessel.triangles.iter().zip(&fronts) {
@@ -48,6 +50,8 @@ impl SurfaceModels {
         let on_fabric = OnFabric::new(scene, fabric, models.placed.len())?;
         models.placed.extend(on_fabric.placed);
         models.of_sheet = on_fabric.of_sheet;
+        models.vent_triangles = vec![Vec::new(); scene.vents.len()];
+        on_fabric.triangles.into_iter().for_each(|(index, own)| models.vent_triangles[index] = own);
         on_fabric.vents.into_iter().for_each(|(index, place)| models.vents[index] = place);
         Ok(models)
     }
@@ -83,11 +87,17 @@ impl SurfaceModels {
             if known.is_none() {
                 let next = (k + 1 < parts.len()).then_some(first + k + 1);
                 let vents = vents.clone();
-                self.placed.push(PlacedModel { surface, chamber: Some(*chamber), area: 0.0, vents, next, shared });
+                let chamber = Some(*chamber);
+                self.placed.push(PlacedModel { surface, chamber, area: 0.0, vents, next, shared, inner: false });
             }
             self.placed[first + k].area += share * whole;
         }
         first as u32
+    }
+
+    /// Whether some vent is on fabric.
+    pub fn has_vents_on_fabric(&self) -> bool {
+        self.vent_triangles.iter().any(|own| !own.is_empty())
     }
 
     /// Whether some vent leads to other gas.

@@ -20,6 +20,8 @@ pub struct VentPlace {
     /// m2 of wall, or of fabric at the start.
     pub area: f64,
     pub beyond: Beyond,
+    /// The fabric, if that is open: gas of one chamber is on both sides, and flows to the side with less pressure.
+    pub open_sheet: Option<usize>,
 }
 
 /// Where gas goes that passes a vent.
@@ -47,7 +49,9 @@ pub fn area([a, b, c]: Corners) -> f64 {
 pub fn places(scene: &Scene, vessel: &Vessel, fronts: &[Option<Front>]) -> Result<Vec<(usize, VentPlace)>, ModelError> {
     let place = |(index, (vent, areas)): (usize, (&Vent, &Vec<f64>))| -> Result<(usize, VentPlace), ModelError> {
         match touched(areas)[..] {
-            [chamber] => Ok((index, VentPlace { chamber, area: areas[chamber], beyond: Beyond::Nothing })),
+            [chamber] => {
+                Ok((index, VentPlace { chamber, area: areas[chamber], beyond: Beyond::Nothing, open_sheet: None }))
+            }
             [] => Err(without_gas(scene, vessel, fronts, vent)),
             ref several => {
                 Err(ModelError::VentOfSeveral { vent: vent.name.clone(), chambers: names(&scene.chambers, several) })

@@ -10,7 +10,8 @@ use crate::simulation::accounting::guards::{GuardWarning, Shown};
 use crate::simulation::accounting::phases::{PAIR_PHASES, once_an_interval};
 use crate::simulation::accounting::row::Row;
 use crate::simulation::control::interval::Interval;
-use crate::simulation::control::surface_states::{SeenGas, Window};
+use crate::simulation::control::surface_states::SeenGas;
+use crate::simulation::control::window::Window;
 use crate::simulation::model::fabric::Surfaces;
 use crate::simulation::parallel::exchange::Traffic;
 use crate::simulation::parallel::load::Load;
@@ -155,7 +156,13 @@ impl Simulation<'_> {
         let samples = interval.samples();
         let end = self.progress.read_until;
         let span = [end - interval.dt * f64::from(interval.steps), end];
-        let window = Window { span, samples, volumes: &interval.volumes, vents: &interval.tables.vents };
+        let nodes = match &self.fabric {
+            _ if !self.model.surface_models.has_vents_on_fabric() => Vec::new(),
+            Some(elastic) => elastic.nodes().to_vec(),
+            None => self.model.fabric.places(end),
+        };
+        let (volumes, vents) = (&interval.volumes[..], &interval.tables.vents[..]);
+        let window = Window { span, samples, volumes, vents, nodes: &nodes };
         let (seen, targets) = self.control.surfaces.see(tallies, window);
         self.watch_vents(end, observer);
         let sampled = Sampled { dt: interval.dt, steps: interval.steps, samples };

@@ -8,7 +8,7 @@ use crate::simulation::model::build::Model;
 use crate::simulation::model::patches::patches;
 use crate::simulation::model::vent_places::Beyond;
 use crate::simulation::parallel::initial_particles::find_room;
-use crate::subdomain::{CellTable, Fabric, GpuZone, Patches, Walls, zone_inside, zone_of};
+use crate::subdomain::{CellTable, Fabric, GpuZone, Patches, Walls, zone_inside, zone_of, zone_plane};
 
 /// The part of a set-up that the host makes alone.
 pub struct HostSetup {
@@ -17,6 +17,8 @@ pub struct HostSetup {
     /// Of the method `cell`.
     pub cells: CellTable,
     pub zones: Vec<GpuZone>,
+    /// Behind them, the planes that part closed fabrics.
+    pub planes: Vec<GpuZone>,
     pub patches: Patches,
     pub layout: Layout,
     /// Gas volume of each coarse block, m3.
@@ -45,7 +47,7 @@ impl HostSetup {
             Method::Cell => cell_table(model, &still, &triangle_grid, parts)?,
             _ => CellTable::default(),
         };
-        let zones = zones(model);
+        let (zones, planes) = zones(model);
         let counted = Patches {
             surfaces: patches.len() + 2 * model.fabric.all.len(),
             surface_models: model.surface_models.placed.len(),
@@ -66,6 +68,7 @@ impl HostSetup {
             ),
             cells,
             zones,
+            planes,
             patches: counted,
             layout: layout(model, &patch, &patches),
             volumes: volumes_of_blocks(model, &still)?,
@@ -111,18 +114,27 @@ fn volumes_of_blocks(model: &Model, still: &Vessel) -> Result<Vec<f64>, Simulati
     Ok(block_volumes(&still.clone().measured()?, &plan.grid, plan.block_cells_log2))
 }
 
-/// Everything, the chambers, the probes.
-fn zones(model: &Model) -> Vec<GpuZone> {
+/// Everything, the chambers, the probes; and the planes behind them.
+fn zones(model: &Model) -> (Vec<GpuZone>, Vec<GpuZone>) {
     let grid = &model.plan.grid;
+    let first = 1 + model.scene.chambers.len() + model.scene.probes.len();
+    let mut planes = Vec::new();
     let chambers = model.scene.chambers.iter().enumerate().map(|(index, chamber)| GpuZone {
         carried: model.moving.carried.get(index).copied().unwrap_or(0),
         ..match chamber.inside {
-            Some(fabric) => zone_inside(model.fabric.swept(fabric), grid),
+            Some(fabric) => {
+                let own = &model.fabric.planes[fabric];
+                let begin = first + planes.len();
+                planes.extend(own.iter().map(|plane| zone_plane(plane.point, plane.normal, grid)));
+                let zone = zone_inside(model.fabric.swept(fabric), grid);
+                return GpuZone { carried: begin as u32, planes: own.len() as u32, ..zone };
+            }
             None => zone_of(chamber.region.as_ref(), grid),
         }
     });
     let probes = model.scene.probes.iter().map(|probe| zone_of(Some(&probe.region), grid));
-    std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect()
+    let zones = std::iter::once(zone_of(None, grid)).chain(chambers).chain(probes).collect();
+    (zones, planes)
 }
 
 fn layout(model: &Model, of_triangle: &[u32], patches: &[(u32, Option<Face>)]) -> Layout {

@@ -106,13 +106,14 @@ impl Setup {
         if plan.method == Method::ControlVolume {
             return Err(SimulationError::NoParticles);
         }
-        let HostSetup { walls, fabric, cells, zones, patches, layout, volumes } = HostSetup::new(model)?;
+        let HostSetup { walls, fabric, cells, zones, planes, patches, layout, volumes } = HostSetup::new(model)?;
         let input = DomainInput {
             plan,
             walls: &walls,
             fabric: &fabric,
             cells: &cells,
             zones: &zones,
+            planes: &planes,
             patches,
             vent_entries: model.surface_models.vent_entries(),
             among_others: ranks > 1,

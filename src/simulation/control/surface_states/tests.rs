@@ -42,7 +42,7 @@ fn owed(eager: f64, intervals: usize) -> f64 {
             let left = exact.floor();
             rest = exact - left;
             let span = span.map(|time| time - 2.0 * dt);
-            let window = Window { span, samples: 1, volumes: &[], vents: &tables.vents };
+            let window = Window { span, samples: 1, volumes: &[], vents: &tables.vents, nodes: &[] };
             let (seen, should) = conditions.see(&tallies(left as i64), window);
             wanted = should[0].mass;
             conditions.follow(seen);
