@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use super::course::Course;
 use super::region::Region;
 use super::surface_model::SurfaceModel;
-use super::types::Course;
 
 /// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
 #[derive(Debug, Clone, PartialEq)]

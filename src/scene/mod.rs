@@ -4,6 +4,7 @@
 //! schemars describes them), [`Scene`] is what it means, every default and name resolved. On the way
 //! every number is checked and converted, once. docs/reference/scenes.md describes the format.
 
+mod course;
 mod entries;
 mod errors;
 mod fabric;

@@ -4,6 +4,7 @@
 //! vectors called `direction`, `axis` or `normal` have unit length, mixtures sum to one, curves are
 //! ordered in time, lengths, pressures, temperatures and masses are positive and finite.
 
+pub use super::course::{Course, Curve};
 use std::path::PathBuf;
 
 use super::fabric::Fabric;
@@ -279,12 +280,6 @@ pub struct Jet {
     pub cone_angle: f64,
 }
 
-/// Piecewise linear; at least one point, strictly increasing abscissae.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
-    pub points: Vec<[f64; 2]>,
-}
-
 /// A region in which pressure, temperature, density, velocity and particle counts are averaged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
@@ -349,15 +344,6 @@ pub struct Motion {
     pub wall: usize,
     pub direction: [f64; 3],
     pub course: Course,
-}
-
-/// How far a wall has moved; curves are constant beyond their ends.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Course {
-    /// m/s against s.
-    Velocity(Curve),
-    /// m against s, from where the wall is drawn; starts at [0, 0].
-    Displacement(Curve),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]

@@ -12,7 +12,7 @@ use super::error::ModelError;
 use super::fabric_obstacles::Bodies;
 use super::fabric_paths::{Path, read};
 use super::membranes::Membranes;
-use super::parting_planes::Plane;
+use super::plane::Plane;
 use crate::geometry::{Bag, GeometryError, Grid};
 use crate::scene::{Chamber, Scene};
 use crate::subdomain::{Fabric, GpuSheet};

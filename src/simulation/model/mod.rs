@@ -25,6 +25,7 @@ pub(super) mod parting_planes;
 pub(super) mod patches;
 pub(super) mod placed_model;
 pub(super) mod places;
+pub(super) mod plane;
 mod pockets;
 mod separate;
 mod strokes;

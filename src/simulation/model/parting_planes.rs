@@ -9,15 +9,7 @@ use glam::DVec3;
 
 use super::error::ModelError;
 use super::fabric::Surfaces;
-
-/// A plane with a surface on the side that its normal points away from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
-    /// m.
-    pub point: [f64; 3],
-    /// Of unit length.
-    pub normal: [f64; 3],
-}
+use super::plane::Plane;
 
 /// How far apart surfaces are at least, over their extent: f32 tells on which side of the plane a particle is, and flights keep a gap.
 const APART: f64 = 1e-5;
