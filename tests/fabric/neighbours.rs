@@ -58,7 +58,10 @@ fn bags_that_nearly_touch_are_told_apart() {
     let run = run(&model, Options::default());
     let wrong = on_the_wrong_side(&model, &run, end);
     let audit = &run.outcome.audit;
-    assert!(wrong.is_empty() && audit.particles_passed == Some(0) && audit.truncated_flights == 0, "{wrong:?}");
+    assert!(
+        wrong.is_empty() && audit.passed.is_some_and(|passed| passed.particles == 0) && audit.truncated_flights == 0,
+        "{wrong:?}"
+    );
     assert!(audit.energy_error().abs() < 1e-5, "{}", audit.energy_error());
     let last = run.rows.last().expect("rows");
     for (chamber, planned) in last.chambers.iter().zip(&model.plan.chambers) {
