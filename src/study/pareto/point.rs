@@ -267,7 +267,7 @@ mod tests {
     fn the_error_of_the_mean_is_that_of_the_mean_deviations() {
         let sums = [[0.3, -0.1], [-0.1, -0.1]]
             .into_iter()
-            .fold(Some(Vec::new()), |sums, of_seed| added(sums, Some(of_seed.to_vec())));
+            .try_fold(Vec::new(), |sums, of_seed| added(Some(sums), Some(of_seed.to_vec())));
         let mean: Vec<f64> = sums.unwrap().iter().map(|sum| sum / 2.0).collect();
         assert!((Norm::Mean.of(&mean) - 0.1).abs() < 1e-12);
         assert!((Norm::RootMeanSquare.of(&[0.3, -0.1]) - 0.05f64.sqrt()).abs() < 1e-12);
