@@ -9,6 +9,10 @@ use crate::fabric::{Elasticity, Element, Hold, Material, Relaxation, longest_ste
 use crate::geometry::{TriangleMesh, region_contains};
 use crate::scene::{self, Fixed};
 
+/// Of the longest step at which fabric is stable: gas shakes fabric that goes slack and taut by turns, which loses energy with the square of
+/// the step.
+const CAREFUL: f64 = 0.5;
+
 /// Of all surfaces of a scene, in their order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Membranes {
@@ -77,7 +81,7 @@ impl Membranes {
         self.relaxations.push(Relaxation { scale: membrane.reference_scale, time: membrane.reference_time });
         // (A small reference is stiff.)
         let shortest = membrane.reference_scale.min(1.0);
-        self.longest_step = self.longest_step.min(shortest * longest_step(&own, &self.materials));
+        self.longest_step = self.longest_step.min(CAREFUL * shortest * longest_step(&own, &self.materials));
         let holds = holds(&membrane.fixed, mesh);
         if holds.iter().all(|hold| *hold == Hold::Fixed) {
             return Err(refused(

@@ -1,9 +1,9 @@
 //! Which closed fabric a particle is inside of.
 //!
 //! Particles know that they are inside of closed fabric, and by their places of which: between what two closed surfaces sweep in the run there is a
-//! plane. It is looked for among the axes and the normals of their triangles; if none of these has both surfaces on its two sides, by
-//! E. G. Gilbert (1966): the point v of the difference of both hulls that is nearest to the origin is the normal, found by moving v to the nearest point of
-//! the segment from it to the corner that lies farthest against it.
+//! plane. It is looked for among the axes; if none of these has both surfaces on its two sides, by E. G. Gilbert (1966): the point v of the
+//! difference of both hulls that is nearest to the origin is the normal, found by moving v to the nearest point of the segment from it to the
+//! corner that lies farthest against it. That is slow between faces that lie flat on each other: at last the normals of triangles are tried.
 
 use glam::DVec3;
 
@@ -117,14 +117,24 @@ mod tests {
     use super::*;
     use crate::geometry::MeshShape;
 
-    fn nodes(shape: MeshShape, turn: f64, at: DVec3) -> Vec<DVec3> {
+    /// Where its nodes are, and the normals of its triangles.
+    type Shape = (Vec<DVec3>, Vec<DVec3>);
+
+    fn nodes(shape: MeshShape, turn: f64, at: DVec3) -> Shape {
         let turned = glam::DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), turn);
         let mesh = shape.mesh([0.0; 3]).unwrap();
-        mesh.nodes.iter().map(|&node| turned * DVec3::from(node) + at).collect()
+        let nodes: Vec<DVec3> = mesh.nodes.iter().map(|&node| turned * DVec3::from(node) + at).collect();
+        let normals = mesh.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|node| nodes[node as usize]);
+            (b - a).cross(c - a)
+        });
+        let normals = normals.collect();
+        (nodes, normals)
     }
 
-    fn parted(ones: &[DVec3], others: &[DVec3]) -> bool {
-        let Some(plane) = plane_between(ones, others, std::iter::empty()) else { return false };
+    fn parted((ones, one_normals): &Shape, (others, other_normals): &Shape) -> bool {
+        let normals = one_normals.iter().chain(other_normals).copied();
+        let Some(plane) = plane_between(ones, others, normals) else { return false };
         let above = |p: &DVec3| (*p - DVec3::from(plane.point)).dot(plane.normal.into());
         assert!(ones.iter().all(|p| above(p) < 0.0) && others.iter().all(|p| above(p) > 0.0), "{plane:?}");
         true
