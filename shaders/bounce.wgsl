@@ -4,6 +4,7 @@
 // Flies the particles that meet walls to the end of the step, off every wall on the way: as off a mirror, or
 // as the wall's surface model has it, diffusely with the temperature of the wall or with their speed, or out through a
 // vent, of fabric to its other side. A wall that moves does so in its own frame; the work that it does on the gas is m V . (v' - v), V its velocity.
+// Elastic fabric recoils besides.
 //
 // Reads `bouncing`, `sorted` and in `particles` the flights (without rounds of pairs `newborns`, without collisions
 // `particles`), the walls, `surface_models`, `vents` and `zones`; writes `particles` (NOBODY for one that has left), counts it in
@@ -25,6 +26,8 @@ override MOST_BOUNCES: u32 = 32;
 // Hits on elastic fabric after which a flight ends there as well: they move its nodes in the next step only, so that a particle caught between two
 // sheets that touch would throw them apart with many times its momentum.
 const MOST_PUSHES: u32 = 6u;
+// Of the mass with which fabric recoils, the most that a particle has: a heavier one would fly on through the place of its hit.
+const HEAVIEST: f32 = 0.5;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;
 
@@ -33,8 +36,9 @@ override ENERGY_SCALE: f32 = 1.0;
 // Where the tallies of surface models and vents start in `sums`.
 override SURFACE_MODELS_AT: u32 = 0;
 override VENTS_AT: u32 = 0;
-// And where those of moving walls do.
+// And where those of moving walls do, and that of what fabric took in recoiling.
 override WORKS_AT: u32 = 0;
+override RECOIL_AT: u32 = 0;
 // There are copies of all of these, each of so many words, that workgroups take in turn, and the host adds up: a GPU does atomic operations on
 // one word, or on its neighbours, one after the other.
 override COPIES: u32 = 1;
@@ -258,11 +262,21 @@ fn bounce(thread: Thread) {
             turned *= sqrt(dot(relative, relative) / dot(turned, turned));
         }
         turned += carried;
+        var recoil = 0.0;
+        if (MEMBRANE && wall.sheet != NOBODY) {
+            // Fabric of mass M recoils: it takes 1/(1 + m/M) of the impulse, and with it P^2/2M from the gas.
+            let share = 1.0 / (1.0 + min(gas.mass * fabric[wall.sheet].recoil, HEAVIEST));
+            let change = turned - old;
+            recoil = 0.5 * gas.mass * (1.0 - share) * dot(change, 2.0 * relative + (1.0 + share) * change);
+            turned = old + share * change;
+            tally_energy(RECOIL_AT, recoil);
+        }
         var work = 0.0;
         if ((MOVING || FABRIC) && wall.work != NOBODY) {
             work = gas.mass * dot(carried, turned - old);
             tally_energy(WORKS_AT + wall.work * SURFACE_MODEL_WORDS, -work);
         }
+        work -= recoil;
         if (SPIN && kept && gas.exchange > 0.0) {
             // What rounding took from the kinetic energy.
             particle.spin = max(particle.spin - (0.5 * gas.mass * dot(turned - old, turned + old) - work), 0.0);

@@ -80,7 +80,7 @@ fn twins() -> Vec<Twin> {
         twin!("Newborn", GpuNewborn, particle, start),
         twin!("Flight", GpuFlight, start, wall, partner, collisions),
         twin!("Triangle", GpuTriangle, a, sense, b, surface, c, surface_model, normal, motion),
-        twin!("Sheet", GpuSheet, a, b, c, closed, surface, surface_model, work, pad),
+        twin!("Sheet", GpuSheet, a, b, c, closed, surface, surface_model, work, recoil),
         twin!("Swept", GpuSwept, normal, away, corner, pad),
         twin!("Motion", GpuMotion, moved, cells, velocity, rows, low, pad, high, pad2, body_low, pad3, body_size, pad4),
         twin!("SurfaceModel", GpuSurfaceModel, thermal, accommodation, friction, first_vent, end_vent, zone, next),

@@ -21,7 +21,8 @@ struct Sheet {
     surface_model: u32,
     // The tally of its work.
     work: u32,
-    pad: u32,
+    // The reference mass over that with which it recoils from a hit, 0 if nothing moves it.
+    recoil: f32,
 }
 
 // What a triangle sweeps in the step, and a margin of SHEET_MARGIN gaps.

@@ -32,4 +32,5 @@ pub use membrane::Membrane;
 pub use model::{Model, Triangle};
 pub use principal::Principal;
 pub use shaders::KERNELS;
+pub use smoothing::recoils;
 pub use state::{MembraneState, place};

@@ -24,9 +24,72 @@ pub fn neighbours(nodes: usize, triangles: &[[u32; 3]]) -> (Vec<GpuNeighbour>, V
     (all, starts)
 }
 
+/// What a hit of unit impulse on each triangle changes its velocity by along that impulse, 1/kg: the mean of w.G w over places of the triangle, w the
+/// weights of its corners, G = S^n M^-1 S^n with n passes S of smoothing and M the masses of nodes.
+pub fn recoils(inverse_masses: &[f64], triangles: &[[u32; 3]], passes: u32) -> Vec<f64> {
+    let (all, starts) = neighbours(inverse_masses.len(), triangles);
+    let own = |node: usize| &all[starts[node] as usize..starts[node + 1] as usize];
+    // What a pass makes of a sparse vector; `sum` is zero before and after.
+    let mut sum = vec![0.0; inverse_masses.len()];
+    let mut smoothed = |from: &[(usize, f64)]| -> Vec<(usize, f64)> {
+        let mut touched = BTreeSet::new();
+        for &(node, value) in from {
+            touched.insert(node);
+            let mut left = value;
+            for neighbour in own(node) {
+                let share = f64::from(neighbour.share) * value;
+                touched.insert(neighbour.node as usize);
+                sum[neighbour.node as usize] += share;
+                left -= share;
+            }
+            sum[node] += left;
+        }
+        touched.into_iter().map(|node| (node, std::mem::take(&mut sum[node]))).collect()
+    };
+    let spread: Vec<Vec<(usize, f64)>> = (0..inverse_masses.len())
+        .map(|node| (0..passes).fold(vec![(node, 1.0)], |vector, _| smoothed(&vector)))
+        .collect();
+    // Both are ordered by node.
+    let response = |one: u32, other: u32| {
+        let (mut ones, mut others) = (spread[one as usize].iter().peekable(), spread[other as usize].iter().peekable());
+        let mut sum = 0.0;
+        while let (Some(&&(p, a)), Some(&&(q, b))) = (ones.peek(), others.peek()) {
+            if p == q {
+                sum += a * b * inverse_masses[p];
+            }
+            if p <= q {
+                ones.next();
+            }
+            if q <= p {
+                others.next();
+            }
+        }
+        sum
+    };
+    // The mean of w_i^2 over a triangle is a sixth, that of w_i w_k a twelfth.
+    let of_triangle = |&[a, b, c]: &[u32; 3]| {
+        let alike = response(a, a) + response(b, b) + response(c, c);
+        (alike + response(a, b) + response(b, c) + response(c, a)) / 6.0
+    };
+    triangles.iter().map(of_triangle).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Without smoothing: of three equal masses half of one. With many passes on all nodes: as of all of them together.
+    #[test]
+    fn triangles_recoil_with_the_mass_that_a_hit_moves() {
+        let fan: Vec<[u32; 3]> = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
+        let masses = [0.5; 7];
+        assert!(recoils(&masses, &fan, 0).iter().all(|recoil| (recoil - 0.5 * 0.5).abs() < 1e-12));
+        assert!(recoils(&masses, &fan, 400).iter().all(|recoil| (recoil - 0.5 / 7.0).abs() < 1e-6));
+        // Nodes that are held take no part.
+        let mut held = masses;
+        held[1..].fill(0.0);
+        assert!(recoils(&held, &fan, 0).iter().all(|recoil| (recoil - 0.5 / 6.0).abs() < 1e-12));
+    }
 
     /// The middle of a fan of six has six neighbours, each of its rim three: both give each other a seventh.
     #[test]

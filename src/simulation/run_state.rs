@@ -119,6 +119,7 @@ mod tests {
             vents: vec![false; VENTS],
             motions: MOTIONS,
             fabrics: 0,
+            elastic: false,
             patches: 0,
         };
         Averages::new(plan, layout, PATCHES)

@@ -63,7 +63,7 @@ pub struct Features {
 pub const MOST_WITH_RUNTIME_CONSTANTS: f64 = 1e8;
 
 /// Constants that are numbers of a scene, which kernels can read from a uniform. (What branches ask of constants alone is compiled in.)
-const RUNTIME_CONSTANTS: [&str; 29] = [
+const RUNTIME_CONSTANTS: [&str; 30] = [
     "BLOCKS",
     "BLOCKS_X",
     "BLOCKS_Y",
@@ -85,6 +85,7 @@ const RUNTIME_CONSTANTS: [&str; 29] = [
     "INVERSE_THERMAL",
     "QUANTA",
     "QUANTUM",
+    "RECOIL_AT",
     "SEED_HIGH",
     "SEED_LOW",
     "TIME_STEP",
@@ -132,8 +133,13 @@ impl Patches {
         [surfaces, surface_models, surface_models + (self.vents + self.passages) * VENT_WORDS as usize]
     }
 
-    pub(super) fn words(&self) -> usize {
+    /// Where the tally of what elastic fabric takes in recoiling is: the last.
+    pub(super) fn recoil_at(&self) -> usize {
         self.ends()[2] + (self.motions + self.fabrics) * SURFACE_MODEL_WORDS as usize
+    }
+
+    pub(super) fn words(&self) -> usize {
+        self.recoil_at() + usize::from(self.membrane) * SURFACE_MODEL_WORDS as usize
     }
 
     /// Words of a copy of these tallies: no two copies share a line of a cache.
@@ -247,6 +253,7 @@ pub fn constants(of: &Specialisation<'_>) -> Vec<(&'static str, f64)> {
         ("SURFACE_MODELS_AT", surface_models_at as f64),
         ("VENTS_AT", vents_at as f64),
         ("WORKS_AT", works_at as f64),
+        ("RECOIL_AT", patches.recoil_at() as f64),
         ("COPIES", SURFACE_COPIES as f64),
         ("COPY_WORDS", patches.copy_words() as f64),
         ("CELL_POINTS", CELL_POINTS as f64),

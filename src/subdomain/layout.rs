@@ -109,7 +109,7 @@ pub struct GpuSheet {
     pub surface: u32,
     pub surface_model: u32,
     pub work: u32,
-    pub pad: u32,
+    pub recoil: f32,
 }
 
 /// `Swept` of `shaders/shared/fabric.wgsl`.

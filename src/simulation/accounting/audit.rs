@@ -380,7 +380,11 @@ impl Account {
             enthalpy_vented,
             work_by_walls: (!model.moving.is_empty() || !model.fabric.is_empty()).then(|| averages.total_work()),
             // (All that moves in a scene with fabric is fabric.)
-            fabric: fabric.map(|account| FabricAccount { from_gas: -averages.total_work(), ..account }),
+            fabric: fabric.map(|account| FabricAccount {
+                from_gas: -averages.total_work(),
+                ledger: account.ledger + averages.total_recoil(),
+                ..account
+            }),
             heat_to_walls: model.scene.has_heat().then(|| averages.total_heat()),
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))

@@ -137,7 +137,7 @@ impl Averages {
             received: vec![[0; 3]; patches],
             heat: vec![[0; 2]; layout.surface_models],
             passed: vec![[Passed::default(); 2]; layout.vents.len()],
-            works: vec![[0; 2]; layout.motions + layout.fabrics],
+            works: vec![[0; 2]; layout.motions + layout.fabrics + usize::from(layout.elastic)],
             room: if layout.motions + layout.fabrics > 0 { vec![0.0; zones] } else { Vec::new() },
             layout,
         }
@@ -384,6 +384,12 @@ impl Averages {
             normal as f64 * self.impulse_unit() / duration
         };
         FabricState { pressure: [force(0), force(1)], work, power, ..FabricState::default() }
+    }
+
+    /// What elastic fabric has taken from the gas in recoiling since the start, J.
+    pub fn total_recoil(&self) -> f64 {
+        let of_recoil = self.works.get(self.layout.motions + self.layout.fabrics);
+        of_recoil.map_or(0.0, |work| work[1] as f64 * self.energy_unit())
     }
 
     /// All the work that walls have done on the gas since the start, J.

@@ -132,6 +132,8 @@ pub struct Layout {
     pub vents: Vec<bool>,
     pub motions: usize,
     pub fabrics: usize,
+    /// Whether they are elastic.
+    pub elastic: bool,
     /// Of walls: behind them are two of each surface that deforms, the outer side and the inner.
     pub patches: usize,
 }

@@ -13,6 +13,7 @@ use super::outlook::outlook;
 use super::parting_planes::planes_between;
 use super::places::along;
 use super::surface_models::SurfaceModels;
+use crate::fabric::recoils;
 use crate::gas::{Inflow, InflowParticles};
 use crate::geometry::Vessel;
 use crate::plan::{
@@ -78,6 +79,17 @@ impl Model {
         let lightest = self.fabric.membranes.as_ref().map(|membranes| membranes.lightest_node);
         let heaviest = self.plan.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
         lightest.map_or(0, |node| smoothings(heaviest * self.plan.moles_per_particle / node))
+    }
+
+    /// The mass of a particle of the heaviest gas over that with which each triangle of elastic fabric recoils from a hit; empty without.
+    pub fn recoils(&self) -> Vec<f64> {
+        let heaviest = self.plan.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max);
+        let mass = heaviest * self.plan.moles_per_particle;
+        let of_membranes = self.fabric.membranes.as_ref().map(|membranes| {
+            let inverse = recoils(&membranes.inverse_masses, &self.fabric.triangles, self.smoothings());
+            inverse.into_iter().map(|inverse| mass * inverse).collect()
+        });
+        of_membranes.unwrap_or_default()
     }
 
     /// All that will flow in.

@@ -32,6 +32,8 @@ pub struct Membranes {
     pub thickest: f64,
     /// kg, of those that are free.
     pub lightest_node: f64,
+    /// Of each node, 1/kg; 0 of those that are held.
+    pub inverse_masses: Vec<f64>,
     /// What stops nodes.
     pub bodies: Bodies,
 }
@@ -62,6 +64,7 @@ impl Membranes {
             self.holds.extend(vec![Hold::Fixed; mesh.nodes.len()]);
             self.added_masses.extend(vec![0.0; mesh.nodes.len()]);
             self.frictions.extend(vec![0.0; mesh.nodes.len()]);
+            self.inverse_masses.extend(vec![0.0; mesh.nodes.len()]);
             return Ok(());
         };
         let reference = match &membrane.reference {
@@ -100,6 +103,8 @@ impl Membranes {
         }
         let free = masses.iter().zip(&holds).filter(|(_, hold)| **hold == Hold::Free).map(|(mass, _)| *mass);
         self.lightest_node = free.fold(self.lightest_node, f64::min);
+        let inverse = |(mass, hold): (&f64, &Hold)| if *hold == Hold::Free { 1.0 / mass } else { 0.0 };
+        self.inverse_masses.extend(masses.iter().zip(&holds).map(inverse));
         self.elements.extend(own);
         self.holds.extend(holds);
         self.added_masses.extend(added);
