@@ -33,6 +33,15 @@ impl Fabric {
     pub fn gap_of(grid: &Grid, longest_edge: f64) -> f64 {
         (GAP * (longest_edge + 2.0 * grid.cell)).max(LEAST_GAP * grid.quantum())
     }
+
+    /// With the reference mass over that with which each triangle recoils from a hit; none of fabric that gas does not move.
+    #[must_use]
+    pub fn recoiling(mut self, recoils: &[f64]) -> Fabric {
+        for (sheet, recoil) in self.sheets.iter_mut().zip(recoils) {
+            sheet.recoil = *recoil as f32;
+        }
+        self
+    }
 }
 
 /// Where the nodes are, and which triangles are in which cells.

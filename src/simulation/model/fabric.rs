@@ -231,9 +231,8 @@ impl Surfaces {
 
     /// What the device knows of them; their works are tallied behind those of so many walls that move, the sides of each, the outer
     /// and the inner, behind so many patches of walls.
-    /// `models` are those of each triangle ([`SurfaceModels::of_sheet`](super::surface_models::SurfaceModels)), empty if all are mirrors;
-    /// `recoils` are the reference mass over the mass of each in a hit, empty if none is elastic.
-    pub fn for_device(&self, grid: &Grid, motions: usize, patches: usize, models: &[u32], recoils: &[f64]) -> Fabric {
+    /// `models` are those of each triangle ([`SurfaceModels::of_sheet`](super::surface_models::SurfaceModels)), empty if all are mirrors.
+    pub fn for_device(&self, grid: &Grid, motions: usize, patches: usize, models: &[u32]) -> Fabric {
         let mut sheets = Vec::with_capacity(self.triangles.len());
         for (index, surface) in self.all.iter().enumerate() {
             let own = surface.triangles.clone().map(|triangle| (triangle, self.triangles[triangle]));
@@ -245,7 +244,7 @@ impl Surfaces {
                 surface: (patches + 2 * index) as u32,
                 surface_model: models.get(triangle).copied().unwrap_or(NOBODY),
                 work: (motions + index) as u32,
-                recoil: recoils.get(triangle).map_or(0.0, |recoil| *recoil as f32),
+                recoil: 0.0,
             }));
         }
         let nodes = self.places(0.0);

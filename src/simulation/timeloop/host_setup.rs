@@ -60,13 +60,10 @@ impl HostSetup {
         };
         Ok(HostSetup {
             walls,
-            fabric: model.fabric.for_device(
-                &plan.grid,
-                model.moving.count(),
-                patches.len(),
-                &model.surface_models.of_sheet,
-                &model.recoils(),
-            ),
+            fabric: model
+                .fabric
+                .for_device(&plan.grid, model.moving.count(), patches.len(), &model.surface_models.of_sheet)
+                .recoiling(&model.recoils()),
             cells,
             zones,
             planes,
