@@ -8,6 +8,10 @@ use crate::scenes::{ALIKE, Scene, inside_and_outside, on_the_wrong_side};
 use crate::sheets::sheet;
 use crate::whole_run::Run;
 
+/// Of [`ALIKE`], Pa, and the gas of the scenes, kg/mol.
+const PRESSURE: f64 = 1e5;
+const MOLAR_MASS: f64 = 0.029;
+
 fn account(run: &Run) -> FabricAccount {
     run.outcome.audit.fabric.expect("elastic fabric")
 }
@@ -48,6 +52,9 @@ fn nothing_is_lost_of_a_bag_that_gas_inflates() {
 
 /// A sheet that is held at its edges and stretched, without damping: hits of particles of mass m give its free nodes of mass M the
 /// velocity c0 sqrt(m/M) across it. The kinetic energy is that of so many degrees of freedom, kT/2 each.
+///
+/// Beside it: the ledger of hits over P^2/2M of all of them, which gas would gain off fabric that did not recoil. Hits of impulse 2 m c_n
+/// have 4 kT m/M of it on average, and there are n sqrt(kT/(2 pi m)) A t of them on each side.
 fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
     let elements = 8;
     let mesh = sheet(0.05, [1e-3, 0.099], elements);
@@ -72,6 +79,14 @@ fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
     let mean = late.iter().sum::<f64>() / late.len() as f64;
     let ratio = mean / (0.5 * thermal * free);
     eprintln!("{particles} particles: {ratio:.3} of kT/2 for each of {free} nodes, {} passes", model.smoothings());
+    let recoils = model.recoils();
+    let recoil = recoils.iter().sum::<f64>() / recoils.len() as f64;
+    let mass = MOLAR_MASS * model.plan.moles_per_particle;
+    let per_area = PRESSURE / thermal * (thermal / (std::f64::consts::TAU * mass)).sqrt();
+    let hits = 2.0 * per_area * 0.098 * 0.098 * scene.end;
+    let made = account(&run).ledger / (hits * 4.0 * thermal * recoil);
+    eprintln!("ledger of hits: {made:.3} of what walls that do not recoil make");
+    assert!(made.abs() < 0.15, "{made}");
     (ratio, free, run)
 }
 
