@@ -55,7 +55,7 @@ fn nothing_is_lost_of_a_bag_that_gas_inflates() {
 ///
 /// Beside it: the ledger of hits over P^2/2M of all of them, which gas would gain off fabric that did not recoil. Hits of impulse 2 m c_n
 /// have 4 kT m/M of it on average, and there are n sqrt(kT/(2 pi m)) A t of them on each side.
-fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
+fn shaken_by_hits(particles: u32, steps: u32, seed: u32) -> (f64, f64, Run) {
     let elements = 8;
     let mesh = sheet(0.05, [1e-3, 0.099], elements);
     let mut reference = mesh.clone();
@@ -64,6 +64,7 @@ fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
     let step = 5e-6;
     let scene = Scene {
         particles,
+        seed,
         end: step * f64::from(steps),
         step: Some(step),
         rows: 40,
@@ -93,16 +94,20 @@ fn shaken_by_hits(particles: u32, steps: u32) -> (f64, f64, Run) {
 #[test]
 #[ignore = "minutes; ./scripts/test.sh --long runs it"]
 fn hits_give_nodes_their_temperature() {
-    let (ratio, _, run) = shaken_by_hits(20_000, 2000);
-    // The noise of 49 nodes in some thirty states.
-    assert!((ratio - 1.0).abs() < 0.15, "{ratio}");
-    assert_closed(&run, 1e-4);
+    let ratios = [1, 2, 3].map(|seed| {
+        let (ratio, _, run) = shaken_by_hits(20_000, 2000, seed);
+        assert_closed(&run, 1e-4);
+        ratio
+    });
+    // (One run is off by a tenth: few modes of the sheet have most of its energy, for long.)
+    let ratio = ratios.iter().sum::<f64>() / 3.0;
+    assert!((ratio - 1.0).abs() < 0.15, "{ratios:?}");
 }
 
 /// Particles of more than a hundredth of a node: smoothing leaves the nodes a small part of that.
 #[test]
 fn smoothed_hits_shake_nodes_less() {
-    let (ratio, free, run) = shaken_by_hits(1500, 600);
+    let (ratio, free, run) = shaken_by_hits(1500, 600, 1);
     assert!(ratio > 0.01 && ratio < 0.5, "{ratio} of {free} nodes");
     assert_closed(&run, 1e-4);
 }
