@@ -76,9 +76,8 @@ pub fn tubes(device: &Device, effort: Effort) -> Result<Findings, StudyError> {
         }
     }
     findings.notes.push(
-        "The prototype had collision cells for the dense gas everywhere, which hold two particles where gas is thin, and gas of such cells is three times \
-         as viscous. Here they follow the density. That is likely why the velocity, most of whose error is in the thin gas, is nearer to the exact \
-         one than the prototype's: single runs may differ by a fifth, and the mean over the seeds, where the noise is less, is held to at most the figure"
+        "The prototype had the collision cells of the dense gas everywhere, with two particles where gas is thin. Here they follow the \
+         density: likely why the velocity is nearer to the exact one. Single runs may differ by a fifth; the mean over seeds is at most the figure"
             .into(),
     );
     Ok(findings)
