@@ -26,7 +26,7 @@ override MOST_BOUNCES: u32 = 32;
 // Hits on elastic fabric after which a flight ends there as well: they move its nodes in the next step only, so that a particle caught between two
 // sheets that touch would throw them apart with many times its momentum.
 const MOST_PUSHES: u32 = 6u;
-// Of the mass with which fabric recoils, the most that a particle has: a heavier one would fly on through the place of its hit.
+// A particle has at most this part of the mass with which fabric recoils: a heavier one would fly on through the place of its hit.
 const HEAVIEST: f32 = 0.5;
 // Impulse over reference mass to tally units.
 override IMPULSE_SCALE: f32 = 1.0;

@@ -1,7 +1,7 @@
 //! The gas at rest at the start of a run.
 //!
-//! Positions are uniform in each chamber (drawn in a box around it, or in the bag that it is the inside of, and rejected where they are not of
-//! its gas); velocities Maxwell, spin energy
+//! Positions are uniform in each chamber (drawn in a box around it, or in the bag that it is the inside of, and rejected
+//! where they are not of its gas); velocities Maxwell, spin energy
 //! Gamma(zeta/2) kT (method.md, "The gas") or as its modes have it ([`Species`]). Then each chamber is made exact: its total momentum is
 //! shifted to zero and its translational energy scaled to 3/2 N kT by one factor for all its gases (several
 //! factors would bring the momentum back), and the spin energy of each gas to its mean. A chamber with a

@@ -26,7 +26,7 @@ pub struct Tetrahedra {
 }
 
 impl Tetrahedra {
-    /// Of the surface of `triangles`, with their nodes at these places, m.
+    /// Cuts what the surface of `triangles` encloses, with their nodes at these places, m.
     pub fn new(surface: &ClosedSurface, nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> Tetrahedra {
         let places = || triangles.iter().map(|triangle| triangle.map(|node| DVec3::from(nodes[node as usize])));
         let axis = widest(places());

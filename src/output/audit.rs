@@ -104,7 +104,7 @@ pub struct AuditLimits {
     /// Over the particles of all steps: above the one a warning, above the other the run fails. A flight that is caught presses less
     /// than it would, and so the gas less by at most the share of such flights: by no more than 1 %.
     pub caught_share: [f64; 2],
-    /// Of elastic fabric: of the particles at a time, on its wrong side; above it the run fails.
+    /// The run fails if more than this share of the particles is on the wrong side of elastic fabric at a time.
     pub passed_share: f64,
     /// Above it a warning (docs/explanation/method.md, "Collisions": 3 %).
     pub lost_collision_fraction: f64,

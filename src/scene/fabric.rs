@@ -30,7 +30,7 @@ pub struct Fabric {
 /// A turn about an axis at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
-    /// Of unit length; the turn is counter-clockwise seen from where it points to.
+    /// A unit vector; the turn is counter-clockwise seen from where it points to.
     pub axis: [f64; 3],
     /// On the axis, m.
     pub center: [f64; 3],

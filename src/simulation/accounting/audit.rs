@@ -317,7 +317,9 @@ impl Account {
     /// Particles on the wrong side of closed fabric, and all particles, at a time.
     pub fn passed(&mut self, now: [u64; 2]) {
         let most = self.counted.passed.unwrap_or(now);
-        self.counted.passed = Some(if now[0] > most[0] { now } else { most });
+        // By their share: one is among fewer particles at the start.
+        let is_more = now[0] * most[1] > most[0] * now[1] || most[1] == 0;
+        self.counted.passed = Some(if is_more { now } else { most });
     }
 
     pub fn state(&self) -> &AccountState {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::plan::significant;
 use crate::scene::{Dimension, Scene, Vent};
 
-/// Of the pressure behind a vent: what that before it falls short by without being less than its noise.
+/// The pressure before a vent may fall short of that behind it by this part: that much is noise.
 const SAME: f64 = 0.01;
 
 /// What was seen of a vent so far.

@@ -67,7 +67,7 @@ pub struct Surfaces {
     swept: Vec<[DVec3; 2]>,
     /// Whether each turns as a whole.
     turns: Vec<bool>,
-    /// Of each closed one the planes between it and the other closed ones.
+    /// The planes between each closed one and the other closed ones.
     pub planes: Vec<Vec<Plane>>,
     /// Of elastic ones, whose nodes move by forces: where they are only a run knows.
     pub membranes: Option<Membranes>,

@@ -9,8 +9,8 @@ use crate::fabric::{Elasticity, Element, Hold, Material, Relaxation, longest_ste
 use crate::geometry::{TriangleMesh, region_contains};
 use crate::scene::{self, Fixed};
 
-/// Of the longest step at which fabric is stable: gas shakes fabric that goes slack and taut by turns, which loses energy with the square of
-/// the step.
+/// A step of the fabric is at most this part of the longest stable one: fabric that gas shakes slack and taut by turns loses less energy in
+/// shorter steps.
 const CAREFUL: f64 = 0.5;
 
 /// Of all surfaces of a scene, in their order.
