@@ -23,9 +23,9 @@ const NORMAL: &[Range<'static>] = &[
     Range::new(Method::ClosestApproach, &[1000, 4000], &[0.05, 0.12, 0.3], &[0.3, 0.6], &[1, 8]),
     Range::new(Method::ClosestApproach, &[16_000, 64_000], &[0.12], &[0.3], &[8]),
     Range::new(Method::Cell, &[1000, 4000], &[0.05, 0.12, 0.3], &[0.3, 1.0], &[]),
-    Range::new(Method::Cell, &[16_000, 64_000, 256_000], &[0.12], &[1.0, 2.0], &[]),
+    Range::new(Method::Cell, &[16_000, 64_000, 256_000], &[0.12], &[1.0], &[]),
     Range::new(Method::HalfTurn, &[1000, 4000, 16_000, 64_000, 256_000], &[], &[], &[]),
-    Range::new(Method::HardSphere, &[1000, 2000, 4000], &[0.01, 0.03, 0.1], &[0.3], &[8]),
+    Range::new(Method::HardSphere, &[1000, 4000], &[0.03, 0.1], &[0.3], &[8]),
     Range::new(Method::None, &[1000, 2000, 4000, 8000], &[], &[], &[]),
 ];
 const FULL: &[Range<'static>] = &[
