@@ -218,6 +218,7 @@ impl CliError {
             | CliError::Simulation(
                 SimulationError::Lost { .. }
                 | SimulationError::LostNodes { .. }
+                | SimulationError::OverPlane { .. }
                 | SimulationError::Ladder { .. }
                 | SimulationError::Guard { .. },
             ) => AUDIT_FAILED,

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::gas::{Species, jet_mach, jet_state, kinetics};
 use crate::geometry::Grid;
-use crate::scene::{FASTEST_JET, Jet, JetSpeed, Method, Scene, Switch};
+use crate::scene::{FASTEST_JET, GAS_CONSTANT, Jet, JetSpeed, Method, Scene, Switch};
 
 const DEFAULT_COLLISION_NUMBER: f64 = 5.0;
 
@@ -96,12 +96,13 @@ pub fn plan(scene: &Scene, measured: &Measured) -> Result<Plan, PlanError> {
         moles_per_particle: population.moles_per_particle,
         particles,
         number_density,
+        thermal_energy: population.moles_per_particle * GAS_CONSTANT * amounts.final_temperature,
         resolution: &resolution,
         diameter_cap,
         chambers: &chambers,
         openings: &openings,
     };
-    super::fabric::reasons(scene, measured, population.moles_per_particle, &mut reasons);
+    super::fabric::reasons(scene, measured, population.moles_per_particle, decided.thermal_energy, &mut reasons);
     let beyond = warnings(scene, measured, &decided);
     let narrow = beyond.iter().any(|warning| warning.quantity == Quantity::Gap);
     let mut warnings: Vec<String> = beyond.into_iter().map(|warning| warning.text).collect();

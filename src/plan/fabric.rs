@@ -22,7 +22,31 @@ pub fn smoothings(ratio: f64) -> u32 {
     }
 }
 
-pub fn reasons(scene: &Scene, measured: &Measured, moles_per_particle: f64, reasons: &mut Vec<Reason>) {
+/// Pa, the gauge pressure at which ripples take all of the area of a closed surface, in proportion; they take `share` of it at this over `share`.
+///
+/// Noise of the gas gives each of its nodes kT/2 across it, T that of particles, and bends take that up: under a tension F for each length, half of
+/// the gauge pressure times the radius of a sphere of its area A, it has an area larger by (nodes) kT/(2 F) than it spans.
+/// At most: smoothing takes hits from the shortest waves, and damping energy.
+pub fn rippling_pressure(measured: &Measured, thermal_energy: f64) -> Option<f64> {
+    measured.nodes_over_volume.map(|nodes| nodes * thermal_energy)
+}
+
+/// The share of its area that ripples take at the end, where all gas stays in bags.
+pub fn final_ripples(scene: &Scene, measured: &Measured, number_density: f64, thermal_energy: f64) -> Option<f64> {
+    measured.inflated.filter(|_| scene.vents.is_empty())?;
+    let outside = scene.fabrics.iter().filter_map(|fabric| fabric.external_pressure).fold(0.0, f64::max);
+    let gauge = number_density * thermal_energy - outside;
+    rippling_pressure(measured, thermal_energy).filter(|_| gauge > 0.0).map(|rippling| rippling / gauge)
+}
+
+/// `thermal_energy`: kT of a particle at the end, J.
+pub fn reasons(
+    scene: &Scene,
+    measured: &Measured,
+    moles_per_particle: f64,
+    thermal_energy: f64,
+    reasons: &mut Vec<Reason>,
+) {
     if let Some(inflated) = measured.inflated {
         reasons.push(Reason {
             quantity: "volume of bags".into(),
@@ -46,6 +70,11 @@ pub fn reasons(scene: &Scene, measured: &Measured, moles_per_particle: f64, reas
             significant(PLAIN)
         ),
     });
+    reasons.extend(rippling_pressure(measured, thermal_energy).map(|rippling| Reason {
+        quantity: "ripples of fabric".into(),
+        value: format!("1 % of a bag's area at {} kPa above the pressure outside", significant(1e-3 * rippling / 0.01)),
+        why: "at most, and in inverse proportion to that pressure: noise of the gas gives each node kT/2 of a particle".into(),
+    }));
 }
 
 #[cfg(test)]

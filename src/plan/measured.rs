@@ -64,6 +64,8 @@ pub struct Measured {
     pub inflated: Option<f64>,
     /// kg, the lightest node of elastic fabric that is free, where there is any.
     pub lightest_node: Option<f64>,
+    /// 1/m3, the most nodes of a closed elastic surface over its area times the radius of a sphere of that.
+    pub nodes_over_volume: Option<f64>,
 }
 
 impl Measured {

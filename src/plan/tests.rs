@@ -90,6 +90,7 @@ pub(in crate::plan) fn tank() -> (Scene, Measured) {
         facing_orifices: vec![],
         inflated: None,
         lightest_node: None,
+        nodes_over_volume: None,
     };
     (scene, measured)
 }

@@ -1,5 +1,6 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
+use super::fabric::final_ripples;
 use super::limits::{Bound, Judged, Limit, Quantity, Warning, limit, step_limit};
 use super::notes::between;
 use super::population::more_particles;
@@ -51,6 +52,8 @@ pub struct Decided<'a> {
     pub particles: u64,
     /// Particles per m3 at the end.
     pub number_density: f64,
+    /// J, kT of a particle at the end.
+    pub thermal_energy: f64,
     pub resolution: &'a Resolution,
     /// In local mean spacings.
     pub diameter_cap: Option<f64>,
@@ -94,6 +97,11 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
     found.extend(measured.lightest_node.map(|node| {
         let remedy = "more `particles`, or a mesh of larger triangles";
         table(Quantity::NodeMass, "elastic fabric", heaviest / node, remedy)
+    }));
+    let ripples = final_ripples(scene, measured, number_density, decided.thermal_energy);
+    found.extend(ripples.map(|share| {
+        let remedy = "more `particles`, or a mesh of larger triangles";
+        table(Quantity::Ripples, "elastic fabric at the end", share, remedy)
     }));
     found.push(long_steps(decided));
     found.push(busy_walls(measured, decided));

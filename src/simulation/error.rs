@@ -34,6 +34,11 @@ pub enum SimulationError {
         "give the bag room within its walls; where it has, its steps are too long or its gas too coarse"
     ))]
     LostNodes { times: u32 },
+    #[error("fabric \"{fabric}\" came, by {time:e} s, over a plane between it and another closed fabric")]
+    #[diagnostic(help(
+        "closed fabrics are told apart by planes between them at the start: put them farther apart, or hold them there"
+    ))]
+    OverPlane { fabric: String, time: f64 },
     #[error(transparent)]
     Partition(#[from] PartitionError),
     #[error(transparent)]

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use tempfile::TempDir;
 
 use crate::scenes::on_the_wrong_side;
-use crate::whole_run::{model_in, run};
+use crate::whole_run::{device, model_in, run};
 
 /// A cushion askew, so far along its axis from the middle of the box.
 fn cushion(away: f64) -> TriangleMesh {
@@ -90,4 +90,55 @@ fn bags_between_which_no_plane_passes_are_refused() {
     let scene = scene::parse(&text, "test.toml", folder.path()).expect("a scene");
     let told = Model::new(scene).err().map(|error: ModelError| error.to_string()).unwrap_or_default();
     assert!(told.contains("no plane passes between what it and fabric \"high\" sweep"), "{told}");
+}
+
+/// Two elastic cushions in vacuum, one above the other, with so much pressure in each.
+fn elastic_pair(folder: &TempDir, apart: f64, pressures: [f64; 2], end: f64) -> Model {
+    for (name, mesh) in [("low", cushion(-0.5 * apart)), ("high", cushion(0.5 * apart))] {
+        mesh.write(&folder.path().join(format!("{name}.obj")), 1.0).expect("a mesh file");
+    }
+    let bag = |name: &str, pressure: f64| {
+        format!(
+            "[[fabric]]\nname = \"{name}\"\nfile = \"{name}.obj\"\n[fabric.material]\nthickness = 3e-4\ndensity = 800.0\n\
+             young = 1e8\npoisson = 0.3\n[[chamber]]\nname = \"of {name}\"\ninside = \"{name}\"\npressure = {pressure:e}\n\
+             temperature = 300.0\ngas = \"air\"\n"
+        )
+    };
+    let text = format!(
+        "end_time = {end:e}\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+         [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [0.1, 0.1, 0.1]\ngas = \"inside\"\n{}{}\
+         [model]\nmethod = \"half-turn\"\nparticles = 3000\n[output]\nrows = 3\nsnapshots = 0\n",
+        bag("low", pressures[0]),
+        bag("high", pressures[1]),
+    );
+    model_in(&text, folder.path())
+}
+
+/// Each keeps its particles and swells with its own pressure.
+#[test]
+fn elastic_bags_are_told_apart() {
+    let folder = TempDir::new().expect("a folder");
+    let model = elastic_pair(&folder, 0.03, [4e4, 8e4], 3e-4);
+    let run = run(&model, Options::default());
+    let last = run.rows.last().expect("rows");
+    for (chamber, planned) in last.chambers.iter().zip(&model.plan.chambers) {
+        let number: u64 = planned.particles.iter().sum();
+        assert!((chamber.particles.iter().sum::<f64>() - number as f64).abs() < 1e-6, "{chamber:?} of {number}");
+    }
+    let grown = [0, 1].map(|bag| last.fabrics[bag].volume / run.rows[0].fabrics[bag].volume);
+    assert!(grown[0] > 1.02 && grown[1] > grown[0], "{grown:?}");
+    let audit = &run.outcome.audit;
+    assert!(audit.passed.is_some_and(|passed| passed.particles == 0), "{:?}", audit.passed);
+    assert!(audit.energy_error().abs() < 1e-6, "{}", audit.energy_error());
+}
+
+#[test]
+fn an_elastic_bag_that_comes_near_another_ends_the_run() {
+    let folder = TempDir::new().expect("a folder");
+    let model = elastic_pair(&folder, 0.006, [2e5, 2e4], 1e-3);
+    let told = corpuscle::study::verify::run(&device(), &model, Options::default())
+        .err()
+        .map(|error| error.to_string())
+        .unwrap_or_default();
+    assert!(told.contains("over a plane between it and another closed fabric"), "{told}");
 }

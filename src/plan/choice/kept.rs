@@ -7,6 +7,7 @@
 use super::{Amounts, Measured, Method, Quantity, Resolution, Scene};
 use crate::plan::ChamberPlan;
 use crate::plan::warnings::{Decided, warnings};
+use crate::scene::GAS_CONSTANT;
 
 /// Counts of particles differ from what was asked by the rounding of chambers and gases.
 pub(super) const ROOM: f64 = 0.999;
@@ -53,6 +54,7 @@ pub fn beyond(choices: &Choices<'_>, resolution: &Resolution) -> Vec<Quantity> {
         particles: particles as u64,
         // The plan's own numbers differ a little.
         number_density: ROOM * particles / measured.gas_volume,
+        thermal_energy: GAS_CONSTANT * amounts.final_temperature / per_mole,
         resolution,
         diameter_cap: cap,
         chambers: &chambers,

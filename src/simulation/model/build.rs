@@ -1,6 +1,6 @@
 //! From a scene to what a run needs: the vessel, what was measured of it, and the plan. Opens no device.
 
-use super::enclosed::in_bags;
+use super::enclosed::{in_bags, nodes_over_volume};
 use super::error::ModelError;
 use super::fabric::Surfaces;
 use super::facing::Known;
@@ -170,7 +170,7 @@ impl Survey {
         let probe_volumes: Vec<f64> = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)).collect();
         let lightest_node = fabric.membranes.as_ref().map(|membranes| membranes.lightest_node);
         let measured = measured(scene, &vessel, &surface_models, &moving, &probe_volumes);
-        let measured = Measured { lightest_node, ..measured };
+        let measured = Measured { lightest_node, nodes_over_volume: nodes_over_volume(&fabric), ..measured };
         let measured = in_bags(scene, &vessel, &fabric, &orifices_inside(scene, &vessel), measured);
         Ok(Survey { vessel, surface_models, moving, fabric, probe_volumes, measured })
     }

@@ -1,7 +1,11 @@
 //! Gas that no way leads out of bags: the volume that the plan knows is that of the bags, at the start and as far as known
 //! at the end.
 
+use std::ops::Range;
+
 use super::fabric::Surfaces;
+use super::membranes::Membranes;
+use crate::fabric::Hold;
 use crate::geometry::{Bag, Vessel};
 use crate::plan::Measured;
 use crate::scene::{Fabric, Scene};
@@ -29,7 +33,29 @@ pub fn in_bags(scene: &Scene, vessel: &Vessel, fabric: &Surfaces, orifices: &[bo
 /// m3, what a bag can hold; at least what it does.
 fn inflated(fabric: &Surfaces, index: usize, bag: &Bag) -> f64 {
     let Some(membranes) = &fabric.membranes else { return bag.volume };
-    let area: f64 = fabric.parts(index).0.map(|triangle| membranes.elements[triangle].area()).sum();
-    let sphere = area * area.sqrt() / (6.0 * std::f64::consts::PI.sqrt());
-    bag.volume.max(INFLATED * sphere)
+    let area = area_of(membranes, fabric.parts(index).0);
+    bag.volume.max(INFLATED * area * radius_of(area) / 3.0)
+}
+
+/// m2, free of stress.
+fn area_of(membranes: &Membranes, triangles: Range<usize>) -> f64 {
+    triangles.map(|triangle| membranes.elements[triangle].area()).sum()
+}
+
+/// m, of a sphere of an area.
+fn radius_of(area: f64) -> f64 {
+    (area / (4.0 * std::f64::consts::PI)).sqrt()
+}
+
+/// 1/m3, the most free nodes of a closed elastic surface over its area times the radius of a sphere of that.
+pub fn nodes_over_volume(fabric: &Surfaces) -> Option<f64> {
+    let membranes = fabric.membranes.as_ref()?;
+    let of_surface = |index: usize| {
+        let (triangles, nodes) = fabric.parts(index);
+        let free = membranes.holds[nodes].iter().filter(|hold| **hold == Hold::Free).count();
+        let area = area_of(membranes, triangles);
+        free as f64 / (area * radius_of(area))
+    };
+    let closed = (0..fabric.all.len()).filter(|&index| fabric.all[index].closed);
+    closed.map(of_surface).filter(|&nodes| nodes > 0.0).max_by(f64::total_cmp)
 }

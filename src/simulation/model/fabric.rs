@@ -217,6 +217,18 @@ impl Surfaces {
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
     }
 
+    /// Of nodes at these places, m: a closed surface that has come over a plane between it and another.
+    pub fn over_a_plane(&self, nodes: &[[f64; 3]]) -> Option<usize> {
+        let is_over = |&index: &usize| {
+            self.planes[index].iter().any(|plane| {
+                let beyond =
+                    |node: &[f64; 3]| (DVec3::from(*node) - DVec3::from(plane.point)).dot(plane.normal.into()) > 0.0;
+                nodes[self.parts(index).1].iter().any(beyond)
+            })
+        };
+        (0..self.all.len()).find(is_over)
+    }
+
     /// Points whose convex hull holds all that a surface is at in the run, m.
     pub fn hull(&self, index: usize) -> Vec<DVec3> {
         let [low, high] = self.swept[index];

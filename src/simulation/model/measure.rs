@@ -52,6 +52,7 @@ pub fn measured(
         openings,
         inflated: None,
         lightest_node: None,
+        nodes_over_volume: None,
         smallest_gap: gap,
         thinnest_body: body,
         wall_area: vessel.walls.iter().map(|wall| wall.area).sum(),

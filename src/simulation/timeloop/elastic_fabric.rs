@@ -184,11 +184,13 @@ impl<'a> ElasticFabric<'a> {
         self.nodes = lattice_places(self.model, &self.state);
         let moments: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(moments);
         let surfaces = &self.model.fabric;
+        self.refuse_over_a_plane(&self.nodes)?;
         let mut grown = vec![0.0; self.initial_volumes.len()];
         let tallies = moments.chunks_exact(self.nodes.len()).len();
         for moment in moments.chunks_exact(self.nodes.len()) {
             let places: Vec<[f64; 3]> =
                 moment.iter().map(|&[x, y, z, _]| self.model.plan.grid.to_metres([x, y, z])).collect();
+            self.refuse_over_a_plane(&places)?;
             let measures = surfaces.measures_of(&places);
             for ((grown, initial), [volume, _]) in grown.iter_mut().zip(&self.initial_volumes).zip(&measures) {
                 *grown += (volume - initial) / tallies as f64;
@@ -199,6 +201,14 @@ impl<'a> ElasticFabric<'a> {
             }
         }
         Ok(grown)
+    }
+
+    /// By planes between closed fabrics particles know which of them they are inside of.
+    fn refuse_over_a_plane(&self, nodes: &[[f64; 3]]) -> Result<(), SimulationError> {
+        let surfaces = &self.model.fabric;
+        surfaces.over_a_plane(nodes).map_or(Ok(()), |index| {
+            Err(SimulationError::OverPlane { fabric: surfaces.all[index].name.clone(), time: self.time })
+        })
     }
 
     /// The mean volume and area of each surface since the last call, m3 and m2; as they are, if there was no tally since.
