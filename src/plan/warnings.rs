@@ -1,6 +1,6 @@
 //! What a plan will do less well than its user may expect: whatever lies beyond the table of limits.
 
-use super::fabric::final_ripples;
+use super::fabric::{Noise, mass_over_node};
 use super::limits::{Bound, Judged, Limit, Quantity, Warning, limit, step_limit};
 use super::notes::between;
 use super::population::more_particles;
@@ -93,16 +93,13 @@ pub fn warnings(scene: &Scene, measured: &Measured, decided: &Decided<'_>) -> Ve
         };
         table(Quantity::ProbeParticles, &format!("probe `{}` at the end of the run", probe.name), count, remedy)
     }));
-    let heaviest = scene.gases.iter().map(|gas| gas.molar_mass).fold(0.0, f64::max) * decided.moles_per_particle;
-    found.extend(measured.lightest_node.map(|node| {
+    if let Some(mass_over_node) = mass_over_node(scene, measured, decided.moles_per_particle) {
         let remedy = "more `particles`, or a mesh of larger triangles";
-        table(Quantity::NodeMass, "elastic fabric", heaviest / node, remedy)
-    }));
-    let ripples = final_ripples(scene, measured, number_density, decided.thermal_energy);
-    found.extend(ripples.map(|share| {
-        let remedy = "more `particles`, or a mesh of larger triangles";
-        table(Quantity::Ripples, "elastic fabric at the end", share, remedy)
-    }));
+        found.push(table(Quantity::NodeMass, "elastic fabric", mass_over_node, remedy));
+        let noise = Noise { mass_over_node, thermal_energy: decided.thermal_energy };
+        let ripples = noise.final_ripples(scene, measured, number_density);
+        found.extend(ripples.map(|share| table(Quantity::Ripples, "elastic fabric at the end", share, remedy)));
+    }
     found.push(long_steps(decided));
     found.push(busy_walls(measured, decided));
     if !method.has_rounds() {
