@@ -131,7 +131,7 @@ pub struct MembraneInput<'a> {
 const LONGEST: f64 = 0.4;
 
 /// The longest step of the fabric, s: .4 h/c of the triangle where that is least, h the least height of its reference and c its wave speed; infinite without
-/// triangles. A step of the gas has a power of two of them.
+/// triangles.
 pub fn longest_step(elements: &[Element], materials: &[Material]) -> f64 {
     let speeds: Vec<f64> = materials.iter().map(Material::wave_speed).collect();
     let step =

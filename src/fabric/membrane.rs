@@ -167,7 +167,7 @@ impl Membrane {
         self.divide_step(device, dt, self.no_step.substeps);
     }
 
-    /// The same, in this power of two steps of the fabric, no more than the input's.
+    /// The same, in so many steps of the fabric, no more than the input's.
     pub fn divide_step(&self, device: &Device, dt: f64, substeps: u32) {
         let of_fabric = (dt / f64::from(substeps)) as f32;
         let step = GpuMembraneStep { dt: of_fabric, gas_dt: dt as f32, substeps, ..self.no_step };

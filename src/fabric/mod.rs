@@ -31,6 +31,7 @@ pub use layout::{
 pub use membrane::Membrane;
 pub use model::{Model, Triangle};
 pub use principal::Principal;
+pub use registry::MOST_OBSTACLES;
 pub use shaders::KERNELS;
 pub use smoothing::recoils;
 pub use state::{MembraneState, place};

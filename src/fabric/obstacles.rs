@@ -21,7 +21,7 @@ pub(super) fn on_device(
     limit: [u32; 3],
 ) -> Result<[GpuObstacle; MOST_OBSTACLES as usize], MembraneError> {
     let (found, most) = (bodies.iter().map(Vec::len).sum::<usize>(), MOST_OBSTACLES as usize);
-    let expected = "no more than there is room for, 64";
+    let expected = "no more than there is room for, 256";
     check(found <= most, || "the number of faces of obstacles".into(), found as f64, expected)?;
     let faces = bodies.iter().flat_map(|body| body.iter().enumerate().map(|(k, face)| (face, k + 1 == body.len())));
     let mut all = [GpuObstacle::default(); MOST_OBSTACLES as usize];

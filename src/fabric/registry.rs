@@ -35,7 +35,7 @@ registry! {
 registry! {
     /// Room for faces of obstacles.
     OBSTACLE_TABLE {
-        MOST_OBSTACLES = 64,
+        MOST_OBSTACLES = 256,
     }
 }
 

@@ -59,12 +59,13 @@ fn fallen(body: &str) -> (FabricSnapshot, Vec<String>) {
 }
 
 #[test]
-fn a_block_and_a_plate_stop_a_sheet_that_falls_and_a_ball_does_not() {
+fn convex_walls_of_few_faces_stop_a_sheet_that_falls() {
     let block = "shape = \"box\"\nmin = [0.02, 0.035, 0.035]\nmax = [0.04, 0.065, 0.065]\ngas = \"outside\"\n";
     let plate = "shape = \"plane\"\ncenter = [0.0395, 0.05, 0.05]\nnormal = [1, 0, 0]\nu = [0, 1, 0]\nsize = [0.03, 0.03]\nthickness = 1e-3\n";
     let ball = "shape = \"sphere\"\ncenter = [0.025, 0.05, 0.05]\nradius = 0.015\ngas = \"outside\"\n";
     let over = |node: &&[f64; 3]| (1..3).all(|axis| (node[axis] - 0.05).abs() < 0.015 - 1e-4);
-    for body in [block, plate] {
+    let post = "shape = \"cylinder\"\nbase = [0.02, 0.05, 0.05]\naxis = [1, 0, 0]\nradius = 0.022\nheight = 0.02\nsegments = 16\ngas = \"outside\"\n";
+    for body in [block, plate, post] {
         let (fabric, notes) = fallen(body);
         let on_it: Vec<f64> = fabric.nodes.iter().filter(over).map(|node| node[0]).collect();
         let lowest = fabric.nodes.iter().map(|node| node[0]).fold(f64::INFINITY, f64::min);
@@ -75,6 +76,11 @@ fn a_block_and_a_plate_stop_a_sheet_that_falls_and_a_ball_does_not() {
         assert!(lowest < 0.037, "{lowest}");
         assert!(!notes.iter().any(|note| note.contains("passes through")), "{notes:?}");
     }
+    // A ball of 80 faces holds what falls on its top.
+    let (fabric, notes) = fallen(&format!("{ball}subdivisions = 1\n"));
+    let highest = fabric.nodes.iter().filter(over).map(|node| node[0]).fold(f64::NEG_INFINITY, f64::max);
+    assert!((highest - 0.04 - 0.5 * THICKNESS).abs() < 1e-3, "{highest}");
+    assert!(!notes.iter().any(|note| note.contains("passes through")), "{notes:?}");
     let (fabric, notes) = fallen(ball);
     assert!(fabric.nodes.iter().filter(over).all(|node| node[0] < 0.037), "it passes through");
     assert!(notes.iter().any(|note| note.contains("passes through wall `body`")), "{notes:?}");

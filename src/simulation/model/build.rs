@@ -159,7 +159,7 @@ struct Survey {
 impl Survey {
     fn new(scene: &Scene) -> Result<Survey, ModelError> {
         let mut vessel = Vessel::build(&scene.walls).map_err(|error| error.told_in(scene.units))?;
-        let mut fabric = Surfaces::of(scene)?;
+        let mut fabric = Surfaces::of(scene, &vessel)?;
         fabric.planes = planes_between(&fabric, &fabric.places(0.0))?;
         vessel.bags = fabric.bags(0.0)?;
         refuse_open_chambers(scene, &vessel)?;

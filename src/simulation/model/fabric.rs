@@ -13,7 +13,7 @@ use super::fabric_obstacles::Bodies;
 use super::fabric_paths::{Path, read};
 use super::membranes::Membranes;
 use super::plane::Plane;
-use crate::geometry::{Bag, GeometryError, Grid};
+use crate::geometry::{Bag, GeometryError, Grid, Vessel};
 use crate::scene::{Chamber, Scene};
 use crate::subdomain::{Fabric, GpuSheet};
 
@@ -134,7 +134,7 @@ impl Surfaces {
     ///
     /// # Errors
     /// If a file cannot be read, is of another mesh, or has nodes that jump.
-    pub fn of(scene: &Scene) -> Result<Surfaces, ModelError> {
+    pub fn of(scene: &Scene, vessel: &Vessel) -> Result<Surfaces, ModelError> {
         if scene.fabrics.is_empty() {
             return Ok(Surfaces::default());
         }
@@ -173,7 +173,7 @@ impl Surfaces {
         let arcs: Vec<Option<[DVec3; 2]>> = paths.iter().map(|path| path.arcs(scene.end_time)).collect();
         let places = move |time: f64| -> Vec<[f64; 3]> { paths.iter().flat_map(|own| own.at(time)).collect() };
         if is_elastic {
-            membranes.bodies = Bodies::of(scene, membranes.thickest, &places(0.0));
+            membranes.bodies = Bodies::of(scene, vessel, membranes.thickest, &places(0.0));
             notes.extend(membranes.bodies.notes());
         }
         let course = Course { places: Arc::new(places), bends, fastest };

@@ -1,15 +1,16 @@
-//! Which walls stop elastic fabric: rigid convex bodies with flat faces, boxes and plates without holes, and the sides of the box around
-//! the gas. Through all others it passes, which the notes of a scene tell.
+//! Which walls stop elastic fabric: convex ones without holes, solid or around all of the fabric, by their flat faces. Through all others it passes,
+//! which the notes of a scene tell.
 //!
 //! Nodes stay half the thickness of the fabric before a face. Triangles between them do not know of an edge or a corner of a body.
 
 use glam::DVec3;
 
-use crate::fabric::Obstacle;
+use crate::fabric::{MOST_OBSTACLES, Obstacle};
+use crate::geometry::Vessel;
 use crate::scene::{GasSide, Scene, Shape, Wall};
 
 /// Faces of bodies, at most.
-const MOST_FACES: usize = 64;
+const MOST_FACES: usize = MOST_OBSTACLES as usize;
 
 /// Bodies by their faces, and the names of walls that are none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,10 +21,10 @@ pub struct Bodies {
 
 impl Bodies {
     /// Those of the walls of a scene, for fabric so thick, m, that has its nodes at these places.
-    pub fn of(scene: &Scene, thickness: f64, nodes: &[[f64; 3]]) -> Bodies {
+    pub fn of(scene: &Scene, vessel: &Vessel, thickness: f64, nodes: &[[f64; 3]]) -> Bodies {
         let mut bodies = Bodies::default();
-        for wall in &scene.walls {
-            let found = bodies_of(wall, 0.5 * thickness, nodes);
+        for (index, wall) in scene.walls.iter().enumerate() {
+            let found = bodies_of(wall, (vessel, index), 0.5 * thickness, nodes);
             let room = MOST_FACES - bodies.faces.iter().map(Vec::len).sum::<usize>();
             match found {
                 Some(found) if found.iter().map(Vec::len).sum::<usize>() <= room => bodies.faces.extend(found),
@@ -37,15 +38,15 @@ impl Bodies {
     pub fn notes(&self) -> Vec<String> {
         let told = |wall: &String| {
             format!(
-                "elastic fabric passes through wall `{wall}`: boxes and plates without holes stop it, {MOST_FACES} faces in all, and the box \
-                 around the gas with all of the fabric inside"
+                "elastic fabric passes through wall `{wall}`: convex walls without holes stop it, {MOST_FACES} flat faces in all, those around the \
+                 gas with all of the fabric inside"
             )
         };
         self.passed.iter().map(told).collect()
     }
 }
 
-fn bodies_of(wall: &Wall, reach: f64, nodes: &[[f64; 3]]) -> Option<Vec<Vec<Obstacle>>> {
+fn bodies_of(wall: &Wall, meshed: (&Vessel, usize), reach: f64, nodes: &[[f64; 3]]) -> Option<Vec<Vec<Obstacle>>> {
     let face = |place: DVec3, normal: DVec3| Obstacle {
         place: (place + reach * normal).to_array(),
         normal: normal.to_array(),
@@ -82,8 +83,48 @@ fn bodies_of(wall: &Wall, reach: f64, nodes: &[[f64; 3]]) -> Option<Vec<Vec<Obst
             };
             Some(vec![axes.into_iter().flat_map(both).collect()])
         }
-        _ => None,
+        Shape::Cylinder { .. } | Shape::Sphere { .. } | Shape::Mesh { .. } => {
+            let faces = convex_faces(meshed.0, meshed.1)?;
+            let stops = |&(place, normal): &(DVec3, DVec3)| face(place, normal);
+            if wall.gas == GasSide::Outside {
+                return Some(vec![faces.iter().map(stops).collect()]);
+            }
+            let before = |(place, normal): &(DVec3, DVec3)| {
+                nodes.iter().all(|node| (DVec3::from(*node) - *place).dot(*normal) > 0.0)
+            };
+            faces.iter().all(before).then(|| faces.iter().map(|side| vec![stops(side)]).collect())
+        }
+        Shape::Plane { .. } => None,
     }
+}
+
+/// How far a corner may be before a face of a convex body, over the extent of the body; and by how much unit normals of one face differ.
+const FLAT: f64 = 1e-6;
+
+/// A point and the unit normal towards the gas of each flat face of a wall, if its corners are all behind, or all before, all of them.
+fn convex_faces(vessel: &Vessel, wall: usize) -> Option<Vec<(DVec3, DVec3)>> {
+    let corner = |vertex: u32| DVec3::from(vessel.vertices[vertex as usize]);
+    let triangles = || vessel.triangles.iter().filter(|triangle| triangle.wall as usize == wall);
+    let corners: Vec<DVec3> = triangles().flat_map(|triangle| triangle.vertices).map(corner).collect();
+    let first = *corners.first()?;
+    let room = FLAT * corners.iter().map(|corner| corner.distance(first)).fold(0.0, f64::max);
+    let mut faces: Vec<(DVec3, DVec3)> = Vec::new();
+    for triangle in triangles() {
+        let [a, b, c] = triangle.vertices.map(corner);
+        let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
+        let same =
+            |(place, known): &(DVec3, DVec3)| known.distance(normal) < FLAT && (a - *place).dot(normal).abs() < room;
+        if !faces.iter().any(same) {
+            faces.push((a, normal));
+        }
+        if faces.len() > MOST_FACES {
+            return None;
+        }
+    }
+    let sign = if vessel.walls[wall].cavity { -1.0 } else { 1.0 };
+    let is_convex =
+        |(place, normal): &(DVec3, DVec3)| corners.iter().all(|corner| sign * (*corner - *place).dot(*normal) < room);
+    faces.iter().all(is_convex).then_some(faces)
 }
 
 #[cfg(test)]
@@ -113,7 +154,8 @@ mod tests {
              [[wall]]\nname = \"plate\"\nshape = \"plane\"\ncenter = [0.5, 0.5, 0.7]\nnormal = [0, 1, 1]\nu = [1, 0, 0]\nsize = [0.2, 0.4]\nthickness = 0.01\n\
              [[wall]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.2, 0.2, 0.2]\nradius = 0.05\ngas = \"outside\"\n",
         );
-        let bodies = Bodies::of(&scene, 0.002, &[[0.5; 3]]);
+        let vessel = Vessel::build(&scene.walls).expect("a vessel");
+        let bodies = Bodies::of(&scene, &vessel, 0.002, &[[0.5; 3]]);
         assert_eq!(bodies.faces.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1, 1, 1, 1, 6, 6]);
         assert_eq!(bodies.passed, ["ball"]);
         assert!(bodies.notes()[0].contains("passes through wall `ball`"), "{:?}", bodies.notes());
@@ -125,8 +167,17 @@ mod tests {
         near(height(plate, [0.5, 0.5, 0.7]), -0.005 - 0.001);
         let along = 0.5 + 0.105 / 2f64.sqrt();
         near(height(plate, [0.5, along, 0.2 + along]), 0.1 - 0.001);
+        // Twelve sides and two ends.
+        let around = walls(
+            "[[wall]]\nname = \"post\"\nshape = \"cylinder\"\nbase = [0.2, 0.2, 0.1]\naxis = [0, 0, 1]\nradius = 0.05\nheight = 0.3\nsegments = 12\n\
+             gas = \"outside\"\n",
+        );
+        let vessel = Vessel::build(&around.walls).expect("a vessel");
+        let post = &Bodies::of(&around, &vessel, 0.002, &[[0.5; 3]]).faces[6];
+        assert_eq!(post.len(), 14);
+        near(height(post, [0.2, 0.2, 0.5]), 0.1 - 0.001);
         // Fabric that is not all in the room is not held in it.
-        let outside = Bodies::of(&scene, 0.002, &[[0.5; 3], [0.5, 0.5, 1.5]]);
+        let outside = Bodies::of(&scene, &vessel, 0.002, &[[0.5; 3], [0.5, 0.5, 1.5]]);
         assert_eq!(outside.passed, ["room", "ball"]);
     }
 }

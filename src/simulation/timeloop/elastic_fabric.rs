@@ -362,7 +362,7 @@ fn host_model<'m>(membranes: &Membranes, membrane: &'m Membrane, time: f64) -> C
 
 /// Steps of the fabric in one of the gas, s.
 fn substeps(dt: f64, longest: f64) -> u32 {
-    ((dt / longest).ceil().max(1.0) as u32).next_power_of_two()
+    (dt / longest).ceil().max(1.0) as u32
 }
 
 /// Where the gas sees them, m.
