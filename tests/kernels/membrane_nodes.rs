@@ -215,7 +215,7 @@ fn obstacles_stop_nodes() {
     assert!(bad(Obstacle { normal: [0.0; 3], ..good }).contains("the normal of obstacle 0"));
     assert!(bad(Obstacle { friction: -1.0, ..good }).contains("the friction of obstacle 0"));
     assert!(bad(Obstacle { place: [0.0, 0.0, 1e9], ..good }).contains("the distance of obstacle 0"));
-    assert!(membrane.set_obstacles(device(), &[good; 65]).is_err());
+    assert!(membrane.set_obstacles(device(), &[good; 257]).is_err());
 }
 
 /// A node slower than a quantum a step moves by its remainder.
