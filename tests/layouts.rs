@@ -92,7 +92,7 @@ fn twins() -> Vec<Twin> {
         twin!("Peer", GpuPeer, low, pad, high, pad2),
         twin!("Part", GpuPart, place, volume),
         twin!("StillGas", GpuStillGas, points, volume),
-        twin!("Weights", GpuWeights, particle, candidate, wall, cuts),
+        twin!("Weights", GpuWeights, particle, candidate, wall, sheet, cuts),
         twin!(
             "MembraneStep",
             GpuMembraneStep,

@@ -13,7 +13,7 @@
 //! measurement is two rows: those seconds are of candidates and steps, the others of particles, wall tests, cells and steps.
 //! (In one sum particles and candidates are hard to tell apart, as most particles have much the same number of them.)
 //! The ridge holds what the rows cannot tell apart (a uniform gas) at
-//! the prior. Six unknowns have 64 sets of positive ones: the best is found by trying them.
+//! the prior. Seven unknowns have 128 sets of positive ones: the best is found by trying them.
 //!
 //! A speed is estimated apart: from the averaged logarithm of predicted over measured seconds, less the median of what
 //! the speeds in force leave. It leaves 1 where it is off by more than both a dead band and five standard errors, so
@@ -39,6 +39,8 @@ pub struct Work {
     /// Entries of the neighbour lists: candidates for collisions.
     pub candidates: u64,
     pub wall_tests: u64,
+    /// Triangles of fabric in the cells of the particles, for each particle.
+    pub sheet_tests: u64,
     /// Cells of the grid, with or without gas: they are counted, scanned and cleared.
     pub cells: u64,
     pub steps: u64,
@@ -53,22 +55,23 @@ pub struct Measurement {
     pub pair_seconds: Option<f64>,
 }
 
-/// Weights for the histograms: of particles, which a kernel sums, and of cells. A particle of up to 2^17 candidates and as many wall tests weighs less than 2^32,
+/// Weights for the histograms: of particles, which a kernel sums, and of cells. A particle of up to 2^17 candidates and triangles weighs less than 2^32,
 /// and the sum over 2^30 particles less than 2^62.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct IntegerWeights {
     pub particle: u32,
     pub candidate: u32,
     pub wall: u32,
+    pub sheet: u32,
     /// Of a cell, whatever is in it.
     pub cell: u32,
 }
 
-/// Particle, candidate, wall test, cell, step apart from the search for pairs, step of that search.
-const FEATURES: usize = 6;
+/// Particle, candidate, wall test, cell, step apart from the search for pairs, step of that search, triangle of fabric.
+const FEATURES: usize = 7;
 /// Costs before any are measured, relative to a particle.
-const PRIOR: [f64; FEATURES] = [1.0, 0.1, 1.0, 0.01, 6_000.0, 4_000.0];
-const OF_PAIRS: [bool; FEATURES] = [false, true, false, false, false, true];
+const PRIOR: [f64; FEATURES] = [1.0, 0.1, 1.0, 0.01, 6_000.0, 4_000.0, 0.2];
+const OF_PAIRS: [bool; FEATURES] = [false, true, false, false, false, true, false];
 /// Squared noise of a measurement (0.15) over squared doubt about the prior (1), both relative.
 const RIDGE: f64 = 0.02;
 const FORGET: f64 = 0.95;
@@ -163,8 +166,18 @@ impl CostModel {
     /// Seconds per particle, candidate, wall test, cell and step on a device of speed 1. Before anything is measured they
     /// are relative to a particle.
     pub fn coefficients(&self) -> [f64; 5] {
-        let [particle, candidate, wall, cell, step, search] = std::array::from_fn(|k| self.scaled[k] * PRIOR[k]);
+        let [particle, candidate, wall, cell, step, search, _] = self.all_coefficients();
         [particle, candidate, wall, cell, step + search]
+    }
+
+    /// The same per triangle of fabric.
+    pub fn sheet_coefficient(&self) -> f64 {
+        let [.., sheet] = self.all_coefficients();
+        sheet
+    }
+
+    fn all_coefficients(&self) -> [f64; FEATURES] {
+        std::array::from_fn(|k| self.scaled[k] * PRIOR[k])
     }
 
     /// The seconds that the work takes on a device of speed 1.
@@ -220,13 +233,13 @@ impl CostModel {
     /// The weights in fixed point: the largest is 2^14, or, by particles, a particle is 1.
     pub fn weights(&self) -> IntegerWeights {
         if self.by == By::Particles {
-            return IntegerWeights { particle: 1, candidate: 0, wall: 0, cell: 0 };
+            return IntegerWeights { particle: 1, candidate: 0, wall: 0, sheet: 0, cell: 0 };
         }
-        let [mut particle, mut candidate, mut wall, mut cell, _] = self.coefficients();
-        if particle.max(candidate).max(wall) <= 0.0 {
-            [particle, candidate, wall, cell, ..] = PRIOR;
+        let [mut particle, mut candidate, mut wall, mut cell, _, _, mut sheet] = self.all_coefficients();
+        if particle.max(candidate).max(wall).max(sheet) <= 0.0 {
+            [particle, candidate, wall, cell, _, _, sheet] = PRIOR;
         }
-        let largest = particle.max(candidate).max(wall);
+        let largest = particle.max(candidate).max(wall).max(sheet);
         let scale = WEIGHT_ONE / largest;
         let integer = |cost: f64| (cost * scale).round() as u32;
         // Each particle weighs something: it takes memory, and a box of free ones is not empty.
@@ -234,6 +247,7 @@ impl CostModel {
             particle: integer(particle).max(1),
             candidate: integer(candidate),
             wall: integer(wall),
+            sheet: integer(sheet),
             // Boxes are to follow the gas, whatever a fit to little gas says.
             cell: integer(cell.min(largest)),
         }
@@ -305,7 +319,8 @@ impl Rank {
 impl Work {
     /// By the prior, of each feature.
     fn units(&self) -> [f64; FEATURES] {
-        let counts = [self.particles, self.candidates, self.wall_tests, self.cells, self.steps, self.steps];
+        let Work { particles, candidates, wall_tests, sheet_tests, cells, steps } = *self;
+        let counts = [particles, candidates, wall_tests, cells, steps, steps, sheet_tests];
         std::array::from_fn(|feature| counts[feature] as f64 * PRIOR[feature])
     }
 }

@@ -47,6 +47,8 @@ pub struct Share {
     pub candidates: f64,
     /// Particles that may meet a wall.
     pub walls: f64,
+    /// Triangles of fabric in the cells of its particles, for each particle.
+    pub sheets: f64,
     /// Cells of the grid, those of the halo included.
     pub cells: f64,
     /// Time of its passes on the device; zero where the device does not time.
@@ -185,6 +187,7 @@ fn shared_out(ranks: &[Watched], strategy: Strategy, steps: usize, settling: usi
             share.particles = mean(|load| load.particles);
             share.candidates = mean(|load| load.candidates);
             share.walls = mean(|load| load.walls);
+            share.sheets = mean(|load| load.sheets);
             share.cells = mean(|load| load.cells);
             share.device_seconds = median(loads.iter().map(|load| load.seconds))?;
             // The same part of the middle time as of all times.

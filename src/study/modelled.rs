@@ -3,13 +3,13 @@
 //! Of a step, over the subdomains r of a state:
 //!
 //! ```text
-//! work      = max_r (c_p particles_r + c_c candidates_r + c_w walls_r + c_s cells_r) / u
+//! work      = max_r (c_p particles_r + c_c candidates_r + c_w walls_r + c_f sheets_r + c_s cells_r) / u
 //! time      = max_r own_r  +  max_r (stages_r latency + messages_r overhead + bytes_r / bandwidth)
 //! GPU time  = max_r work_r x (time per unit) + passes x (time per pass)
 //!             + max_r (stages_r (latency + wait) + messages_r overhead + bytes_r / bandwidth)
 //! ```
 //!
-//! c are the device seconds per particle, candidate, wall test and cell, fitted to all subdomains of the sweep together with
+//! c are the device seconds per particle, candidate, wall test, triangle of fabric and cell, fitted to all subdomains of the sweep together with
 //! a constant per step, which is left out: so work is what sharing out can win or lose. The unit u is the work of the
 //! mean particle, so that work counts particles, ghosts among them. States count by the steps of the run that they
 //! stand for. Only own_r, the counts and the messages are measured; network and GPU are assumed.
@@ -47,6 +47,7 @@ pub struct Costs {
     pub particle: f64,
     pub candidate: f64,
     pub wall: f64,
+    pub sheet: f64,
     pub cell: f64,
     /// Per step, whatever is in it.
     pub step: f64,
@@ -70,7 +71,7 @@ impl Costs {
             model.observe(&measurements);
         }
         let [particle, candidate, wall, cell, step] = model.coefficients();
-        let mut costs = Costs { particle, candidate, wall, cell, step, unit: 1.0 };
+        let mut costs = Costs { particle, candidate, wall, sheet: model.sheet_coefficient(), cell, step, unit: 1.0 };
         let particles: f64 = shares.iter().map(|share| share.particles).sum();
         let all: f64 = shares.iter().map(|share| costs.of(share)).sum();
         if all > 0.0 {
@@ -84,6 +85,7 @@ impl Costs {
         self.particle * share.particles
             + self.candidate * share.candidates
             + self.wall * share.walls
+            + self.sheet * share.sheets
             + self.cell * share.cells
     }
 
@@ -98,6 +100,7 @@ fn work_of(share: &Share) -> Work {
         particles: share.particles.round() as u64,
         candidates: share.candidates.round() as u64,
         wall_tests: share.walls.round() as u64,
+        sheet_tests: share.sheets.round() as u64,
         cells: share.cells.round() as u64,
         steps: 1,
     }
@@ -200,7 +203,8 @@ mod tests {
         Emulated { strategy: Strategy::Dynamic, shares, passes: 20.0, after: Some(1.02) }
     }
 
-    const COSTS: Costs = Costs { particle: 2e-6, candidate: 0.0, wall: 0.0, cell: 0.0, step: 0.0, unit: 2e-6 };
+    const COSTS: Costs =
+        Costs { particle: 2e-6, candidate: 0.0, wall: 0.0, sheet: 0.0, cell: 0.0, step: 0.0, unit: 2e-6 };
     const NETWORK: Network = Network { latency: 1e-3, overhead: 1e-4, bandwidth: 1e6 };
     const GPU: Gpu = Gpu { unit: 1e-6, pass: 1e-5, wait: 1e-4 };
 

@@ -48,6 +48,9 @@ pub struct Counters {
     /// Of these on this device those of ghosts.
     pub ghost_candidates: u32,
     pub ghost_walls: u32,
+    /// Of the last step: triangles of fabric in the cells of particles, for each particle; on this device those of ghosts.
+    pub sheets: u32,
+    pub ghost_sheets: u32,
     /// Threads whose loops the device ended too soon.
     pub cut_short: u32,
     /// With the method `half-turn`: particles that flew on, alone in their collision cell or group; groups that walls made; and particles that collided
@@ -88,6 +91,8 @@ impl Counters {
             near_walls: word(LIST_NEAR_WALLS),
             ghost_candidates: word(GHOST_CANDIDATES),
             ghost_walls: word(GHOST_WALLS),
+            sheets: word(SHEETS),
+            ghost_sheets: word(GHOST_SHEETS),
             cut_short: word(CUT_SHORT),
             free_flights: word(FREE_FLIGHTS),
             cut_groups: word(CUT_GROUPS),
@@ -102,7 +107,7 @@ impl Counters {
     }
 
     /// What ranks add up, but for the collisions, which have two words.
-    pub(super) fn summed(&mut self) -> [&mut u32; 20] {
+    pub(super) fn summed(&mut self) -> [&mut u32; 21] {
         [
             &mut self.lost,
             &mut self.sampled,
@@ -119,6 +124,7 @@ impl Counters {
             &mut self.fast_pairs,
             &mut self.candidates,
             &mut self.near_walls,
+            &mut self.sheets,
             &mut self.cut_short,
             &mut self.misplaced,
             &mut self.free_flights,

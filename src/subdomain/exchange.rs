@@ -258,7 +258,7 @@ impl Subdomain {
     pub fn histogram(
         &mut self,
         device: &Device,
-        weights: [u32; 3],
+        weights: [u32; 4],
         cuts: &[[u32; 4]],
         planes: usize,
     ) -> Result<Vec<u64>, GpuError> {
@@ -267,8 +267,9 @@ impl Subdomain {
             let wanted = (cuts.len() as u64, planes as u64);
             self.make_exchange_room(device, |room| (room.cuts, room.planes) = (2 * wanted.0, 2 * wanted.1))?;
         }
-        let [particle, candidate, wall] = weights;
-        device.write(&self.fixed.weights, 0, &[GpuWeights { particle, candidate, wall, cuts: cuts.len() as u32 }]);
+        let [particle, candidate, wall, sheet] = weights;
+        let weights = GpuWeights { particle, candidate, wall, sheet, cuts: cuts.len() as u32, pads: [0; 3] };
+        device.write(&self.fixed.weights, 0, &[weights]);
         device.write(&self.exchange.cuts, 0, cuts);
         let mut rec = Recording::new(device);
         rec.encoder().clear_buffer(&self.exchange.histogram, 0, None);

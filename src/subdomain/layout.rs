@@ -274,5 +274,7 @@ pub struct GpuWeights {
     pub particle: u32,
     pub candidate: u32,
     pub wall: u32,
+    pub sheet: u32,
     pub cuts: u32,
+    pub pads: [u32; 3],
 }

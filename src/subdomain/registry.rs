@@ -108,6 +108,9 @@ registry! {
         UNFITTED = 120,
         /// Flights that ended at elastic fabric after as many hits as are followed there in a step.
         CAUGHT = 121,
+        /// Triangles of fabric in the cells of the particles at the last step before the read, for each particle, and those of ghosts among them.
+        SHEETS = 122,
+        GHOST_SHEETS = 123,
         /// The lengths of sharded lists (`shaders/shared/sharded_lists.gpu.wgsl`), by shard: each shard's so far
         /// behind the one before that another part of a GPU's cache has them.
         LENGTHS_OF_SHARDS = 128,

@@ -21,6 +21,7 @@ fn works(ranks: usize, random: &mut Random) -> Vec<Work> {
             particles: particles as u64,
             candidates: (particles * (2.0 + 28.0 * random.unit())) as u64,
             wall_tests: (particles * 0.5 * random.unit()) as u64,
+            sheet_tests: 0,
             cells: (particles * 12.0 * random.unit()) as u64,
             steps: 64,
         }
@@ -39,6 +40,33 @@ fn observe(model: &mut CostModel, speeds: &[f64], intervals: usize, noise: f64, 
         let measured: Vec<_> = measured.collect();
         model.observe(&measured);
     }
+}
+
+/// Of ranks of which some have fabric in a part of their cells: what its triangles cost is told from what particles cost, and weighs.
+#[test]
+fn triangles_of_fabric_have_a_cost_of_their_own() {
+    const SHEET: f64 = 7e-9;
+    let (mut model, mut random) = (CostModel::new(By::Cost, 8), Random(5));
+    for _ in 0..60 {
+        let mut works = works(8, &mut random);
+        for work in &mut works[..3] {
+            work.sheet_tests = (work.particles as f64 * 6.0 * random.unit()) as u64;
+        }
+        let measured: Vec<Measurement> = works
+            .into_iter()
+            .map(|work| Measurement {
+                work,
+                seconds: (seconds(&work) + SHEET * work.sheet_tests as f64) * (1.0 + 0.05 * random.normal()).max(0.1),
+                pair_seconds: None,
+            })
+            .collect();
+        model.observe(&measured);
+    }
+    let found = model.sheet_coefficient();
+    assert!((found / SHEET - 1.0).abs() < 0.15, "{found} {SHEET}");
+    let weights = model.weights();
+    let share = f64::from(weights.sheet) / f64::from(weights.candidate);
+    assert!((share / (SHEET / TRUE[1]) - 1.0).abs() < 0.2, "{weights:?}");
 }
 
 /// Coefficients are recovered from timings with 5 % of noise.
@@ -104,10 +132,17 @@ fn a_halo_leaves_a_rank_less_of_the_weight() {
     let mut model = CostModel::new(By::Cost, 4);
     observe(&mut model, &[1.0; 4], 60, 0.02, &mut Random(31));
     let work = |owned: u64, ghosts: u64| {
-        let halo = Work { particles: ghosts, candidates: 4 * ghosts, wall_tests: 0, cells: 6 * ghosts, steps: 0 };
+        let halo = Work {
+            particles: ghosts,
+            candidates: 4 * ghosts,
+            wall_tests: 0,
+            sheet_tests: 0,
+            cells: 6 * ghosts,
+            steps: 0,
+        };
         let candidates = 10 * owned + halo.candidates;
         let cells = 4 * owned + halo.cells;
-        (Work { particles: owned + ghosts, candidates, wall_tests: 0, cells, steps: 1 }, halo)
+        (Work { particles: owned + ghosts, candidates, wall_tests: 0, sheet_tests: 0, cells, steps: 1 }, halo)
     };
     let loads = [work(2000, 0), work(3000, 2000), work(2500, 1000), work(2500, 1800)];
     let shares = model.shares_beside_halos(&loads);
@@ -141,7 +176,14 @@ fn noise_moves_no_share() {
 fn uniform_gas_keeps_the_prior() {
     let mut model = CostModel::new(By::Cost, 4);
     let prior = model.weights();
-    let work = Work { particles: 6_400_000, candidates: 64_000_000, wall_tests: 640_000, cells: 25_600_000, steps: 64 };
+    let work = Work {
+        particles: 6_400_000,
+        candidates: 64_000_000,
+        wall_tests: 640_000,
+        sheet_tests: 0,
+        cells: 25_600_000,
+        steps: 64,
+    };
     for _ in 0..50 {
         model.observe(&[Measurement { work, seconds: 0.3, pair_seconds: None }; 4]);
     }
@@ -229,6 +271,6 @@ fn the_state_is_a_function_of_the_measurements() {
 fn by_particles_counts_particles() {
     let mut model = CostModel::new(By::Particles, 4);
     observe(&mut model, &[1.0, 0.5, 1.0, 1.0], 40, 0.01, &mut Random(5));
-    assert_eq!(model.weights(), IntegerWeights { particle: 1, candidate: 0, wall: 0, cell: 0 });
+    assert_eq!(model.weights(), IntegerWeights { particle: 1, candidate: 0, wall: 0, sheet: 0, cell: 0 });
     assert_eq!(model.shares(), [1.0; 4]);
 }

@@ -167,7 +167,7 @@ impl Balance {
         let (weights, shares) = match self.options.mode {
             BalanceMode::Off | BalanceMode::Initial => return Ok(0.0),
             BalanceMode::Forced { seed } => match forced(seed, step, histogram.comm.size()) {
-                Some(shares) => (IntegerWeights { particle: 1, candidate: 1, wall: 1, cell: 0 }, shares),
+                Some(shares) => (IntegerWeights { particle: 1, candidate: 1, wall: 1, sheet: 1, cell: 0 }, shares),
                 None => return Ok(0.0),
             },
             BalanceMode::Dynamic | BalanceMode::AtOnce { .. } => {

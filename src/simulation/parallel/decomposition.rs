@@ -208,7 +208,7 @@ pub struct Histogram<'a> {
 impl Histogram<'_> {
     /// Of so many planes, by these cuts. (The host knows how many cells there are.) Collective.
     fn sum(&mut self, weights: IntegerWeights, cuts: &[[u32; 4]], planes: usize) -> Result<Vec<u64>, SimulationError> {
-        let of_particles = [weights.particle, weights.candidate, weights.wall];
+        let of_particles = [weights.particle, weights.candidate, weights.wall, weights.sheet];
         let own = self.subdomain.histogram(self.device, of_particles, cuts, planes)?;
         Ok(self.comm.sum(own)?)
     }

@@ -23,6 +23,9 @@ pub struct Load {
     /// Of candidates and walls those of ghosts.
     pub ghost_candidates: u64,
     pub ghost_walls: u64,
+    /// Triangles of fabric in the cells of its particles, for each particle; and of ghosts alone.
+    pub sheets: u64,
+    pub ghost_sheets: u64,
     /// Particles and cells that it owns.
     pub owned: u64,
     pub own_cells: u64,
@@ -35,7 +38,7 @@ pub struct Load {
     pub rebalancing: f64,
 }
 
-const LOAD_WORDS: usize = 14;
+const LOAD_WORDS: usize = 16;
 
 impl Load {
     /// `seconds`: all, and those of pairs; `present`: particles here; `traffic`: that of the interval.
@@ -55,6 +58,8 @@ impl Load {
             cells: cells.all,
             ghost_candidates: own.counters.ghost_candidates.into(),
             ghost_walls: own.counters.ghost_walls.into(),
+            sheets: own.counters.sheets.into(),
+            ghost_sheets: own.counters.ghost_sheets.into(),
             owned: own.blocks.iter().map(|block| block.number).sum(),
             own_cells: cells.own,
             moved: own.counters.moved.into(),
@@ -84,6 +89,8 @@ impl Load {
             self.own_cells,
             self.ghost_candidates,
             self.ghost_walls,
+            self.sheets,
+            self.ghost_sheets,
         ];
         words[LOAD_WORDS * comm.rank()..][..LOAD_WORDS].copy_from_slice(&own);
         words
@@ -107,6 +114,8 @@ impl Load {
             own_cells: w[11],
             ghost_candidates: w[12],
             ghost_walls: w[13],
+            sheets: w[14],
+            ghost_sheets: w[15],
         };
         words.chunks_exact(LOAD_WORDS).map(load).collect()
     }
@@ -117,6 +126,7 @@ impl Load {
             particles: self.particles,
             candidates: self.candidates,
             wall_tests: self.walls,
+            sheet_tests: self.sheets,
             cells: self.cells,
             steps: 1,
         }
@@ -128,6 +138,7 @@ impl Load {
             particles: self.particles.saturating_sub(self.owned),
             candidates: self.ghost_candidates,
             wall_tests: self.ghost_walls,
+            sheet_tests: self.ghost_sheets,
             cells: self.cells.saturating_sub(self.own_cells),
             steps: 0,
         }
