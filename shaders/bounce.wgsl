@@ -299,6 +299,9 @@ fn bounce(thread: Thread) {
     cut_short = cut_short || !ended;
     atomicAdd(&counters[BOUNCES], bounces);
     tell_cut_short();
+    if (FABRIC && beyond_lists) {
+        atomicAdd(&counters[STRAYS], 1u);
+    }
     if (overshoot > 0.0) {
         atomicMax(&counters[OVERSHOOT], u32(ceil(overshoot * QUANTA)));
     }

@@ -54,12 +54,12 @@ fn mark(cell: u32, bits: u32) {
 }
 
 fn mark_around(c: vec3<u32>) {
-    let low = max(c, vec3<u32>(1u)) - 1u;
-    let high = min(c + 1u, vec3<u32>(CELLS_X, CELLS_Y, CELLS_Z) - 1u);
+    let low = max(c, step.fabric_low + 1u) - 1u;
+    let high = min(c + 1u, step.fabric_low + step.fabric_size - 1u);
     let bits = (1u << (high.x - low.x + 1u)) - 1u;
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
-            mark(cell_index(vec3<u32>(low.x, y, z)), bits);
+            mark(fabric_list(vec3<u32>(low.x, y, z)), bits);
         }
     }
 }
@@ -84,7 +84,7 @@ fn bound_fabric(thread: Thread) {
     }
     let cell = fabric_entries[fabric_room() + listed].w;
     let c = cell_at(cell);
-    let first = atomicLoad(&fabric_cells[FABRIC_FIRST + cell]);
+    let first = atomicLoad(&fabric_cells[FABRIC_FIRST + fabric_list(c)]);
     let normal = normal_of(first);
     var ends = vec2<f32>(2.0, -2.0);
     var next = first;
@@ -101,7 +101,7 @@ fn bound_fabric(thread: Thread) {
     let steps = clamp(vec2<f32>(floor(ends.x * SLAB_STEPS), ceil(ends.y * SLAB_STEPS)), vec2<f32>(-32768.0), vec2<f32>(32767.0));
     let planes = (u32(i32(steps.x)) & 0xffffu) | (u32(i32(steps.y)) << 16u);
     fabric_entries[fabric_room() + listed] = vec4<u32>(packed_bytes(vec4<f32>(normal, 0.0)), planes, first, cell);
-    atomicStore(&fabric_cells[FABRIC_FIRST + cell], listed + 1u);
+    atomicStore(&fabric_cells[FABRIC_FIRST + fabric_list(c)], listed + 1u);
     mark_around(c);
     tell_cut_short();
 }

@@ -23,12 +23,14 @@ fn reach_of(low: vec3<i32>, high: vec3<i32>, origin: vec3<u32>) -> Reach {
     let last = vec3<i32>(i32(CELLS_X), i32(CELLS_Y), i32(CELLS_Z)) - 1;
     let a = clamp(signed_cell(origin + bitcast<vec3<u32>>(low)), vec3<i32>(0), last);
     let b = clamp(signed_cell(origin + bitcast<vec3<u32>>(high)), vec3<i32>(0), last);
-    return Reach(vec3<u32>(a), vec3<u32>(b));
+    let first = vec3<i32>(step.fabric_low);
+    // (Of none of the cells with lists high is below low.)
+    return Reach(vec3<u32>(max(a, first)), vec3<u32>(min(b, first + vec3<i32>(step.fabric_size) - 1)));
 }
 
 // Enters a triangle in the list of a cell; `low` and `high` are the corners of a box around it, quanta from the middle.
-fn enter(entry: u32, cell: u32, triangle: u32, low: vec3<i32>, high: vec3<i32>) {
-    let next = atomicExchange(&fabric_cells[FABRIC_FIRST + cell], entry + 1u);
+fn enter(entry: u32, c: vec3<u32>, triangle: u32, low: vec3<i32>, high: vec3<i32>) {
+    let next = atomicExchange(&fabric_cells[FABRIC_FIRST + fabric_list(c)], entry + 1u);
     let steps = 2.0 * BOX_STEPS / f32(1u << CELL_BITS);
     let least = clamp(floor(vec3<f32>(low) * steps), vec3<f32>(-BOX_STEPS), vec3<f32>(BOX_STEPS));
     let most = clamp(ceil(vec3<f32>(high) * steps), vec3<f32>(-BOX_STEPS), vec3<f32>(BOX_STEPS));
@@ -36,7 +38,7 @@ fn enter(entry: u32, cell: u32, triangle: u32, low: vec3<i32>, high: vec3<i32>) 
     fabric_entries[entry] = vec4<u32>(triangle, next, box);
     if (next == 0u) {
         let listed = atomicAdd(&fabric_cells[FABRIC_LISTED], 1u);
-        fabric_entries[fabric_room() + listed].w = cell;
+        fabric_entries[fabric_room() + listed].w = cell_index(c);
     }
 }
 
@@ -112,7 +114,7 @@ fn list_fabric(thread: Thread) {
                 let c = vec3<u32>(x, y, z);
                 if (is_at(plane, c)) {
                     let from_middle = bitcast<vec3<i32>>(origin - middle_of(c));
-                    enter(entry, cell_index(c), triangle, from_middle + low, from_middle + high);
+                    enter(entry, c, triangle, from_middle + low, from_middle + high);
                     entry++;
                 }
             }

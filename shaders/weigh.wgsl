@@ -1,4 +1,4 @@
-//! uses: step.wgsl local.wgsl grid.wgsl particle.wgsl add64.wgsl has_fabric.wgsl
+//! uses: step.wgsl local.wgsl grid.wgsl particle.wgsl add64.wgsl fabric.wgsl
 //! binds: histogram as sums
 //! phase: blocks weigh
 // Where the work of the last step was: sums of the particles' weights over the planes of cells of the boxes
@@ -17,9 +17,6 @@ struct Weights {
     sheet: u32,
     // Entries of `cuts` to descend; 0: only count.
     cuts: u32,
-    pad: u32,
-    pad2: u32,
-    pad3: u32,
 }
 
 const OPEN: u32 = 3;
@@ -44,10 +41,10 @@ var<storage, read> cuts: array<vec4<u32>>;
 
 // How many triangles of fabric may touch a cell.
 fn sheets_at(cell: vec3<u32>) -> u32 {
-    if (!FABRIC || !in_grid(cell)) {
+    if (!FABRIC || !has_fabric_list(cell)) {
         return 0u;
     }
-    let listed = fabric_cells[FABRIC_FIRST + cell_index(cell)];
+    let listed = fabric_cells[FABRIC_FIRST + fabric_list(cell)];
     if (listed == 0u) {
         return 0u;
     }

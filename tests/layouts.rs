@@ -72,7 +72,9 @@ fn twins() -> Vec<Twin> {
             flight,
             next_newborns,
             lattice,
-            next_lattice
+            next_lattice,
+            fabric_low,
+            fabric_size
         ),
         twin!("Particle", GpuParticle, position, tag, velocity, spin),
         twin!("Packed", Packed, position_tag, motion),

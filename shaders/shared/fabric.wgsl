@@ -3,7 +3,7 @@
 // and the end of each step of an interval comes from the host, on the lattice of positions.
 //
 // Which triangles are where in a step (list_fabric.wgsl, bound_fabric.wgsl): `fabric_cells` counts the entries, and the cells that have some; of each
-// cell of the grid it has the number of its record, from 1, or 0; and a bit, set where a triangle may touch one of the 27 cells around.
+// cell of a box (`step.fabric_low`) it has the number of its record, from 1, or 0; and a bit, set where a triangle may touch one of the 27 cells around.
 // `fabric_entries` has first the entries: a triangle, the number of the cell's next entry, from 1, or 0, and a box around what the triangle sweeps in
 // the cell; and behind them, of each cell that has some, the record: the planes between which all of its fabric is, the number of its first entry, and the cell.
 
@@ -56,13 +56,19 @@ fn node_after(node: u32) -> vec3<u32> {
     return nodes[(step.slot + 1u) * NODES + node].xyz;
 }
 
-fn grid_cells() -> u32 {
-    return CELLS_X * CELLS_Y * CELLS_Z;
+// Whether a cell is one of those in which triangles are listed; which of them.
+fn has_fabric_list(c: vec3<u32>) -> bool {
+    return all(c - step.fabric_low < step.fabric_size);
+}
+
+fn fabric_list(c: vec3<u32>) -> u32 {
+    let o = c - step.fabric_low;
+    return (o.z * step.fabric_size.y + o.y) * step.fabric_size.x + o.x;
 }
 
 // Where the bits begin.
 fn fabric_bits() -> u32 {
-    return FABRIC_FIRST + grid_cells();
+    return FABRIC_FIRST + step.fabric_size.x * step.fabric_size.y * step.fabric_size.z;
 }
 
 // Four numbers of -128 to 127, in bytes.

@@ -268,9 +268,16 @@ fn struck_sheet(index: u32, x0: vec3<u32>, v: vec3<f32>, start: f32, time: f32, 
     return Struck(normal, surface, velocity, model, sheet.work, lift, index, place.weights);
 }
 
+// That a flight came to a cell in which no triangles are listed here: the interval must run again with more.
+var<private> beyond_lists: bool;
+
 // The record of a cell, from 1, or 0: it has no fabric.
 fn fabric_record(c: vec3<u32>) -> u32 {
-    return fabric_cells[FABRIC_FIRST + cell_index(c)];
+    if (!has_fabric_list(c)) {
+        beyond_lists = true;
+        return 0u;
+    }
+    return fabric_cells[FABRIC_FIRST + fabric_list(c)];
 }
 
 fn manhattan(v: vec3<f32>) -> f32 {
@@ -332,7 +339,13 @@ fn passes_box(entry: vec4<u32>, way: Way) -> bool {
 
 // Whether fabric may be in one of the 27 cells around.
 fn near_fabric(c: vec3<u32>) -> bool {
-    let cell = cell_index(c);
+    let o = c - step.fabric_low;
+    let last = vec3<u32>(CELLS_X, CELLS_Y, CELLS_Z) - 1u;
+    // What is beyond the outermost cells with lists they do not know.
+    if (any(o >= step.fabric_size) || any((o == vec3<u32>(0u)) & (c != vec3<u32>(0u))) || any((o == step.fabric_size - 1u) & (c != last))) {
+        return true;
+    }
+    let cell = fabric_list(c);
     return ((fabric_cells[fabric_bits() + (cell >> 5u)] >> (cell & 31u)) & 1u) != 0u;
 }
 

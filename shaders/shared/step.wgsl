@@ -59,6 +59,9 @@ struct Step {
     // The number of the step modulo 6, which tells where the tiles of the method `half-turn` lie, and that of the step that follows.
     lattice: u32,
     next_lattice: u32,
+    // The box of cells in which triangles of fabric are listed: the own ones, and as many around as flights come to (sheets.wgsl); all on a device alone.
+    fabric_low: vec3<u32>,
+    fabric_size: vec3<u32>,
 }
 
 // `ghosts`: all of them choose; the outermost wait; the pass over those that were asked.

@@ -36,12 +36,13 @@ impl Subdomain {
     /// Lists the triangles of fabric by cell.
     pub fn list_fabric(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.fabric {
-            let grid = &self.domain.plan.grid;
-            let bytes = 4 * words_of_cells(grid);
+            let (_, size) = self.place.fabric_cells(self.domain.plan.grid.cells);
+            let listed = size.iter().map(|&cells| u64::from(cells)).product();
+            let bytes = 4 * words_of_cells(listed);
             rec.encoder().clear_buffer(&self.fabric.cells, 0, Some(bytes));
             let device = rec.device();
             let sheets = threads(device, self.domain.fabric.sheets.len() as u64);
-            let cells = threads(device, self.fabric.room.min(grid.cell_count() as u64));
+            let cells = threads(device, self.fabric.room.min(listed));
             let offset = self.offset(device, step, 0);
             let pass = &mut rec.phase("fabric");
             kernels.list.dispatch(pass, offset, sheets);

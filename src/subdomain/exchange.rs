@@ -268,7 +268,7 @@ impl Subdomain {
             self.make_exchange_room(device, |room| (room.cuts, room.planes) = (2 * wanted.0, 2 * wanted.1))?;
         }
         let [particle, candidate, wall, sheet] = weights;
-        let weights = GpuWeights { particle, candidate, wall, sheet, cuts: cuts.len() as u32, pads: [0; 3] };
+        let weights = GpuWeights { particle, candidate, wall, sheet, cuts: cuts.len() as u32 };
         device.write(&self.fixed.weights, 0, &[weights]);
         device.write(&self.exchange.cuts, 0, cuts);
         let mut rec = Recording::new(device);

@@ -60,9 +60,8 @@ pub struct FabricBuffers {
     pub room: u64,
 }
 
-/// The words of `fabric_cells`.
-pub fn words_of_cells(grid: &Grid) -> u64 {
-    let cells = grid.cell_count() as u64;
+/// The words of `fabric_cells` for lists of so many cells.
+pub fn words_of_cells(cells: u64) -> u64 {
     u64::from(FABRIC_FIRST) + cells + cells.div_ceil(32)
 }
 
@@ -77,7 +76,7 @@ impl FabricBuffers {
         room: u64,
     ) -> Result<FabricBuffers, GpuError> {
         let pushed = if fabric.elastic.is_some() { fabric.nodes as u64 } else { 0 };
-        let words = if fabric.nodes > 0 { words_of_cells(grid) } else { 1 };
+        let words = if fabric.nodes > 0 { words_of_cells(grid.cell_count() as u64) } else { 1 };
         Ok(FabricBuffers {
             nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
             cells: device.storage::<u32>("fabric_cells", words)?,

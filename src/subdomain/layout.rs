@@ -38,6 +38,10 @@ pub struct GpuStep {
     pub lattice: u32,
     pub next_lattice: u32,
     pub pad: u32,
+    pub fabric_low: [u32; 3],
+    pub pad2: u32,
+    pub fabric_size: [u32; 3],
+    pub pad3: u32,
 }
 
 /// `Part` of `shaders/shared/cell_gas.wgsl`.
@@ -276,5 +280,4 @@ pub struct GpuWeights {
     pub wall: u32,
     pub sheet: u32,
     pub cuts: u32,
-    pub pads: [u32; 3],
 }

@@ -112,6 +112,7 @@ impl Subdomain {
         let mut bytes = vec![0u8; stride * uniforms as usize];
         let (low, size) = self.place.bins(self.domain.plan.grid.cells);
         let Cells { low: inner_low, high: inner_high } = self.place.inner(self.domain.plan.grid.cells);
+        let (fabric_low, fabric_size) = self.place.fabric_cells(self.domain.plan.grid.cells);
         let [lattice, next_lattice] = [slot.index, slot.index.wrapping_add(1)].map(|index| index % LATTICES);
         // Tiles begin a cell farther in every other step (`shaders/shared/local.wgsl`).
         let shift = if self.place.tiled { lattice & 1 } else { 0 };
@@ -155,7 +156,9 @@ impl Subdomain {
                 next_newborns: slot.next.unwrap_or(0),
                 lattice: if self.place.tiled { lattice } else { 0 },
                 next_lattice,
-                pad: 0,
+                fabric_low,
+                fabric_size,
+                ..GpuStep::default()
             };
             let at = stride * at as usize;
             bytes[at..at + size_of::<GpuStep>()].copy_from_slice(bytemuck::bytes_of(&step));

@@ -56,6 +56,9 @@ pub struct SubdomainBox {
     /// Layers of cells around the own ones beyond which no particle of this one's is thought to fly in a step, or one that needs it might
     /// be no peer; 0 if all others are, or none needs ghosts.
     pub flight: u32,
+    /// Layers of cells around the own ones beyond which no flight of its particles is thought to come: there triangles of fabric are listed. None: in all
+    /// cells.
+    pub fabric: Option<u32>,
     /// Whether the particles may be anywhere (after a rebalance or a restart), not only near their owner.
     pub scattered: bool,
     /// Whether it is made of tiles (the method `half-turn`), which begin a cell farther in every other step: no particle needs to know of one in another.
@@ -72,6 +75,7 @@ impl SubdomainBox {
             peers: Vec::new(),
             near: 0,
             flight: 0,
+            fabric: None,
             scattered: false,
             tiled: box_bits(plan.method) > 0,
         }
@@ -92,6 +96,14 @@ impl SubdomainBox {
         let low = self.own.low.map(|low| low.saturating_sub(around));
         let size = std::array::from_fn(|axis| (self.own.high[axis] + around).min(grid[axis]) - low[axis]);
         (low, size)
+    }
+
+    /// The cells in which triangles of fabric are listed, wherever the tiles begin. Low corner and size.
+    pub(super) fn fabric_cells(&self, grid: [u32; 3]) -> ([u32; 3], [u32; 3]) {
+        let Some(layers) = self.fabric else { return ([0; 3], grid) };
+        let low = self.own.low.map(|low| low.saturating_sub(layers));
+        let shift = u32::from(self.tiled);
+        (low, std::array::from_fn(|axis| (self.own.high[axis] + shift + layers).min(grid[axis]) - low[axis]))
     }
 
     pub(super) fn cells(&self, grid: [u32; 3]) -> GridCells {
@@ -149,9 +161,21 @@ mod tests {
             peers: Vec::new(),
             near: 0,
             flight: 0,
+            fabric: None,
             scattered: false,
             tiled: false,
         }
+    }
+
+    /// Fabric is listed around the own cells, wherever the tiles begin, within the grid; or in all cells.
+    #[test]
+    fn fabric_is_listed_around_the_own_cells() {
+        let grid = [10, 30, 12];
+        assert_eq!(place(0).fabric_cells(grid), ([0; 3], grid));
+        let listed = SubdomainBox { fabric: Some(3), ..place(0) };
+        assert_eq!(listed.fabric_cells(grid), ([0, 7, 1], [10, 16, 10]));
+        let tiled = SubdomainBox { tiled: true, ..listed };
+        assert_eq!(tiled.fabric_cells(grid), ([0, 7, 1], [10, 17, 11]));
     }
 
     /// The halo ends at the border of the grid; faces without neighbours have no particles to send.

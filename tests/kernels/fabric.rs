@@ -47,7 +47,6 @@ fn swept(seed: u32) -> Swept {
     rig.constant("FABRIC", 1.0);
     rig.constant("NODES", NODES as f64);
     rig.constant("SHEET_GAP", GAP);
-    rig.step(GpuStep { count: 1, dt: 1e-5, slot: 2, ..GpuStep::default() });
     Swept { rig, world, nodes: [before, after], triangles }
 }
 
@@ -62,9 +61,27 @@ struct Listed {
     words: Vec<u32>,
     entries: Vec<[u32; 4]>,
     records: Vec<[u32; 4]>,
+    /// Where the list of each cell is among `words`, if it has one.
+    places: Vec<Option<usize>>,
 }
 
 fn listed(swept: &mut Swept, room: usize) -> Listed {
+    let cells = swept.world.grid.cells;
+    listed_in(swept, room, [0; 3], cells)
+}
+
+/// With lists in the cells of a box.
+fn listed_in(swept: &mut Swept, room: usize, low: [u32; 3], size: [u32; 3]) -> Listed {
+    let step = GpuStep { count: 1, dt: 1e-5, slot: 2, fabric_low: low, fabric_size: size, ..GpuStep::default() };
+    swept.rig.step(step);
+    let grid = swept.world.grid.cells;
+    let place = |cell: u32| {
+        let at = [cell % grid[0], cell / grid[0] % grid[1], cell / (grid[0] * grid[1])];
+        let within = (0..3).all(|axis| low[axis] <= at[axis] && at[axis] - low[axis] < size[axis]);
+        let [x, y, z] = [0, 1, 2].map(|axis| at[axis].wrapping_sub(low[axis]));
+        within.then(|| FIRST + ((z * size[1] + y) * size[0] + x) as usize)
+    };
+    let places = (0..grid.iter().product()).map(place).collect();
     let (words, cells) = sizes(&swept.world);
     swept.rig.put("fabric_cells", &vec![0u32; words]);
     swept.rig.put("fabric_entries", &vec![[0u32; 4]; 2 * room]);
@@ -72,12 +89,12 @@ fn listed(swept: &mut Swept, room: usize) -> Listed {
     swept.rig.run("bound_fabric", cells.min(room));
     let mut entries: Vec<[u32; 4]> = swept.rig.get("fabric_entries", 2 * room);
     let records = entries.split_off(room);
-    Listed { words: swept.rig.get("fabric_cells", words), entries, records }
+    Listed { words: swept.rig.get("fabric_cells", words), entries, records, places }
 }
 
 impl Listed {
     fn record(&self, cell: usize) -> Option<[u32; 4]> {
-        let listed = (self.words[FIRST + cell] as usize).checked_sub(1)?;
+        let listed = (self.words[self.places[cell]?] as usize).checked_sub(1)?;
         assert_eq!(self.records[listed][3] as usize, cell);
         Some(self.records[listed])
     }
@@ -186,6 +203,36 @@ fn triangles_are_listed_wherever_they_come_to() {
         assert!(thickness.len() > 10 && 3 * thin > thickness.len(), "{thin} of {}", thickness.len());
         assert_eq!(swept.rig.counter(MISPLACED), 0);
     }
+}
+
+/// In a box of cells there are the same lists, and none elsewhere; those in its midst know the same of the cells around.
+#[test]
+fn lists_of_a_part_of_the_cells_are_those_of_all() {
+    let mut swept = swept(4);
+    let all = listed(&mut swept, 40_000);
+    let (low, size) = ([2, 1, 3], [3, 5, 2]);
+    let part = listed_in(&mut swept, 40_000, low, size);
+    let cells = sizes(&swept.world).1;
+    let sorted = |mut list: Vec<(u32, [[f64; 3]; 2])>| {
+        list.sort_by_key(|(triangle, _)| *triangle);
+        list
+    };
+    let (mut count, mut near) = (0, 0);
+    for cell in 0..cells {
+        let Some(place) = part.places[cell] else { continue };
+        assert_eq!(sorted(part.list(cell)), sorted(all.list(cell)));
+        count += part.list(cell).len();
+        if !part.list(cell).is_empty() {
+            assert_eq!(part.slab(cell), all.slab(cell));
+        }
+        let bits =
+            |found: &Listed, number: usize, cells: usize| found.words[FIRST + cells + number / 32] >> (number % 32) & 1;
+        let own = bits(&part, place - FIRST, size.iter().product::<u32>() as usize);
+        assert!(own <= bits(&all, cell, cells));
+        near += own;
+    }
+    assert!(count > 20 && part.words[0] as usize == count && near > 0, "{count} {near}");
+    assert!(all.words[0] as usize > 2 * count);
 }
 
 /// Entries without room are counted, and none is written behind the end.

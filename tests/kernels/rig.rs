@@ -199,7 +199,8 @@ impl Rig {
         let placed = if step.bins == 0 { alone } else { step };
         let total = if step.total == 0 { step.count + step.newborns + step.arrivals } else { step.total };
         let near2 = if step.near2 == 0 { CELL_NEAR2 } else { step.near2 };
-        self.uniform("step", &[GpuStep { total, near2, stride: step.stride.max(1), ..placed }]);
+        let fabric_size = if step.fabric_size == [0; 3] { self.grid } else { step.fabric_size };
+        self.uniform("step", &[GpuStep { total, near2, fabric_size, stride: step.stride.max(1), ..placed }]);
         // The last of its interval.
         self.set_step_state(INTERVAL_STEPS, if step.peers == 0 { step.slot + 1 } else { 0 });
     }

@@ -8,14 +8,8 @@ use crate::rig::*;
 
 const COUNT: usize = 2000;
 /// So heavy that the low words carry.
-const WEIGHTS: GpuWeights = GpuWeights {
-    particle: 400_000_000,
-    candidate: 30_000_001,
-    wall: 70_000_003,
-    sheet: 40_000_007,
-    cuts: 0,
-    pads: [0; 3],
-};
+const WEIGHTS: GpuWeights =
+    GpuWeights { particle: 400_000_000, candidate: 30_000_001, wall: 70_000_003, sheet: 40_000_007, cuts: 0 };
 
 /// Each own particle adds its weight to the plane of its cell in the open box that holds it; ghosts and particles of
 /// boxes that are not to be cut add nothing.

@@ -17,6 +17,10 @@ use crate::subdomain::{Cells, GpuParticle, Subdomain, SubdomainBox, box_bits};
 /// found by its owner of the step before, and the interval is run again with everyone as a peer.
 const FLIGHT: u32 = 6;
 
+/// Layers of cells beyond the halo in which triangles of fabric are listed. A flight that comes farther is found by its owner, and the interval is
+/// run again with triangles listed in all cells.
+const FABRIC: u32 = 8;
+
 pub struct Decomposition {
     /// Of boxes of cells, or of tiles.
     tree: Tree,
@@ -24,7 +28,9 @@ pub struct Decomposition {
     bits: u32,
     rank: usize,
     halo: Halo,
-    /// Everyone is a peer.
+    /// Layers of cells beyond the halo in which fabric is listed.
+    fabric: u32,
+    /// Everyone is a peer, and fabric is listed in all cells.
     wide: bool,
     /// The particles may be with anyone.
     scattered: bool,
@@ -50,7 +56,14 @@ impl Decomposition {
                 bisect_shared(root, &shares, &cells, |own| Ok::<_, SimulationError>(comm.sum(own)?))?
             }
         };
-        Ok(Decomposition { tree, bits: box_bits(plan.method), rank: comm.rank(), halo, wide: false, scattered: true })
+        let (bits, rank) = (box_bits(plan.method), comm.rank());
+        Ok(Decomposition { tree, bits, rank, halo, fabric: FABRIC, wide: false, scattered: true })
+    }
+
+    /// With fabric listed in no more than the halo.
+    #[must_use]
+    pub fn with_fabric_nearby(self) -> Decomposition {
+        Decomposition { fabric: 0, ..self }
     }
 
     /// The rank that starts with a particle: the owner of its cell. (The first exchange decides by the cell of its
@@ -82,6 +95,7 @@ impl Decomposition {
             peers: peers.iter().map(|&rank| cells(&boxes[rank])).collect(),
             near,
             flight: if self.depth() == 0 || peers.len() + 1 == boxes.len() { 0 } else { FLIGHT },
+            fabric: if self.wide { None } else { Some(self.depth() + self.fabric) },
             scattered: self.scattered,
             tiled: self.bits > 0,
         };
@@ -135,7 +149,7 @@ impl Decomposition {
         std::mem::take(&mut self.scattered)
     }
 
-    /// Particles fly farther than thought: everyone is a peer until the cells are shared out anew.
+    /// Particles fly farther than thought: everyone is a peer, and fabric is listed in all cells, until these are shared out anew.
     pub fn widen(&mut self) {
         self.wide = true;
     }

@@ -30,8 +30,8 @@ pub struct Options<'a> {
     pub strict: bool,
     /// The step stays the plan's, whatever the state asks for: for studies of steps that are too long.
     pub hold_step: bool,
-    /// Neighbour lists begin with room for thin gas, whatever the density, which grows on the way, on a device alone by no more than it must: for
-    /// tests of that.
+    /// Neighbour lists begin with room for thin gas, whatever the density, which grows on the way, on a device alone by no more than it must; and
+    /// among ranks fabric is listed in few cells: for tests of that.
     pub lists_start_short: bool,
     /// On a GPU, too, kernels over short lists are dispatched by the lengths of these, as those over long ones: for
     /// tests of that.

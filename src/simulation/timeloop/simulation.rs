@@ -170,7 +170,8 @@ impl<'a> Simulation<'a> {
             let cut_by = setup.cut_by.as_ref().filter(|_| options.balance.at_start());
             let cut_by = cut_by.map(|stock| stock.share(model, comm)).transpose()?;
             let weighed = options.balance.at_start().then_some(cut_by.as_deref().unwrap_or(&share));
-            let cut = decomposition.insert(Decomposition::new(plan, comm, halo, weighed)?);
+            let cut = Decomposition::new(plan, comm, halo, weighed)?;
+            let cut = decomposition.insert(if options.lists_start_short { cut.with_fabric_nearby() } else { cut });
             setup.particles.own(model, comm, share, |particle| cut.owner(plan, particle))?
         } else {
             let ranks = comm.size();
