@@ -11,7 +11,7 @@ use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
     burst, by, cold_walls, crowding, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
-    shaken_bag, tank, vented_bag, venting, venting_freely,
+    several_fabrics, shaken_bag, tank, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
 
@@ -207,6 +207,13 @@ fn a_porous_bag_has_the_same_bits_in_every_way() {
         every_way(&porous_bag(method));
     }
     every_way(&vented_bag(Method::HalfTurn));
+}
+
+#[test]
+fn several_fabrics_have_the_same_bits_in_every_way() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        every_way(&several_fabrics(method));
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
     burst, by, cold_walls, curves, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
-    shaken_bag, switching, tank, thin, tube, vented_bag, venting, venting_freely,
+    several_fabrics, shaken_bag, switching, tank, thin, tube, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -240,6 +240,18 @@ fn a_shaken_bag_has_the_same_bits_on_any_number_of_ranks() {
         assert!(method != Method::HalfTurn || runs.iter().any(|run| run.outcome.repeated > 0));
     }
     same(&shaken_bag(Method::None), &[Way::new(3, Off, 1).over_places()]);
+}
+
+/// Planes tell bags apart, plates turn, and gas passes them.
+#[test]
+fn several_fabrics_have_the_same_bits_on_any_number_of_ranks() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+        let runs = same(&several_fabrics(method), &ways);
+        let audit = &runs[0].outcome.audit;
+        assert!(audit.through_fabric.is_some_and(|(passed, _)| passed > 5), "{audit:?}");
+        assert_eq!(audit.passed.map(|passed| passed.particles), Some(0));
+    }
 }
 
 /// What the gas gives the nodes is summed over the ranks in integers.

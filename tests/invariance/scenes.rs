@@ -1,6 +1,6 @@
 //! The scenes whose bits are compared.
 
-use corpuscle::geometry::{MeshShape, Motion as NodeMotion, Precision};
+use corpuscle::geometry::{MeshShape, Motion as NodeMotion, Precision, TriangleMesh};
 use corpuscle::scene::Method;
 use corpuscle::simulation::Model;
 
@@ -216,6 +216,54 @@ pub fn porous_bag(method: Method) -> Model {
         "[[vent]]\nname = \"vent\"\nfabric = \"bag\"\nface = \"upper\"\nposition = [0.05, 0.05, 0.05]\ndiameter = 0.05\n\
          area = 0.0002\ndischarge = 0.7\nopening_pressure = 1.8e5\n\
          [[vent]]\nname = \"pores\"\nfabric = \"bag\"\nleak_velocity = [[0.0, 0.0], [2e5, 30.0]]\n",
+    )
+}
+
+/// Two shaken bags so near each other that their boxes overlap, and a turning plate with pores and a hole that opens late.
+pub fn several_fabrics(method: Method) -> Model {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    for (name, x, seed) in [("low", 0.045, 3), ("high", 0.055, 4)] {
+        let shape = MeshShape::Cushion { radius: 0.03, rings: 3, gap: 0.01 };
+        let mut mesh = shape.mesh([0.0; 3]).expect("a cushion");
+        // Askew, one above the other.
+        let away = if seed == 3 { -0.008 } else { 0.008 };
+        for node in &mut mesh.nodes {
+            let [a, b, c] = [node[0], node[1], node[2] + away];
+            *node = [x + 0.8 * a + 0.6 * c, 0.04 + b, 0.03 - 0.6 * a + 0.8 * c];
+        }
+        let shake = NodeMotion::Shake { speed: 40.0, amplitude: Some(5e-4), seed };
+        let frames = shake.frames(&mesh, 25, 3e-4).expect("frames");
+        mesh.write(&folder.path().join(format!("{name}.obj")), 1.0).expect("a mesh file");
+        frames.write(&folder.path().join(format!("{name}.nodes")), Precision::Double).expect("a file of nodes");
+    }
+    let mut plate = TriangleMesh::default();
+    plate.nodes.extend((0..21).map(|k| [0.02 + 0.03 * f64::from(k % 3), 0.01 + 0.01 * f64::from(k / 3), 0.1]));
+    let squares = (0..17).filter(|k| k % 3 < 2);
+    plate.triangles.extend(squares.flat_map(|k| [[k, k + 1, k + 4], [k, k + 4, k + 3]]));
+    plate.parts = vec![None; plate.triangles.len()];
+    plate.write(&folder.path().join("plate.obj"), 1.0).expect("a mesh file");
+    let bag = |name: &str, pressure: f64| {
+        format!(
+            "[[fabric]]\nname = \"{name}\"\nfile = \"{name}.obj\"\nmotion = \"{name}.nodes\"\n[[chamber]]\nname = \"in {name}\"\n\
+             inside = \"{name}\"\npressure = {pressure:e}\ntemperature = 400.0\ngas = \"air\"\n"
+        )
+    };
+    model_in(
+        &format!(
+            "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
+             [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.12]\ngas = \"inside\"\n{}{}\
+             [[chamber]]\nname = \"out\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
+             [[fabric]]\nname = \"plate\"\nfile = \"plate.obj\"\n[fabric.turn]\naxis = [0.0, 1.0, 0.0]\ncenter = [0.05, 0.0, 0.1]\n\
+             angular_velocity = 1500.0\n\
+             [[vent]]\nname = \"hole\"\nfabric = \"plate\"\nposition = [0.03, 0.04, 0.1]\ndiameter = 0.03\narea = 0.0002\n\
+             discharge = 0.7\nopening_pressure = 1e2\n\
+             [[vent]]\nname = \"pores\"\nfabric = \"plate\"\nleak_velocity = [[0.0, 0.0], [5e3, 300.0]]\n\
+             [model]\nmethod = \"{}\"\nparticles = 1500\ntime_step = 1.8e-6\n[output]\nrows = 8\nsnapshots = 0\n",
+            bag("low", 3e5),
+            bag("high", 2e5),
+            method.name()
+        ),
+        folder.path(),
     )
 }
 
