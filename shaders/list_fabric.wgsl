@@ -79,23 +79,30 @@ fn list_fabric(thread: Thread) {
     let sheet = fabric[triangle];
     let corners = array<u32, 3>(sheet.a, sheet.b, sheet.c);
     let origin = node_before(sheet.a);
-    let normal = cross(between(origin, node_before(sheet.b)), between(origin, node_before(sheet.c)));
-    let size = length(normal);
-    let n = select(normal / size, vec3<f32>(0.0), size == 0.0);
     var low = vec3<i32>(0);
     var high = vec3<i32>(0);
-    var farthest = 0.0;
     for (var k = 0u; k < 3u; k++) {
         let before = bitcast<vec3<i32>>(node_before(corners[k]) - origin);
         let after = bitcast<vec3<i32>>(node_after(corners[k]) - origin);
         low = min(low, min(before, after));
         high = max(high, max(before, after));
-        farthest = max(farthest, max(abs(dot(n, vec3<f32>(before))), abs(dot(n, vec3<f32>(after)))));
     }
     let margin = vec3<i32>(i32(ceil(sheet_margin())));
     low -= margin;
     high += margin;
     let cells = reach_of(low, high, origin);
+    if (any(cells.low > cells.high)) {
+        return;
+    }
+    let normal = cross(between(origin, node_before(sheet.b)), between(origin, node_before(sheet.c)));
+    let size = length(normal);
+    let n = select(normal / size, vec3<f32>(0.0), size == 0.0);
+    var farthest = 0.0;
+    for (var k = 0u; k < 3u; k++) {
+        let before = bitcast<vec3<i32>>(node_before(corners[k]) - origin);
+        let after = bitcast<vec3<i32>>(node_after(corners[k]) - origin);
+        farthest = max(farthest, max(abs(dot(n, vec3<f32>(before))), abs(dot(n, vec3<f32>(after)))));
+    }
     let away = farthest + sheet_margin();
     // (Of one without area no plane tells anything.)
     fabric_swept[triangle] = Swept(n, select(away, 1e30, size == 0.0), origin, 0u);

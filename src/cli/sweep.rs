@@ -266,7 +266,7 @@ impl SweepPlan {
             "\n## Modelled: work alone\n\nSubdomains of {} particles{}, measured one at a time on {adapter}: {} intervals \
              of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state, borders exchanged every {} of \
              collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3}, \
-             a wall test {:.2} and a cell {:.4} of a particle, as fitted to the device times.\n\n{}",
+             a wall test {:.2}, a triangle of fabric {:.3} and a cell {:.4} of a particle, as fitted to the device times.\n\n{}",
             grouped(*particles),
             if self.raw.runs.weak { " on the fewest devices, as many more as there are more devices" } else { "" },
             raw.intervals,
@@ -277,6 +277,7 @@ impl SweepPlan {
             },
             relative(costs.candidate),
             relative(costs.wall),
+            relative(costs.sheet),
             relative(costs.cell),
             report::work_table(points),
         );
