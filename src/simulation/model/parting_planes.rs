@@ -1,7 +1,9 @@
 //! Which closed fabric a particle is inside of.
 //!
 //! Particles know that they are inside of closed fabric, and by their places of which: between what two closed surfaces sweep in the run there is a
-//! plane; elastic ones, which a run alone moves, must not come over that between them at the start. It is looked for among the axes; if none of these has both surfaces on its two sides, by E. G. Gilbert (1966): the point v of the
+//! plane. Elastic ones must not come over that between them at the start.
+//!
+//! The plane is looked for among the axes; if none of these has both surfaces on its two sides, by E. G. Gilbert (1966): the point v of the
 //! difference of both hulls that is nearest to the origin is the normal, found by moving v to the nearest point of the segment from it to the
 //! corner that lies farthest against it. That is slow between faces that lie flat on each other: at last the normals of triangles are tried.
 
@@ -22,6 +24,9 @@ const MOST_STEPS: u32 = 4096;
 pub fn planes_between(surfaces: &Surfaces, starts: &[[f64; 3]]) -> Result<Vec<Vec<Plane>>, ModelError> {
     let mut planes = vec![Vec::new(); surfaces.all.len()];
     let closed: Vec<usize> = (0..surfaces.all.len()).filter(|&index| surfaces.all[index].closed).collect();
+    if closed.len() < 2 {
+        return Ok(planes);
+    }
     let told = |one: usize, problem: String| ModelError::Fabric { fabric: surfaces.all[one].name.clone(), problem };
     let hulls: Vec<Vec<DVec3>> = closed.iter().map(|&index| surfaces.hull(index)).collect();
     for (k, &one) in closed.iter().enumerate() {
