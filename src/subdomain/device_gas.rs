@@ -9,7 +9,7 @@ use super::buffers::{
 };
 use super::constants::{Features, block_counts};
 use super::domain::Domain;
-use super::fabric::FabricBuffers;
+use super::fabric::{FIRST_ENTRIES, FabricBuffers};
 use super::guess::Guess;
 use super::kernels::Kernels;
 use super::layout::{GpuParticle, GpuPeer};
@@ -76,8 +76,11 @@ impl Subdomain {
         let cell = CellBuffers::new(device, bins)?;
         let exchange_room = ExchangeRoom { particles: 64, updates: 64, received: 64, peers: 16, cuts: 64, planes: 256 };
         let exchange = ExchangeBuffers::new(device, &exchange_room)?;
-        let room = domain.fabric.elastic.unwrap_or(0);
-        let fabric = FabricBuffers::new(device, &plan.grid, &domain.fabric, plan.steps_per_interval, room)?;
+        // Where intervals can run again lists of elastic fabric begin with little room.
+        let most = domain.fabric.elastic.unwrap_or(0);
+        let room = if features.halo { most.min(FIRST_ENTRIES * domain.fabric.sheets.len() as u64) } else { most };
+        let listed = place.cells_with_fabric_lists(plan.grid.cells);
+        let fabric = FabricBuffers::new(device, &domain.fabric, plan.steps_per_interval, [room, listed])?;
         let buffers = Buffers {
             domain: &domain.buffers,
             fixed: &fixed,
@@ -154,6 +157,10 @@ impl Subdomain {
         if self.domain.features.collisions && bins_of(&self.place, &self.domain) > self.cell.capacity {
             let bins = bins_of(&self.place, &self.domain);
             self.cell = CellBuffers::new(device, bins + bins / 8)?;
+            self.rebind(device)?;
+        }
+        let listed = self.place.cells_with_fabric_lists(self.domain.plan.grid.cells);
+        if self.domain.fabric.nodes > 0 && self.fabric.make_room(device, [0, listed])? {
             self.rebind(device)?;
         }
         if peers.len() as u64 > self.exchange_room.peers {

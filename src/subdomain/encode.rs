@@ -36,8 +36,7 @@ impl Subdomain {
     /// Lists the triangles of fabric by cell.
     pub fn list_fabric(&self, rec: &mut Recording<'_>, step: &StepSlot) {
         if let Some(kernels) = &self.kernels.fabric {
-            let (_, size) = self.place.fabric_cells(self.domain.plan.grid.cells);
-            let listed = size.iter().map(|&cells| u64::from(cells)).product();
+            let listed = self.place.cells_with_fabric_lists(self.domain.plan.grid.cells);
             let bytes = 4 * words_of_cells(listed);
             rec.encoder().clear_buffer(&self.fabric.cells, 0, Some(bytes));
             let device = rec.device();

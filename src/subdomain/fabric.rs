@@ -14,6 +14,8 @@ use super::registry::{FABRIC_FIRST, NODE_IMPULSE_WORDS, SHEET_MARGIN};
 const GAP: f64 = 2e-6;
 /// And at least, in quanta of positions.
 const LEAST_GAP: f64 = 32.0;
+/// Entries of lists for each triangle of elastic fabric that there is room for at first, where intervals can run again.
+pub const FIRST_ENTRIES: u64 = 4;
 /// Of an entry or a record.
 const ENTRY_WORDS: usize = 4;
 
@@ -56,8 +58,9 @@ pub struct FabricBuffers {
     pub impulses: wgpu::Buffer,
     /// Of its nodes, smoothed, m/s.
     pub velocities: wgpu::Buffer,
-    /// Entries of lists that there is room for.
+    /// Entries of lists that there is room for, and cells with lists.
     pub room: u64,
+    pub listed: u64,
 }
 
 /// The words of `fabric_cells` for lists of so many cells.
@@ -70,32 +73,56 @@ impl FabricBuffers {
     /// If the device has no memory for it.
     pub fn new(
         device: &Device,
-        grid: &Grid,
         fabric: &Fabric,
         steps: u32,
-        room: u64,
+        [room, listed]: [u64; 2],
     ) -> Result<FabricBuffers, GpuError> {
         let pushed = if fabric.elastic.is_some() { fabric.nodes as u64 } else { 0 };
-        let words = if fabric.nodes > 0 { words_of_cells(grid.cell_count() as u64) } else { 1 };
+        let listed = if fabric.nodes > 0 { listed } else { 0 };
         Ok(FabricBuffers {
             nodes: device.storage::<[u32; 4]>("nodes", (fabric.nodes as u64 * (u64::from(steps) + 1)).max(1))?,
-            cells: device.storage::<u32>("fabric_cells", words)?,
-            entries: device.storage::<[u32; ENTRY_WORDS]>("fabric_entries", 2 * room.max(1))?,
+            cells: lists(device, listed)?,
+            entries: entries(device, room)?,
             swept: device.storage::<GpuSwept>("fabric_swept", (fabric.sheets.len() as u64).max(1))?,
             velocities: device.storage::<[f32; 4]>("node_velocities", pushed.max(1))?,
             impulses: device.storage::<[u32; NODE_IMPULSE_WORDS as usize]>("node_impulses", pushed.max(1))?,
             room,
+            listed,
         })
+    }
+
+    /// Makes room for so many entries and cells, if there is less; what is in these lists is lost. Whether anything has changed.
+    ///
+    /// # Errors
+    /// If the device has no memory for it.
+    pub fn make_room(&mut self, device: &Device, [room, listed]: [u64; 2]) -> Result<bool, GpuError> {
+        let (more_entries, more_cells) = (room > self.room, listed > self.listed);
+        if more_entries {
+            (self.entries, self.room) = (entries(device, room)?, room);
+        }
+        if more_cells {
+            (self.cells, self.listed) = (lists(device, listed)?, listed);
+        }
+        Ok(more_entries || more_cells)
     }
 }
 
-/// The most entries that lists of a step have: `nodes` are the places of all nodes, one moment of an interval after the other.
-pub fn most_entries(grid: &Grid, fabric: &Fabric, nodes: &[[u32; 4]]) -> u64 {
+fn lists(device: &Device, cells: u64) -> Result<wgpu::Buffer, GpuError> {
+    device.storage::<u32>("fabric_cells", words_of_cells(cells))
+}
+
+fn entries(device: &Device, room: u64) -> Result<wgpu::Buffer, GpuError> {
+    device.storage::<[u32; ENTRY_WORDS]>("fabric_entries", 2 * room.max(1))
+}
+
+/// The most entries that lists of a step have in the cells of a box: `nodes` are the places of all nodes, one moment of an interval after the other.
+pub fn most_entries(grid: &Grid, fabric: &Fabric, nodes: &[[u32; 4]], listed: ([u32; 3], [u32; 3])) -> u64 {
     let margin = (f64::from(SHEET_MARGIN) * fabric.gap / grid.quantum()).ceil() as i64 + 1;
     let cells_along = |low: i64, high: i64, axis: usize| {
         let last = i64::from(grid.cells[axis]) - 1;
         let cell = |place: i64| (place >> grid.cell_bits).clamp(0, last);
-        (cell(high + margin) - cell(low - margin) + 1) as u64
+        let (first, size) = (i64::from(listed.0[axis]), i64::from(listed.1[axis]));
+        (cell(high + margin).min(first + size - 1) - cell(low - margin).max(first) + 1).max(0) as u64
     };
     let moments = nodes.len() / fabric.nodes.max(1);
     let of_step = |step: usize| -> u64 {

@@ -5,7 +5,7 @@ use crate::scene::MOST_MOTIONS;
 
 use super::buffers::step_stride;
 use super::device_gas::Subdomain;
-use super::fabric::{FabricBuffers, most_entries};
+use super::fabric::most_entries;
 use super::layout::{GpuMotion, GpuStep};
 use super::nearness;
 use super::registry::INTERVAL_STEPS;
@@ -184,13 +184,29 @@ impl Subdomain {
             return Ok(());
         }
         let plan = &self.domain.plan;
-        let wanted = most_entries(&plan.grid, &self.domain.fabric, nodes);
-        if wanted > self.fabric.room {
-            let room = wanted + wanted / 4;
-            self.fabric = FabricBuffers::new(device, &plan.grid, &self.domain.fabric, plan.steps_per_interval, room)?;
+        let listed = self.place.fabric_cells(plan.grid.cells);
+        let wanted = most_entries(&plan.grid, &self.domain.fabric, nodes, listed);
+        if wanted > self.fabric.room && self.fabric.make_room(device, [wanted + wanted / 4, 0])? {
             self.rebind(device)?;
         }
         device.write(&self.fabric.nodes, 0, nodes);
+        Ok(())
+    }
+
+    /// Whether lists of elastic fabric have less room than they may need: then it can be made, and is the same on all ranks.
+    pub fn is_short_of_fabric(&self) -> bool {
+        self.domain.fabric.elastic.is_some_and(|most| self.fabric.room < most)
+    }
+
+    /// Makes twice the room for lists of elastic fabric.
+    ///
+    /// # Errors
+    /// If the device has no memory for that.
+    pub fn make_room_for_fabric(&mut self, device: &Device) -> Result<(), GpuError> {
+        let most = self.domain.fabric.elastic.unwrap_or(0);
+        if self.fabric.make_room(device, [(2 * self.fabric.room).min(most), 0])? {
+            self.rebind(device)?;
+        }
         Ok(())
     }
 

@@ -106,6 +106,11 @@ impl SubdomainBox {
         (low, std::array::from_fn(|axis| (self.own.high[axis] + shift + layers).min(grid[axis]) - low[axis]))
     }
 
+    /// How many these are.
+    pub(super) fn cells_with_fabric_lists(&self, grid: [u32; 3]) -> u64 {
+        self.fabric_cells(grid).1.iter().map(|&cells| u64::from(cells)).product()
+    }
+
     pub(super) fn cells(&self, grid: [u32; 3]) -> GridCells {
         let number = |size: [u32; 3]| size.iter().map(|&n| u64::from(n)).product();
         let own = std::array::from_fn(|axis| self.own.high[axis] - self.own.low[axis]);

@@ -84,7 +84,8 @@ impl Simulation<'_> {
         }
         let InFlight { mut interval, before, tallies, phases, fabric, .. } = flight;
         let (mut tallies, stamps, loads) = self.collect(tallies)?;
-        if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 {
+        let short_of_fabric = tallies.counters.misplaced > 0 && self.subdomain.is_short_of_fabric();
+        if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 || short_of_fabric {
             return self.run_again(
                 interval,
                 Before { gas: before, fabric: fabric.map(|fabric| fabric.before) },
@@ -276,7 +277,7 @@ impl Simulation<'_> {
     }
 
     /// Runs an interval, and those submitted since, again with as much room for the tails of neighbour lists as its tallies say was wanted and a
-    /// quarter more, and with everyone as a peer if particles strayed. All ranks do, since they see the sums. A device alone goes on from
+    /// quarter more, with everyone as a peer if particles strayed, and with twice the room for lists of fabric if that was short. All ranks do, since they see the sums. A device alone goes on from
     /// the step that had too little room.
     fn run_again(
         &mut self,
@@ -287,13 +288,15 @@ impl Simulation<'_> {
         self.progress.repeated += 1;
         self.parallel.halo_tuner.disturbed();
         let (wanted, strayed) = (tallies.counters.tails_wanted, tallies.counters.strays > 0);
+        let short_of_fabric = tallies.counters.misplaced > 0 && self.subdomain.is_short_of_fabric();
         let later = self.abandon()?;
         let Some(step) = self.subdomain.restore(self.device, &before, &first.entering())? else {
             let what = "an interval has to run again, and its start was not kept".to_owned();
             return Err(SimulationError::Lost { time: self.progress.read_until, what });
         };
         tracing::debug!(
-            "tails of neighbour lists grow to {wanted}, strays: {strayed}; an interval of {} steps is run again from step {step}",
+            "tails of neighbour lists grow to {wanted}, strays: {strayed}, short of lists of fabric: {short_of_fabric}; an interval of {} steps \
+             is run again from step {step}",
             first.steps
         );
         if let (Some(elastic), Some(before)) = (&self.fabric, &fabric) {
@@ -308,6 +311,9 @@ impl Simulation<'_> {
         // (A device alone can be asked to grow no more than it must.)
         let more = if self.options.lists_start_short && self.parallel.decomposition.is_none() { 0.0 } else { 0.25 };
         self.subdomain.make_room_for_tails(self.device, wanted.into(), more)?;
+        if short_of_fabric {
+            self.subdomain.make_room_for_fabric(self.device)?;
+        }
         if let Some(decomposition) = &mut self.parallel.decomposition {
             // The cuts may have changed since; the first exchange brings the particles home.
             decomposition.scatter();
