@@ -258,15 +258,16 @@ impl SweepPlan {
         let Emulation { adapter, particles, costs, points } = emulation;
         let raw = &self.raw.emulation;
         let steps = points.first().map_or(0.0, |point| point.steps);
-        let relative = |cost: f64| cost / costs.particle.max(f64::MIN_POSITIVE);
+        let relative = |cost: f64| cost / costs.unit;
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = write!(
             text,
             "\n## Modelled: work alone\n\nSubdomains of {} particles{}, measured one at a time on {adapter}: {} intervals \
              of {EMULATED_STEPS} steps of each state ({}), dynamic cuts made for the state, borders exchanged every {} of \
-             collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: a candidate counts {:.3}, \
-             a wall test {:.2}, a triangle of fabric {:.3} and a cell {:.4} of a particle, as fitted to the device times.\n\n{}",
+             collisions. Speed-up of the fullest subdomain's owned particles, and of its work, ghosts included: of the work of the mean \
+             particle a particle is {:.3}, a candidate {:.3}, a wall test {:.2}, a triangle of fabric {:.3} and a cell {:.4}, \
+             as fitted to the device times.\n\n{}",
             grouped(*particles),
             if self.raw.runs.weak { " on the fewest devices, as many more as there are more devices" } else { "" },
             raw.intervals,
@@ -275,6 +276,7 @@ impl SweepPlan {
                 None | Some(1) => "round".to_owned(),
                 Some(rounds) => format!("{rounds} rounds"),
             },
+            relative(costs.particle),
             relative(costs.candidate),
             relative(costs.wall),
             relative(costs.sheet),
