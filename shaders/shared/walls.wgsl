@@ -387,14 +387,14 @@ fn any_fabric(cells: Cells) -> bool {
     return false;
 }
 
-// Whether a way may meet fabric of a cell that it passes.
+// Whether a way may meet fabric of a cell that it passes; it may of one without a list here, which the flight then tells.
 fn passes_fabric(p: vec3<u32>, q: vec3<u32>) -> bool {
     let cells = cells_of(p, q);
     for (var z = cells.low.z; z <= cells.high.z; z++) {
         for (var y = cells.low.y; y <= cells.high.y; y++) {
             for (var x = cells.low.x; x <= cells.high.x; x++) {
                 let c = vec3<u32>(x, y, z);
-                if (first_on_way(c, way_in(c, p, q)) != 0u) {
+                if (first_on_way(c, way_in(c, p, q)) != 0u || beyond_lists) {
                     return true;
                 }
             }

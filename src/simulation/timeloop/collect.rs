@@ -84,8 +84,7 @@ impl Simulation<'_> {
         }
         let InFlight { mut interval, before, tallies, phases, fabric, .. } = flight;
         let (mut tallies, stamps, loads) = self.collect(tallies)?;
-        let short_of_fabric = tallies.counters.misplaced > 0 && self.subdomain.is_short_of_fabric();
-        if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 || short_of_fabric {
+        if tallies.counters.tails_wanted > 0 || tallies.counters.strays > 0 || self.is_short_of_fabric(&tallies) {
             return self.run_again(
                 interval,
                 Before { gas: before, fabric: fabric.map(|fabric| fabric.before) },
@@ -276,6 +275,11 @@ impl Simulation<'_> {
         Ok(dropped)
     }
 
+    /// Triangles found no place in lists of fabric that can have more.
+    fn is_short_of_fabric(&self, tallies: &Tallies) -> bool {
+        tallies.counters.misplaced > 0 && self.subdomain.is_short_of_fabric()
+    }
+
     /// Runs an interval, and those submitted since, again with as much room for the tails of neighbour lists as its tallies say was wanted and a
     /// quarter more, with everyone as a peer if particles strayed, and with twice the room for lists of fabric if that was short. All ranks do, since they see the sums. A device alone goes on from
     /// the step that had too little room.
@@ -288,7 +292,7 @@ impl Simulation<'_> {
         self.progress.repeated += 1;
         self.parallel.halo_tuner.disturbed();
         let (wanted, strayed) = (tallies.counters.tails_wanted, tallies.counters.strays > 0);
-        let short_of_fabric = tallies.counters.misplaced > 0 && self.subdomain.is_short_of_fabric();
+        let short_of_fabric = self.is_short_of_fabric(&tallies);
         let later = self.abandon()?;
         let Some(step) = self.subdomain.restore(self.device, &before, &first.entering())? else {
             let what = "an interval has to run again, and its start was not kept".to_owned();
