@@ -48,7 +48,7 @@ pub struct Counters {
     /// Of these on this device those of ghosts.
     pub ghost_candidates: u32,
     pub ghost_walls: u32,
-    /// Of the last step: triangles of fabric in the cells of particles, for each particle; on this device those of ghosts.
+    /// Triangles of fabric in the cells of particles in the last step, for each particle; on this device those of ghosts.
     pub sheets: u32,
     pub ghost_sheets: u32,
     /// Threads whose loops the device ended too soon.

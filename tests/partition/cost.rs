@@ -42,7 +42,7 @@ fn observe(model: &mut CostModel, speeds: &[f64], intervals: usize, noise: f64, 
     }
 }
 
-/// Of ranks of which some have fabric in a part of their cells: what its triangles cost is told from what particles cost, and weighs.
+/// Some ranks have fabric in a part of their cells: what its triangles cost is told from what particles cost, and weighs.
 #[test]
 fn triangles_of_fabric_have_a_cost_of_their_own() {
     const SHEET: f64 = 7e-9;

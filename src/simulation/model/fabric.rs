@@ -217,7 +217,7 @@ impl Surfaces {
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
     }
 
-    /// Of nodes at these places, m: a closed surface that has come over a plane between it and another.
+    /// A closed surface that has come over a plane between it and another, with its nodes at these places, m.
     pub fn over_a_plane(&self, nodes: &[[f64; 3]]) -> Option<usize> {
         let is_over = |&index: &usize| {
             self.planes[index].iter().any(|plane| {
