@@ -109,7 +109,7 @@ fn twins() -> Vec<Twin> {
             elements,
             substeps,
             impulse_unit,
-            pad
+            prescribed_steps
         ),
         twin!("Substep", GpuSubstep, slot, substep),
         twin!(

@@ -20,7 +20,7 @@ var<storage, read> element_forces: array<ElementForces>;
 // Of each node, one after the other: four times the triangle, and which of its corners.
 var<storage, read> corners: array<u32>;
 var<storage, read> node_constants: array<NodeConstants>;
-// m/s, of nodes that are held.
+// m/s, of nodes that are held, in one step of the gas after the other.
 var<storage, read> prescribed: array<vec4<f32>>;
 var<storage, read> obstacles: array<Obstacle>;
 var<storage, read_write> membrane_nodes: array<MembraneNode>;
@@ -208,7 +208,8 @@ fn move_nodes(thread: Thread) {
     let pressure = kick * forces.pressure;
     let weight = (kick * mass) * membrane_step.gravity;
     let sum = strain + damping + pressure + weight + node.given;
-    var velocity = prescribed[k].xyz;
+    let row = min(substep.slot, membrane_step.prescribed_steps - 1u);
+    var velocity = prescribed[row * membrane_step.nodes + k].xyz;
     var stopped = Stopped();
     if (constants.held == 0u) {
         velocity = node.velocity + sum / mass;

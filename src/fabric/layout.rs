@@ -18,7 +18,8 @@ pub struct GpuMembraneStep {
     pub elements: u32,
     pub substeps: u32,
     pub impulse_unit: f32,
-    pub pad: u32,
+    /// Steps of the gas that have velocities of held nodes of their own; the last of them is that of all later ones.
+    pub prescribed_steps: u32,
 }
 
 #[repr(C)]

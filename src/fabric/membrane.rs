@@ -72,13 +72,15 @@ impl Membrane {
         let of_device = device.storage_of("elements", &of_device)?;
         let laws: Vec<GpuElastic> = model.laws.iter().map(elastic).collect();
         let elastic = device.storage_of("elastic", &laws)?;
-        let prescribed = device.storage_of("prescribed", &held_velocities(&model.holds))?;
+        let held = held_velocities(&model.holds);
+        let prescribed = device.storage_of("prescribed", &held.repeat(prescribed_steps(input) as usize))?;
         let obstacles = device.storage::<GpuObstacle>("obstacles", u64::from(MOST_OBSTACLES))?;
         let faults = device.storage::<u32>("faults", 1)?;
         let [given, node_velocities, smoothed] =
             [(); 3].map(|()| device.storage::<[f32; 4]>("node_velocities", count as u64));
         let (given, node_velocities, smoothed) = (given?, node_velocities?, smoothed?);
-        let (neighbours, starts) = neighbours(count, input.triangles);
+        let is_free: Vec<bool> = input.holds.iter().map(|hold| *hold == Hold::Free).collect();
+        let (neighbours, starts) = neighbours(&is_free, input.triangles);
         let neighbours = device.storage_of("neighbours", &neighbours)?;
         let starts = device.storage_of("neighbour_starts", &starts)?;
         let membrane_step = device.uniform("membrane_step", size_of::<GpuMembraneStep>() as u64)?;
@@ -174,20 +176,29 @@ impl Membrane {
         device.write(&self.membrane_step, 0, &[step]);
     }
 
-    /// The velocities of prescribed nodes from the next submission on, m/s, one for each node; those of others count for nothing.
+    /// The velocities of prescribed nodes in each of the gas's steps of an interval, from the next submission on, m/s: one for each node, step by step; those
+    /// of others count for nothing. Of fewer steps the last counts for the rest.
     ///
     /// # Errors
-    /// If there are more or fewer.
+    /// If they are none of whole steps, or of more than an interval has.
     pub fn prescribe(&self, device: &Device, velocities: &[[f64; 3]]) -> Result<(), MembraneError> {
-        let (found, expected) = (velocities.len(), self.model.holds.len());
-        if found != expected {
-            return Err(MembraneError::Count { what: "velocities", found, expected });
+        let (found, nodes, steps) = (velocities.len(), self.model.holds.len(), self.no_step.prescribed_steps as usize);
+        let given = found / nodes;
+        if found == 0 || found != given * nodes || given > steps {
+            return Err(MembraneError::Count { what: "velocities", found, expected: steps * nodes });
         }
-        let holds = velocities.iter().zip(&self.model.holds).map(|(velocity, hold)| match hold {
-            Hold::Prescribed(_) => Hold::Prescribed(*velocity),
-            other => *other,
-        });
-        device.write(&self.prescribed, 0, &held_velocities(&holds.collect::<Vec<_>>()));
+        let of_step = |own: &[[f64; 3]]| -> Vec<[f32; 4]> {
+            let holds = own.iter().zip(&self.model.holds).map(|(velocity, hold)| match hold {
+                Hold::Prescribed(_) => Hold::Prescribed(*velocity),
+                other => *other,
+            });
+            held_velocities(&holds.collect::<Vec<_>>())
+        };
+        let mut all: Vec<[f32; 4]> = velocities.chunks_exact(nodes).flat_map(of_step).collect();
+        for _ in given..steps {
+            all.extend_from_within((given - 1) * nodes..given * nodes);
+        }
+        device.write(&self.prescribed, 0, &all);
         Ok(())
     }
 
@@ -323,8 +334,14 @@ fn step_of_no_length(input: &MembraneInput<'_>, nodes: usize, elements: usize) -
         elements: elements as u32,
         substeps: input.substeps,
         impulse_unit: input.impulse_unit as f32,
-        pad: 0,
+        prescribed_steps: prescribed_steps(input),
     }
+}
+
+/// Steps of an interval that have velocities of held nodes of their own.
+fn prescribed_steps(input: &MembraneInput<'_>) -> u32 {
+    let moves = input.holds.iter().any(|hold| matches!(hold, Hold::Prescribed(_)));
+    if moves { input.steps_per_interval } else { 1 }
 }
 
 fn initial_nodes(input: &MembraneInput<'_>) -> Result<Vec<GpuMembraneNode>, MembraneError> {

@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 
 use super::layout::GpuNeighbour;
 
-/// Neighbours of all nodes one after the other, by number, and where those of each node begin; behind them where the last end.
-pub fn neighbours(nodes: usize, triangles: &[[u32; 3]]) -> (Vec<GpuNeighbour>, Vec<u32>) {
+/// Neighbours of all nodes one after the other, by number, and where those of each node begin; behind them where the last end. Nodes of triangles that
+/// have none that is free are as they are: nothing is smoothed there.
+pub fn neighbours(is_free: &[bool], triangles: &[[u32; 3]]) -> (Vec<GpuNeighbour>, Vec<u32>) {
+    let nodes = is_free.len();
     let mut of_nodes = vec![BTreeSet::new(); nodes];
-    for &[a, b, c] in triangles {
+    for &[a, b, c] in triangles.iter().filter(|corners| corners.iter().any(|&node| is_free[node as usize])) {
         for [one, other] in [[a, b], [b, c], [c, a]] {
             of_nodes[one as usize].insert(other);
             of_nodes[other as usize].insert(one);
@@ -27,7 +29,8 @@ pub fn neighbours(nodes: usize, triangles: &[[u32; 3]]) -> (Vec<GpuNeighbour>, V
 /// What a hit of unit impulse on each triangle changes its velocity by along that impulse, 1/kg: the mean of w.G w over places of the triangle, w the
 /// weights of its corners, G = S^n M^-1 S^n with n passes S of smoothing and M the masses of nodes.
 pub fn recoils(inverse_masses: &[f64], triangles: &[[u32; 3]], passes: u32) -> Vec<f64> {
-    let (all, starts) = neighbours(inverse_masses.len(), triangles);
+    let is_free: Vec<bool> = inverse_masses.iter().map(|&inverse| inverse > 0.0).collect();
+    let (all, starts) = neighbours(&is_free, triangles);
     let own = |node: usize| &all[starts[node] as usize..starts[node + 1] as usize];
     // What a pass makes of a sparse vector; `sum` is zero before and after.
     let mut sum = vec![0.0; inverse_masses.len()];
@@ -95,7 +98,7 @@ mod tests {
     #[test]
     fn shares_are_alike_on_both_sides_of_an_edge() {
         let fan: Vec<[u32; 3]> = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
-        let (all, starts) = neighbours(7, &fan);
+        let (all, starts) = neighbours(&[true; 7], &fan);
         let share = |of: u32, with: u32| {
             let own = &all[starts[of as usize] as usize..starts[of as usize + 1] as usize];
             own.iter().find(|neighbour| neighbour.node == with).map(|neighbour| neighbour.share)

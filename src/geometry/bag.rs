@@ -42,6 +42,11 @@ impl Bag {
         self.surface.contains(point)
     }
 
+    /// What of the line along x through (y, z) it encloses, from and to, m.
+    pub(super) fn within(&self, y: f64, z: f64) -> Vec<(f64, f64)> {
+        self.surface.within(y, z)
+    }
+
     /// A uniform point of its inside for four numbers between 0 and 1; rounding may put one next to the surface behind it.
     pub fn point(&self, uniform: [f64; 4]) -> [f64; 3] {
         let cut = || Tetrahedra::new(&self.surface, &self.nodes, &self.triangles);

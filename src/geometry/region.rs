@@ -104,13 +104,33 @@ impl Vessel {
         let mut earlier: Vec<&Region> = Vec::new();
         for chamber in chambers {
             volumes.push(match &chamber.region {
-                None if chamber.inside.is_some() => self.bag_of(chamber).map_or(0.0, |bag| bag.volume),
+                None if chamber.inside.is_some() => self.bag_of(chamber).map_or(0.0, |bag| self.gas_volume_inside(bag)),
                 Some(region) => self.gas_volume_apart(region, &earlier),
                 None => (self.gas_volume() - volumes.iter().sum::<f64>()).max(0.0),
             });
             earlier.extend(&chamber.region);
         }
         volumes
+    }
+
+    /// m3 of gas in closed fabric: exact where no solid is near, else summed along lines.
+    pub fn gas_volume_inside(&self, bag: &Bag) -> f64 {
+        let near = |wall: usize| {
+            let (low, high) = self.extent_of(wall);
+            low.cmple(bag.bounds.1.into()).all() && high.cmpge(bag.bounds.0.into()).all()
+        };
+        if !(0..self.walls.len()).any(|wall| !self.walls[wall].cavity && near(wall)) {
+            return bag.volume;
+        }
+        let (low, high) = bag.bounds;
+        let [gas, all] = sum(VOLUME_LINES, |i, line| {
+            let [u, v] = r2(i);
+            let (y, z) = (low[1] + u * (high[1] - low[1]), low[2] + v * (high[2] - low[2]));
+            bag.within(y, z).into_iter().fold([0.0; 2], |[gas, all], part| {
+                [gas + self.gas_length([y, z], part, &[], line), all + (part.1 - part.0)]
+            })
+        });
+        if all > 0.0 { bag.volume * gas / all } else { 0.0 }
     }
 
     /// The closed fabric that a chamber is the inside of.

@@ -313,7 +313,7 @@ impl Vessel {
         outside == 0
     }
 
-    fn extent_of(&self, wall: usize) -> Extent {
+    pub(super) fn extent_of(&self, wall: usize) -> Extent {
         let own = self.triangles.iter().filter(|triangle| triangle.wall as usize == wall);
         let corners: Vec<DVec3> =
             own.flat_map(|triangle| triangle.vertices).map(|v| DVec3::from(self.vertices[v as usize])).collect();

@@ -27,17 +27,21 @@ pub fn heating(scene: &Scene, motion: &MeasuredMotion, hottest: f64) -> f64 {
 pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
     let Some(motion) = &measured.motion else { return };
     let walls = scene.motions.iter().map(|motion| &scene.walls[motion.wall].name);
-    let names: Vec<String> =
-        walls.chain(scene.fabrics.iter().map(|fabric| &fabric.name)).map(|name| format!("`{name}`")).collect();
-    reasons.push(Reason {
-        quantity: if scene.fabrics.is_empty() { "moving walls" } else { "fabric" }.into(),
-        value: names.join(", "),
-        why: format!(
-            "up to {} m/s; all gas has {} of its volume at the end, a chamber {} at least",
-            significant(motion.fastest),
+    let led = scene.fabrics.iter().filter(|fabric| fabric.motion.is_some() || fabric.turn.is_some());
+    let names: Vec<String> = walls.chain(led.map(|fabric| &fabric.name)).map(|name| format!("`{name}`")).collect();
+    let volumes = if scene.fabrics.iter().any(|fabric| fabric.membrane.is_some()) {
+        "the volume beside elastic fabric a run finds".into()
+    } else {
+        format!(
+            "all gas has {} of its volume at the end, a chamber {} at least",
             significant(motion.final_gas_volume / measured.gas_volume),
             significant(motion.least_share)
-        ),
+        )
+    };
+    reasons.push(Reason {
+        quantity: if scene.motions.is_empty() { "fabric" } else { "moving walls" }.into(),
+        value: names.join(", "),
+        why: format!("up to {} m/s; {volumes}", significant(motion.fastest)),
     });
 }
 

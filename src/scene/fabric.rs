@@ -13,9 +13,9 @@ pub struct Fabric {
     /// STL or OBJ, by extension: the surface at the start.
     pub mesh: PathBuf,
     pub scale: f64,
-    /// Where its nodes are over time; not of a membrane. Without either its nodes rest.
+    /// Where its nodes are over time, of a membrane those that are held. Without either its nodes rest.
     pub motion: Option<PathBuf>,
-    /// It turns as a whole; then it has no file of its motion, and is no membrane.
+    /// It turns as a whole, of a membrane the nodes that are held; then it has no file of its motion.
     pub turn: Option<Turn>,
     /// The gas moves it.
     pub membrane: Option<Membrane>,
@@ -90,7 +90,7 @@ pub enum Elasticity {
     },
 }
 
-/// The nodes of a membrane that are held where they are at the start.
+/// The nodes of a membrane that are held: at rest, or where its motion takes them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fixed {
     Nothing,

@@ -67,13 +67,9 @@ fn file(named: &At<String>, (endings, allowed): (&[&str], &str), base_dir: &Path
 }
 
 fn turn(fabric: &RawFabric, raw: &At<RawTurn>, units: UnitSystem) -> Result<Turn, Problem> {
-    let other = [
-        ("motion", fabric.motion.as_ref().map(|at| &at.span)),
-        ("material", fabric.material.as_ref().map(|at| &at.span)),
-    ];
-    if let Some((key, span)) = other.into_iter().find_map(|(key, span)| Some((key, span?))) {
-        let found = format!("`{key}` of a fabric with a `turn`");
-        return Err(Problem::value(span, found, "one of `motion`, `turn`, `material`: what moves its nodes"));
+    if let Some(motion) = &fabric.motion {
+        let found = "`motion` of a fabric with a `turn`";
+        return Err(Problem::value(&motion.span, found, "one of the two: each says where its nodes go"));
     }
     let laws = (&raw.value.angular_velocity, &raw.value.angle);
     Ok(Turn {
@@ -89,10 +85,15 @@ fn membrane(
     units: UnitSystem,
     base_dir: &Path,
 ) -> Result<Membrane, Problem> {
-    if let Some(motion) = &fabric.motion {
-        let found = "`motion` of a fabric with a `material`";
-        let allowed = "one of the two: a file moves its nodes, or the gas does";
-        return Err(Problem::value(&motion.span, found, allowed));
+    let moved =
+        [("motion", fabric.motion.as_ref().map(|at| &at.span)), ("turn", fabric.turn.as_ref().map(|at| &at.span))];
+    if let (Some((key, span)), None) = (moved.into_iter().find_map(|(key, span)| Some((key, span?))), &fabric.fixed) {
+        let found = format!("`{key}` of a fabric with a `material` and without `fixed`");
+        return Err(Problem::value(
+            span,
+            found,
+            "`fixed` beside it: it moves the nodes that are held, the gas the others",
+        ));
     }
     Ok(Membrane {
         material: material(raw, units)?,
@@ -169,13 +170,6 @@ pub(super) fn gravity(raw: &RawScene, units: UnitSystem) -> Result<[f64; 3], Pro
 pub(super) fn refuse(raw: &RawScene, problems: &mut Vec<Problem>) {
     if raw.fabric.is_empty() {
         return;
-    }
-    if let Some(motion) = raw.motion.first() {
-        let found = "a [[motion]] in a scene with fabric";
-        problems.push(
-            Problem::value(&motion.span, found, "walls at rest beside fabric")
-                .hint("a body that moves as a whole can be fabric, too: a closed mesh and the file of its motion"),
-        );
     }
     for chamber in raw.chamber.iter().filter(|chamber| chamber.value.region.is_some()) {
         let found = format!("chamber {:?} with a `region` in a scene with fabric", chamber.value.name.value);

@@ -19,11 +19,12 @@ pub struct RawFabric {
     pub file: At<String>,
     /// Length units of the scene per unit of the files; 1 unless given.
     pub scale: Option<At<f64>>,
-    /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files; not with `material`.
+    /// Path of the positions of its nodes over time: a `.nodes` file or a series of VTK files. With `material` its `fixed`
+    /// nodes follow it.
     pub motion: Option<At<String>>,
-    /// How it turns as a whole about an axis at rest; not with `motion` or `material`.
+    /// How it turns as a whole about an axis at rest, instead of `motion`.
     pub turn: Option<At<RawTurn>>,
-    /// What an elastic membrane is of, which the gas moves; not with `motion`.
+    /// What an elastic membrane is of, which the gas moves.
     pub material: Option<At<RawMaterial>>,
     /// Of a membrane: path of a mesh file with the same triangles, free of stress; the surface at the start unless given.
     pub reference: Option<At<String>>,

@@ -5,6 +5,7 @@
 mod whole_run;
 
 mod bags;
+mod driven;
 mod elastic;
 mod fields;
 mod flat;

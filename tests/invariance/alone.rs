@@ -10,8 +10,8 @@ use corpuscle::subdomain::{GpuParticle, Newborns, Steps, Subdomain, SubdomainBox
 use crate::bits::{Bits, assert_same, difference};
 use crate::orders::{reversed, shuffled};
 use crate::scenes::{
-    burst, by, cold_walls, crowding, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
-    several_fabrics, shaken_bag, tank, vented_bag, venting, venting_freely,
+    burst, by, cold_walls, crowding, dense, driven_fabrics, effusion, first, gas_box, inflated_bag, pistons, plate,
+    porous_bag, several_fabrics, shaken_bag, tank, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, Witness, device, published, run};
 
@@ -213,6 +213,13 @@ fn a_porous_bag_has_the_same_bits_in_every_way() {
 fn several_fabrics_have_the_same_bits_in_every_way() {
     for method in [Method::HalfTurn, Method::ClosestApproach] {
         every_way(&several_fabrics(method));
+    }
+}
+
+#[test]
+fn fabric_among_what_moves_has_the_same_bits_in_every_way() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        every_way(&driven_fabrics(method));
     }
 }
 

@@ -11,8 +11,8 @@ use crate::among::{Way, World};
 use crate::bits::{Bits, assert_same};
 use crate::orders::{shuffled, with_fast_ones};
 use crate::scenes::{
-    burst, by, cold_walls, curves, dense, effusion, first, gas_box, inflated_bag, pistons, plate, porous_bag,
-    several_fabrics, shaken_bag, switching, tank, thin, tube, vented_bag, venting, venting_freely,
+    burst, by, cold_walls, curves, dense, driven_fabrics, effusion, first, gas_box, inflated_bag, pistons, plate,
+    porous_bag, several_fabrics, shaken_bag, switching, tank, thin, tube, vented_bag, venting, venting_freely,
 };
 use crate::whole_run::{Run, run};
 
@@ -250,6 +250,18 @@ fn several_fabrics_have_the_same_bits_on_any_number_of_ranks() {
         let runs = same(&several_fabrics(method), &ways);
         let audit = &runs[0].outcome.audit;
         assert!(audit.through_fabric.is_some_and(|(passed, _)| passed > 5), "{audit:?}");
+        assert_eq!(audit.passed.map(|passed| passed.particles), Some(0));
+    }
+}
+
+/// Walls and nodes that move whatever the gas does, beside a bag that gives way.
+#[test]
+fn fabric_among_what_moves_has_the_same_bits_on_any_number_of_ranks() {
+    for method in [Method::HalfTurn, Method::ClosestApproach] {
+        let ways = [Way::new(2, Forced { seed: 1 }, None), Way::new(5, Forced { seed: 2 }, 2).over_places()];
+        let runs = same(&driven_fabrics(method), &ways);
+        let audit = &runs[0].outcome.audit;
+        assert!(audit.fabric.is_some_and(|account| account.from_supports > 0.0), "{audit:?}");
         assert_eq!(audit.passed.map(|passed| passed.particles), Some(0));
     }
 }

@@ -221,6 +221,22 @@ pub fn porous_bag(method: Method) -> Model {
 
 /// Two shaken bags so near each other that their boxes overlap, and a turning plate with pores and a hole that opens late.
 pub fn several_fabrics(method: Method) -> Model {
+    several(method, "", "")
+}
+
+/// The same with one bag elastic, some of its nodes shaken, and a block that moves against it.
+pub fn driven_fabrics(method: Method) -> Model {
+    several(
+        method,
+        "fixed = [{ sphere = { center = [0.02, 0.04, 0.03], radius = 0.015 } }]\n\
+         [fabric.material]\nthickness = 3.3e-4\ndensity = 9000.0\nyoung = 4e8\npoisson = 0.3\n",
+        "[[wall]]\nname = \"block\"\nshape = \"box\"\nmin = [0.045, 0.025, -0.02]\nmax = [0.075, 0.055, 0.002]\ngas = \"outside\"\n\
+         [[motion]]\nwall = \"block\"\ndirection = [0.0, 0.0, 1.0]\nvelocity = [[0.0, 0.0], [3e-4, 40.0]]\n",
+    )
+}
+
+/// `low`: keys of the lower bag.
+fn several(method: Method, low: &str, more: &str) -> Model {
     let folder = tempfile::TempDir::new().expect("a folder");
     for (name, x, seed) in [("low", 0.045, 3), ("high", 0.055, 4)] {
         let shape = MeshShape::Cushion { radius: 0.03, rings: 3, gap: 0.01 };
@@ -242,16 +258,16 @@ pub fn several_fabrics(method: Method) -> Model {
     plate.triangles.extend(squares.flat_map(|k| [[k, k + 1, k + 4], [k, k + 4, k + 3]]));
     plate.parts = vec![None; plate.triangles.len()];
     plate.write(&folder.path().join("plate.obj"), 1.0).expect("a mesh file");
-    let bag = |name: &str, pressure: f64| {
+    let bag = |name: &str, keys: &str, pressure: f64| {
         format!(
-            "[[fabric]]\nname = \"{name}\"\nfile = \"{name}.obj\"\nmotion = \"{name}.nodes\"\n[[chamber]]\nname = \"in {name}\"\n\
+            "[[fabric]]\nname = \"{name}\"\nfile = \"{name}.obj\"\nmotion = \"{name}.nodes\"\n{keys}[[chamber]]\nname = \"in {name}\"\n\
              inside = \"{name}\"\npressure = {pressure:e}\ntemperature = 400.0\ngas = \"air\"\n"
         )
     };
     model_in(
         &format!(
             "end_time = 3e-4\n[[gas]]\nname = \"air\"\nmolar_mass = 0.029\ngamma = 1.4\n\
-             [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.12]\ngas = \"inside\"\n{}{}\
+             [[wall]]\nname = \"box\"\nshape = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [0.1, 0.08, 0.12]\ngas = \"inside\"\n{more}{}{}\
              [[chamber]]\nname = \"out\"\npressure = 1e5\ntemperature = 300.0\ngas = \"air\"\n\
              [[fabric]]\nname = \"plate\"\nfile = \"plate.obj\"\n[fabric.turn]\naxis = [0.0, 1.0, 0.0]\ncenter = [0.05, 0.0, 0.1]\n\
              angular_velocity = 1500.0\n\
@@ -259,8 +275,8 @@ pub fn several_fabrics(method: Method) -> Model {
              discharge = 0.7\nopening_pressure = 1e2\n\
              [[vent]]\nname = \"pores\"\nfabric = \"plate\"\nleak_velocity = [[0.0, 0.0], [5e3, 300.0]]\n\
              [model]\nmethod = \"{}\"\nparticles = 1500\ntime_step = 1.8e-6\n[output]\nrows = 8\nsnapshots = 0\n",
-            bag("low", 3e5),
-            bag("high", 2e5),
+            bag("low", low, 3e5),
+            bag("high", "", 2e5),
             method.name()
         ),
         folder.path(),

@@ -19,7 +19,8 @@ struct MembraneStep {
     substeps: u32,
     // kg m/s.
     impulse_unit: f32,
-    pad: u32,
+    // Steps of gas that have velocities of held nodes of their own; the last of them is that of all later ones.
+    prescribed_steps: u32,
 }
 
 // Which step of the gas in its interval, and which of the fabric in that.

@@ -43,7 +43,6 @@ impl ClosedSurface {
     }
 
     /// What of the line along x through (y, z) it encloses, from and to, m.
-    #[cfg(test)]
     pub fn within(&self, y: f64, z: f64) -> Vec<(f64, f64)> {
         let mut crossings = Vec::new();
         self.lines.cross(y, z, |crossing| crossings.push(crossing.x));

@@ -381,9 +381,8 @@ impl Account {
             enthalpy_injected: entered.energy - before.energy,
             enthalpy_vented,
             work_by_walls: (!model.moving.is_empty() || !model.fabric.is_empty()).then(|| averages.total_work()),
-            // (All that moves in a scene with fabric is fabric.)
             fabric: fabric.map(|account| FabricAccount {
-                from_gas: -averages.total_work(),
+                from_gas: -averages.total_work_of_fabric(),
                 ledger: account.ledger + averages.total_recoil(),
                 ..account
             }),

@@ -392,7 +392,13 @@ impl Averages {
         of_recoil.map_or(0.0, |work| work[1] as f64 * self.energy_unit())
     }
 
-    /// All the work that walls have done on the gas since the start, J.
+    /// The work that fabric has done on the gas since the start, J.
+    pub fn total_work_of_fabric(&self) -> f64 {
+        let own = &self.works[self.layout.motions..];
+        -(own.iter().map(|work| work[1]).sum::<i128>() as f64) * self.energy_unit() + 0.0
+    }
+
+    /// All the work that walls and fabric have done on the gas since the start, J.
     pub fn total_work(&self) -> f64 {
         -(self.works.iter().map(|work| work[1]).sum::<i128>() as f64) * self.energy_unit() + 0.0
     }

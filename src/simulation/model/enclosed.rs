@@ -25,14 +25,19 @@ pub fn in_bags(scene: &Scene, vessel: &Vessel, fabric: &Surfaces, orifices: &[bo
     }
     let bags = || vessel.bags.iter().enumerate().filter_map(|(index, bag)| Some((index, bag.as_ref()?)));
     let room = vessel.gas_volume();
-    let inflated =
-        fabric.is_elastic().then(|| bags().map(|(index, bag)| inflated(fabric, index, bag)).sum::<f64>().min(room));
-    Measured { gas_volume: bags().map(|(_, bag)| bag.volume).sum(), open_to_empty: false, inflated, ..measured }
+    let gas: f64 = bags().map(|(_, bag)| vessel.gas_volume_inside(bag)).sum();
+    let solids = bags().map(|(_, bag)| bag.volume).sum::<f64>() - gas;
+    let inflated = || bags().map(|(index, bag)| inflated(fabric, index, bag)).sum::<f64>() - solids;
+    let inflated = fabric.is_elastic().then(|| inflated().min(room));
+    Measured { gas_volume: gas, open_to_empty: false, inflated, ..measured }
 }
 
 /// m3, what a bag can hold; at least what it does.
 fn inflated(fabric: &Surfaces, index: usize, bag: &Bag) -> f64 {
     let Some(membranes) = &fabric.membranes else { return bag.volume };
+    if !fabric.all[index].elastic {
+        return fabric.moments.iter().map(|&time| fabric.measures(time)[index][0]).fold(bag.volume, f64::max);
+    }
     let area = area_of(membranes, fabric.parts(index).0);
     bag.volume.max(INFLATED * area * radius_of(area) / 3.0)
 }

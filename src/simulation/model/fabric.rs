@@ -39,6 +39,8 @@ pub struct Surface {
     pub triangles: Range<usize>,
     /// It encloses a space; its triangles are counter-clockwise seen from outside.
     pub closed: bool,
+    /// The gas moves it.
+    pub elastic: bool,
     /// The part of the mesh that each of its triangles is of, by its place among the names.
     pub parts: Vec<Option<u32>>,
     pub names: Vec<String>,
@@ -87,14 +89,17 @@ impl Surfaces {
         moments.dedup();
         let mut longest_edge: f64 = 0.0;
         let mut swept = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; all.len()];
-        for &moment in &moments {
+        for (k, &moment) in moments.iter().enumerate() {
             let nodes: Vec<DVec3> = (course.places)(moment).into_iter().map(DVec3::from).collect();
             let edge = |[a, b]: [u32; 2]| nodes[a as usize].distance(nodes[b as usize]);
-            let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(edge);
-            longest_edge = edges.fold(longest_edge, f64::max);
-            for (swept, surface) in swept.iter_mut().zip(&all) {
-                let corners = triangles[surface.triangles.clone()].iter().flatten().map(|&node| nodes[node as usize]);
+            // (Of elastic ones but the start is known.)
+            for (swept, surface) in swept.iter_mut().zip(&all).filter(|(_, surface)| k == 0 || !surface.elastic) {
+                let own = &triangles[surface.triangles.clone()];
+                let corners = own.iter().flatten().map(|&node| nodes[node as usize]);
                 *swept = corners.fold(*swept, |[low, high], corner| [low.min(corner), high.max(corner)]);
+                let edges = own.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(edge);
+                let stretch = if surface.elastic { STRETCHED } else { 1.0 };
+                longest_edge = edges.fold(longest_edge, |longest, edge| longest.max(stretch * edge));
             }
         }
         Surfaces {
@@ -112,12 +117,7 @@ impl Surfaces {
         }
     }
 
-    /// The same, moved by forces from where they are at the start.
-    #[must_use]
-    fn elastic(self, membranes: Membranes) -> Surfaces {
-        Surfaces { membranes: Some(membranes), longest_edge: STRETCHED * self.longest_edge, ..self }
-    }
-
+    /// Whether forces move some.
     pub fn is_elastic(&self) -> bool {
         self.membranes.is_some()
     }
@@ -146,11 +146,6 @@ impl Surfaces {
         for fabric in &scene.fabrics {
             let read = read(fabric, scene.units)?;
             if is_elastic {
-                let moved = fabric.motion.is_some().then_some("motion").or(fabric.turn.is_some().then_some("turn"));
-                if let Some(key) = moved {
-                    let problem = format!("it has a `{key}`, and another has a `material`: a scene has either");
-                    return Err(ModelError::Fabric { fabric: fabric.name.clone(), problem });
-                }
                 membranes.add(fabric, &read.mesh)?;
             }
             notes.extend(read.notes);
@@ -161,6 +156,7 @@ impl Surfaces {
                 name: fabric.name.clone(),
                 triangles: first..triangles.len(),
                 closed: read.mesh.is_closed(),
+                elastic: fabric.membrane.is_some(),
                 parts: read.mesh.parts,
                 names: read.mesh.names,
             });
@@ -177,13 +173,17 @@ impl Surfaces {
             notes.extend(membranes.bodies.notes());
         }
         let course = Course { places: Arc::new(places), bends, fastest };
-        let mut surfaces = Surfaces { notes, ..Surfaces::new(all, triangles, course, scene.end_time) };
-        surfaces.turns = arcs.iter().map(Option::is_some).collect();
-        for (swept, arcs) in surfaces.swept.iter_mut().zip(arcs) {
+        let mut surfaces = Surfaces {
+            notes,
+            membranes: is_elastic.then_some(membranes),
+            ..Surfaces::new(all, triangles, course, scene.end_time)
+        };
+        for (index, arcs) in arcs.into_iter().enumerate().filter(|(index, _)| !surfaces.all[*index].elastic) {
             // (Moments know but places on them.)
-            *swept = arcs.unwrap_or(*swept);
+            surfaces.turns[index] = arcs.is_some();
+            surfaces.swept[index] = arcs.unwrap_or(surfaces.swept[index]);
         }
-        Ok(if is_elastic { surfaces.elastic(membranes) } else { surfaces })
+        Ok(surfaces)
     }
 
     pub fn is_empty(&self) -> bool {
@@ -211,7 +211,7 @@ impl Surfaces {
 
     /// The corners of what one of them sweeps in the run, m; without end of an elastic one.
     pub fn swept(&self, index: usize) -> ([f64; 3], [f64; 3]) {
-        if self.is_elastic() {
+        if self.all[index].elastic {
             return ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
         }
         (self.swept[index][0].to_array(), self.swept[index][1].to_array())
@@ -229,10 +229,13 @@ impl Surfaces {
         (0..self.all.len()).find(is_over)
     }
 
-    /// Points whose convex hull holds all that a surface is at in the run, m.
+    /// Points whose convex hull holds all that a surface is at in the run, of an elastic one at the start, m.
     pub fn hull(&self, index: usize) -> Vec<DVec3> {
         let [low, high] = self.swept[index];
         let (_, nodes) = self.parts(index);
+        if self.all[index].elastic {
+            return self.places(0.0)[nodes].iter().copied().map(DVec3::from).collect();
+        }
         // (Moments know but places on arcs.)
         if self.turns[index] || nodes.len() * self.moments.len() > MOST_POINTS {
             let corner = |k: u32| std::array::from_fn(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
@@ -274,6 +277,23 @@ impl Surfaces {
             mistaken(&mut fabric);
         }
         fabric
+    }
+
+    /// Of the nodes of elastic fabric that follow a course, in each of the steps of an interval, m/s; without such, nothing.
+    pub fn led_velocities(&self, start: f64, dt: f64, steps: u32) -> Vec<[f64; 3]> {
+        if !self.membranes.as_ref().is_some_and(Membranes::is_led) {
+            return Vec::new();
+        }
+        let mut all = Vec::with_capacity(steps as usize * self.triangles.len());
+        let mut before = self.places(start);
+        for k in 1..=steps {
+            let after = self.places(start + f64::from(k) * dt);
+            let velocity =
+                |(from, to): (&[f64; 3], &[f64; 3])| std::array::from_fn(|axis| (to[axis] - from[axis]) / dt);
+            all.extend(before.iter().zip(&after).map(velocity));
+            before = after;
+        }
+        all
     }
 
     /// Where the nodes are at the start of each of the steps of an interval and at the end of the last, quanta.

@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use super::moving::Moving;
 use crate::fabric::{MOST_OBSTACLES, Obstacle};
 use crate::geometry::Vessel;
 use crate::scene::{GasSide, Scene, Shape, Wall};
@@ -12,10 +13,11 @@ use crate::scene::{GasSide, Scene, Shape, Wall};
 /// Faces of bodies, at most.
 const MOST_FACES: usize = MOST_OBSTACLES as usize;
 
-/// Bodies by their faces, and the names of walls that are none.
+/// Bodies by their faces at the start, each with the wall that it is of, and the names of walls that are none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bodies {
     pub faces: Vec<Vec<Obstacle>>,
+    pub walls: Vec<usize>,
     pub passed: Vec<String>,
 }
 
@@ -27,11 +29,31 @@ impl Bodies {
             let found = bodies_of(wall, (vessel, index), 0.5 * thickness, nodes);
             let room = MOST_FACES - bodies.faces.iter().map(Vec::len).sum::<usize>();
             match found {
-                Some(found) if found.iter().map(Vec::len).sum::<usize>() <= room => bodies.faces.extend(found),
+                Some(found) if found.iter().map(Vec::len).sum::<usize>() <= room => {
+                    bodies.walls.extend(vec![index; found.len()]);
+                    bodies.faces.extend(found);
+                }
                 _ => bodies.passed.push(wall.name.clone()),
             }
         }
         bodies
+    }
+
+    /// The same from a time on, s, with the velocities that take those that move to where they are at another.
+    pub fn between(&self, moving: &Moving, [from, to]: [f64; 2]) -> Vec<Vec<Obstacle>> {
+        let at = |(faces, &wall): (&Vec<Obstacle>, &usize)| {
+            let Some((here, there)) = moving.shift_of(wall, from).zip(moving.shift_of(wall, to)) else {
+                return faces.clone();
+            };
+            let (here, there) = (DVec3::from(here), DVec3::from(there));
+            let velocity = ((there - here) / (to - from)).to_array();
+            let moved = |face: &Obstacle| {
+                let place = (DVec3::from(face.place) + here).to_array();
+                Obstacle { place, velocity, ..*face }
+            };
+            faces.iter().map(moved).collect()
+        };
+        self.faces.iter().zip(&self.walls).map(at).collect()
     }
 
     /// What to know of those that do not stop it.

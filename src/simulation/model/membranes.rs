@@ -38,14 +38,20 @@ pub struct Membranes {
     pub bodies: Bodies,
 }
 
-/// Of surfaces at rest beside elastic ones: their nodes are held, and whatever they are of has no stress.
-const AT_REST: Material =
+/// What surfaces are of that are not elastic, beside elastic ones: all of their nodes are held, so that no number of it counts, and it is so thin
+/// that it has next to no energy.
+const NO_MATERIAL: Material =
     Material { elasticity: Elasticity::Isotropic { young: 1.0, poisson: 0.0 }, density: 1.0, damping: 0.0 };
-const THICKNESS_AT_REST: f64 = 1e-3;
+const NO_THICKNESS: f64 = 1e-12;
 
 impl Membranes {
     pub fn new() -> Membranes {
         Membranes { longest_step: f64::INFINITY, lightest_node: f64::INFINITY, ..Membranes::default() }
+    }
+
+    /// Whether some nodes follow a course.
+    pub fn is_led(&self) -> bool {
+        self.holds.iter().any(|hold| matches!(hold, Hold::Prescribed(_)))
     }
 
     /// Adds a surface; its mesh is in m.
@@ -56,12 +62,12 @@ impl Membranes {
         let refused = |problem: String| ModelError::Fabric { fabric: fabric.name.clone(), problem };
         let material = self.materials.len();
         let Some(membrane) = &fabric.membrane else {
-            self.materials.push(AT_REST);
+            self.materials.push(NO_MATERIAL);
             let corners = |triangle: &[u32; 3]| triangle.map(|node| mesh.nodes[node as usize]);
-            let element = |triangle| Element::of_places(corners(triangle), THICKNESS_AT_REST, material);
+            let element = |triangle| Element::of_places(corners(triangle), NO_THICKNESS, material);
             self.elements.extend(mesh.triangles.iter().map(element));
             self.relaxations.push(Relaxation::NONE);
-            self.holds.extend(vec![Hold::Fixed; mesh.nodes.len()]);
+            self.holds.extend(vec![held(fabric); mesh.nodes.len()]);
             self.added_masses.extend(vec![0.0; mesh.nodes.len()]);
             self.frictions.extend(vec![0.0; mesh.nodes.len()]);
             self.inverse_masses.extend(vec![0.0; mesh.nodes.len()]);
@@ -85,10 +91,10 @@ impl Membranes {
         // (A small reference is stiff.)
         let shortest = membrane.reference_scale.min(1.0);
         self.longest_step = self.longest_step.min(CAREFUL * shortest * longest_step(&own, &self.materials));
-        let holds = holds(&membrane.fixed, mesh);
-        if holds.iter().all(|hold| *hold == Hold::Fixed) {
+        let holds = holds(&membrane.fixed, mesh, held(fabric));
+        if !holds.contains(&Hold::Free) {
             return Err(refused(
-                "all of its nodes are `fixed`, so that nothing moves: without a `material` it rests".into(),
+                "all of its nodes are `fixed`, so that the gas moves none: leave out its `material`".into(),
             ));
         }
         self.thickest = self.thickest.max(of.thickness);
@@ -167,7 +173,12 @@ fn reference(path: &std::path::Path, scale: f64, mesh: &TriangleMesh) -> Result<
     Ok(read.nodes)
 }
 
-fn holds(fixed: &Fixed, mesh: &TriangleMesh) -> Vec<Hold> {
+/// How nodes of a fabric are held that are.
+fn held(fabric: &scene::Fabric) -> Hold {
+    if fabric.motion.is_some() || fabric.turn.is_some() { Hold::Prescribed([0.0; 3]) } else { Hold::Fixed }
+}
+
+fn holds(fixed: &Fixed, mesh: &TriangleMesh, held: Hold) -> Vec<Hold> {
     let mut holds = vec![Hold::Free; mesh.nodes.len()];
     match fixed {
         Fixed::Nothing => {}
@@ -179,12 +190,12 @@ fn holds(fixed: &Fixed, mesh: &TriangleMesh) -> Vec<Hold> {
                 }
             }
             let open = edges.into_iter().filter(|(_, triangles)| *triangles == 1);
-            open.flat_map(|(edge, _)| edge).for_each(|node| holds[node as usize] = Hold::Fixed);
+            open.flat_map(|(edge, _)| edge).for_each(|node| holds[node as usize] = held);
         }
         Fixed::Within(regions) => {
             for (hold, &place) in holds.iter_mut().zip(&mesh.nodes) {
                 if regions.iter().any(|region| region_contains(region, place)) {
-                    *hold = Hold::Fixed;
+                    *hold = held;
                 }
             }
         }

@@ -44,6 +44,8 @@ struct Body {
     high: [f64; 3],
     /// The least and the largest displacement of the run, m.
     range: [f64; 2],
+    /// In a scene with closed fabric: the chamber that it is in at the start, whose room it takes.
+    home: Option<usize>,
 }
 
 impl Body {
@@ -91,7 +93,7 @@ impl Moving {
             end_time: scene.end_time,
         };
         moving.refuse_swept_places(scene, vessel)?;
-        let initial = moving.volumes_at(scene, vessel, &vec![0.0; moving.bodies.len()])?;
+        let initial = moving.volumes_at(scene, vessel, (0, 0.0))?;
         for index in 0..moving.bodies.len() {
             let swept = moving.measure(scene, vessel, index, &initial)?;
             moving.swept.push(swept);
@@ -110,6 +112,11 @@ impl Moving {
         }
         self.bounds = Some(fabric.bounds(self.bounds(vessel)));
         self.end_time = scene.end_time;
+        // (What elastic fabric encloses, a run measures.)
+        if fabric.is_elastic() {
+            self.deformed.1 = fabric.fastest();
+            return Ok(());
+        }
         if fabric.moments.len() < 2 {
             return Ok(());
         }
@@ -154,6 +161,12 @@ impl Moving {
         self.bodies.iter().position(|body| body.motion.wall == wall)
     }
 
+    /// The vector by which a wall has moved at a time, s, in m; none of one at rest.
+    pub fn shift_of(&self, wall: usize, time: f64) -> Option<[f64; 3]> {
+        let body = &self.bodies[self.motion_of(wall)?];
+        Some(body.shift(displacement(&body.motion.course, time)))
+    }
+
     /// How far each wall has moved, m, and how fast it moves, m/s.
     pub fn courses(&self, time: f64) -> Vec<[f64; 2]> {
         let course = |body: &Body| [displacement(&body.motion.course, time), velocity(&body.motion.course, time)];
@@ -193,20 +206,29 @@ impl Moving {
         chambers
     }
 
-    /// Of the chambers, then the probes, m3.
-    fn volumes_at(&self, scene: &Scene, vessel: &Vessel, moved: &[f64]) -> Result<Vec<f64>, ModelError> {
-        let vessel = self.vessel_moved(vessel, moved).measured()?;
-        let mut volumes = vessel.chamber_volumes(&self.chambers_moved(scene, moved));
-        volumes.extend(scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region)));
+    /// Of the chambers, then the probes, with one body displaced, m3.
+    fn volumes_at(&self, scene: &Scene, vessel: &Vessel, (body, place): (usize, f64)) -> Result<Vec<f64>, ModelError> {
+        let mut moved = vec![0.0; self.bodies.len()];
+        moved[body] = place;
+        let there = self.vessel_moved(vessel, &moved).measured()?;
+        let mut volumes = if vessel.bags.is_empty() {
+            there.chamber_volumes(&self.chambers_moved(scene, &moved))
+        } else {
+            // (The bags are those of the start, and may have made way.)
+            let mut volumes = vessel.chamber_volumes(&scene.chambers);
+            if let Some(home) = self.bodies[body].home {
+                volumes[home] += there.gas_volume() - vessel.gas_volume();
+            }
+            volumes
+        };
+        volumes.extend(scene.probes.iter().map(|probe| there.gas_volume_in(&probe.region)));
         Ok(volumes)
     }
 
     fn measure(&self, scene: &Scene, vessel: &Vessel, index: usize, initial: &[f64]) -> Result<Swept, ModelError> {
         let body = &self.bodies[index];
         let at = |place: f64| -> Result<(f64, Vec<f64>), ModelError> {
-            let mut moved = vec![0.0; self.bodies.len()];
-            moved[index] = place;
-            let volumes = self.volumes_at(scene, vessel, &moved)?;
+            let volumes = self.volumes_at(scene, vessel, (index, place))?;
             Ok((place, volumes.iter().zip(initial).map(|(own, initial)| own - initial).collect()))
         };
         let all: f64 = initial.iter().sum();
@@ -300,7 +322,7 @@ impl Moving {
 
     /// What the plan must know of it; `initial` are the volumes of the chambers, m3.
     pub fn measured(&self, initial: &[f64]) -> Option<MeasuredMotion> {
-        if !self.changes_volumes() {
+        if !self.changes_volumes() && self.deformed.1 == 0.0 {
             return None;
         }
         let all = |time: f64| self.volumes(initial, time).iter().sum::<f64>();
@@ -395,7 +417,28 @@ fn body(scene: &Scene, vessel: &Vessel, motion: &Motion) -> Result<Body, ModelEr
     let inside = turns(&motion.course).into_iter().filter(|&time| time > 0.0 && time < scene.end_time);
     let places = inside.chain([0.0, scene.end_time]).map(|time| displacement(&motion.course, time));
     let range = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-    Ok(Body { motion: motion.clone(), name, low, high, range })
+    Ok(Body { motion: motion.clone(), home: home(scene, vessel, motion.wall)?, name, low, high, range })
+}
+
+/// The chamber that a wall is in at the start, of a scene with closed fabric.
+fn home(scene: &Scene, vessel: &Vessel, wall: usize) -> Result<Option<usize>, ModelError> {
+    let own = || vessel.triangles.iter().filter(|triangle| triangle.wall as usize == wall).flat_map(|t| t.vertices);
+    let chamber_inside = |bag: usize| scene.chambers.iter().position(|chamber| chamber.inside == Some(bag));
+    let rest = scene.chambers.iter().position(|chamber| chamber.inside.is_none());
+    for (index, bag) in vessel.bags.iter().enumerate().filter_map(|(index, bag)| Some((index, bag.as_ref()?))) {
+        let inside = own().filter(|&corner| bag.contains(vessel.vertices[corner as usize])).count();
+        if inside == own().count() {
+            return Ok(chamber_inside(index).or(rest));
+        }
+        if inside > 0 {
+            let problem = format!(
+                "wall \"{}\" moves and is on both of its sides at the start: what room it takes from the gas of which is not known",
+                scene.walls[wall].name
+            );
+            return Err(ModelError::Fabric { fabric: scene.fabrics[index].name.clone(), problem });
+        }
+    }
+    Ok(rest)
 }
 
 /// The corners of some triangles, m.

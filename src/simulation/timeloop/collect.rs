@@ -98,8 +98,10 @@ impl Simulation<'_> {
         if let (Some(elastic), Some(FabricInFlight { after, .. })) = (&mut self.fabric, fabric) {
             let grown = elastic.read(self.device, after, &interval)?;
             let gained = Surfaces::gained(&self.model.scene, &grown);
-            let initial = self.books.averages.initial_volumes();
-            interval.volumes = initial.iter().zip(gained).map(|(initial, gained)| initial + gained).collect();
+            // (Walls that move have been counted.)
+            let moved = std::mem::take(&mut interval.volumes);
+            let beside = if moved.is_empty() { self.books.averages.initial_volumes() } else { &moved };
+            interval.volumes = beside.iter().zip(gained).map(|(beside, gained)| beside + gained).collect();
         }
         self.progress.read_until += interval.dt * f64::from(interval.steps);
         let timed = self.submissions.timer.as_ref().map(|timer| timer.seconds(&phases, &stamps)).unwrap_or_default();

@@ -126,6 +126,15 @@ impl<'a> ElasticFabric<'a> {
         let substeps = substeps(dt, self.membranes.longest_step);
         self.membrane.divide_step(device, dt, substeps);
         self.membrane.relax(device, &self.membranes.relaxations, interval.start);
+        if !self.model.moving.is_empty() {
+            let end = interval.start + dt * f64::from(interval.steps);
+            let bodies = self.membranes.bodies.between(&self.model.moving, [interval.start, end]);
+            self.membrane.set_bodies(device, &bodies)?;
+        }
+        let led = self.model.fabric.led_velocities(interval.start, dt, interval.steps);
+        if !led.is_empty() {
+            self.membrane.prescribe(device, &led)?;
+        }
         Ok(SavedFabric { state: self.membrane.save(device, rec.encoder())?, substeps })
     }
 
@@ -225,21 +234,22 @@ impl<'a> ElasticFabric<'a> {
         let host = self.half_a_step_before();
         let of = |surface: usize| {
             let (triangles, nodes) = self.model.fabric.parts(surface);
+            if !self.model.fabric.all[surface].elastic {
+                return FabricEnergies::default();
+            }
             let own = Energies::of_part(&host, &self.state, triangles, nodes);
             FabricEnergies { kinetic: own.kinetic, strain: own.strain, damped: own.damped }
         };
         (0..self.initial_volumes.len()).map(of).collect()
     }
 
-    /// Of nodes and triangles, at the end of the last interval read; those of fabric at rest have none.
+    /// Of nodes and triangles, at the end of the last interval read; those of no membrane have no strain.
     pub fn fields(&self) -> MembraneFields {
         let membrane = &*host_model(self.membranes, &self.membrane, self.time);
         let places = self.state.iter().map(|node| place(node, membrane)).collect::<Vec<_>>();
-        let elastic = self.model.scene.fabrics.iter().map(|fabric| fabric.membrane.is_some());
-        let surfaces = self.model.fabric.all.iter().zip(elastic);
-        let of_triangles = surfaces.flat_map(|(surface, elastic)| {
+        let of_triangles = self.model.fabric.all.iter().flat_map(|surface| {
             let own = membrane.triangles[surface.triangles.clone()].iter();
-            own.map(move |triangle| (triangle, elastic))
+            own.map(move |triangle| (triangle, surface.elastic))
         });
         let field = |(triangle, elastic): (&Triangle, bool)| {
             let corners = triangle.nodes.map(|node| places[node as usize]);
