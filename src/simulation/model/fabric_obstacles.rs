@@ -5,7 +5,6 @@
 
 use glam::DVec3;
 
-use super::moving::Moving;
 use crate::fabric::{MOST_OBSTACLES, Obstacle};
 use crate::geometry::Vessel;
 use crate::scene::{GasSide, Scene, Shape, Wall};
@@ -39,10 +38,15 @@ impl Bodies {
         bodies
     }
 
-    /// The same from a time on, s, with the velocities that take those that move to where they are at another.
-    pub fn between(&self, moving: &Moving, [from, to]: [f64; 2]) -> Vec<Vec<Obstacle>> {
+    /// The same from a time on, s, with the velocities that take those that move to where they are at another; `shift_of` is by how much a wall
+    /// has moved at a time, m, of one that does.
+    pub fn between(
+        &self,
+        shift_of: impl Fn(usize, f64) -> Option<[f64; 3]>,
+        [from, to]: [f64; 2],
+    ) -> Vec<Vec<Obstacle>> {
         let at = |(faces, &wall): (&Vec<Obstacle>, &usize)| {
-            let Some((here, there)) = moving.shift_of(wall, from).zip(moving.shift_of(wall, to)) else {
+            let Some((here, there)) = shift_of(wall, from).zip(shift_of(wall, to)) else {
                 return faces.clone();
             };
             let (here, there) = (DVec3::from(here), DVec3::from(there));

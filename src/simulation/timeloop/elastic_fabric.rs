@@ -128,7 +128,8 @@ impl<'a> ElasticFabric<'a> {
         self.membrane.relax(device, &self.membranes.relaxations, interval.start);
         if !self.model.moving.is_empty() {
             let end = interval.start + dt * f64::from(interval.steps);
-            let bodies = self.membranes.bodies.between(&self.model.moving, [interval.start, end]);
+            let shift_of = |wall, time| self.model.moving.shift_of(wall, time);
+            let bodies = self.membranes.bodies.between(shift_of, [interval.start, end]);
             self.membrane.set_bodies(device, &bodies)?;
         }
         let led = self.model.fabric.led_velocities(interval.start, dt, interval.steps);
