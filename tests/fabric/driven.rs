@@ -12,6 +12,8 @@ use crate::sheets::sheet;
 use crate::whole_run::{Run, model_in, run};
 
 const THICKNESS: f64 = 6e-4;
+/// By which a frame turns.
+const ANGLE: f64 = 0.3;
 
 fn material() -> String {
     format!("[fabric.material]\nthickness = {THICKNESS:e}\ndensity = 800.0\nyoung = 1e7\npoisson = 0.3\n")
@@ -40,24 +42,23 @@ fn held_nodes_follow_their_course() {
     let mesh = sheet(0.05, [0.02, 0.08], 8);
     let mut taut = mesh.clone();
     taut.nodes.iter_mut().for_each(|place| *place = place.map(|x| 0.05 + 0.9 * (x - 0.05)));
-    let (end, angle) = (2e-3, 0.3);
+    let end = 2e-3;
     let way = |time: f64| 5e-3 * eased(time / end);
     let times: Vec<f64> = (0..=200).map(|k| end * f64::from(k) / 200.0).collect();
     let frames = times.iter().map(|&t| mesh.nodes.iter().map(|&[x, y, z]| [x + way(t), y, z]).collect()).collect();
     let frames = NodeFrames::new(times, frames, mesh.triangles.clone()).expect("frames");
     let turn = format!(
-        "[fabric.turn]\naxis = [0, 0, 1]\ncenter = [0.05, 0.05, 0.0]\nangle = [[0.0, 0.0], [{:e}, {angle}]]\n",
+        "[fabric.turn]\naxis = [0, 0, 1]\ncenter = [0.05, 0.05, 0.0]\nangle = [[0.0, 0.0], [{:e}, {ANGLE}]]\n",
         0.5 * end
     );
-    let (sine, cosine) = f64::sin_cos(angle);
     let by_turn = |[x, y, z]: [f64; 3]| {
+        let (sine, cosine) = f64::sin_cos(ANGLE);
         let [x, y] = [x - 0.05, y - 0.05];
         [0.05 + cosine * x - sine * y, 0.05 + sine * x + cosine * y, z]
     };
     let by_file = |[x, y, z]: [f64; 3]| [x + 5e-3, y, z];
-    let courses: [(_, String, &dyn Fn([f64; 3]) -> [f64; 3]); 2] =
-        [(Some(frames), String::new(), &by_file), (None, turn, &by_turn)];
-    for (frames, turn, expected) in courses {
+    for (frames, turn) in [(Some(frames), String::new()), (None, turn)] {
+        let expected: fn([f64; 3]) -> [f64; 3] = if frames.is_some() { by_file } else { by_turn };
         let scene = Scene {
             particles: 200,
             end,
