@@ -35,14 +35,10 @@ pub(super) fn lines(raw: &RawScene, text: &str) -> Lines {
     }
     raw.fabric.iter().for_each(|at| add("fabric", &at.value.name, &at.span));
     raw.motion.iter().for_each(|at| add("motion of wall", &at.value.wall, &at.span));
-    for wall in &raw.wall {
-        let part = |part: &At<_>| line(&part.span);
-        entries.extend(
-            wall.value
-                .part
-                .iter()
-                .map(|at| (format!("wall `{}/{}`", wall.value.name.value, at.value.face.value), part(at))),
-        );
+    let of_walls = raw.wall.iter().map(|wall| ("wall", &wall.value.name.value, &wall.value.part));
+    let of_fabrics = raw.fabric.iter().map(|fabric| ("fabric", &fabric.value.name.value, &fabric.value.part));
+    for (kind, name, parts) in of_walls.chain(of_fabrics) {
+        entries.extend(parts.iter().map(|at| (format!("{kind} `{name}/{}`", at.value.face.value), line(&at.span))));
     }
     // Behind the entries of the vents: sentences about one begin as theirs do.
     let absolute = raw.vent.iter().filter_map(|vent| Some((vent, vent.value.opening_pressure_absolute.as_ref()?)));

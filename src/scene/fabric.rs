@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::course::Course;
+use super::face::Face;
 use super::region::Region;
-use super::surface_model::SurfaceModel;
+use super::surface_model::{SurfaceModel, SurfacePart};
 
 /// A surface that deforms. Its files are in absolute paths; metres = file units x `scale`.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +20,10 @@ pub struct Fabric {
     pub turn: Option<Turn>,
     /// The gas moves it.
     pub membrane: Option<Membrane>,
-    /// What both of its sides do to the gas that hits them.
+    /// What both of its sides do to the gas that hits them, but those of its `surface_parts`.
     pub surface: SurfaceModel,
+    /// Each part of its mesh at most once.
+    pub surface_parts: Vec<SurfacePart>,
     /// The names of those of its mesh's parts that the scene names: `Face::Part` counts in it.
     pub parts: Vec<String>,
     /// Pa, the same everywhere outside of closed fabric, where no gas is then.
@@ -101,6 +104,11 @@ pub enum Fixed {
 }
 
 impl Fabric {
+    /// As scenes write a part of its mesh.
+    pub fn face_name(&self, face: Face) -> String {
+        face.name(&self.parts)
+    }
+
     /// The files that a run keeps copies of: its mesh, the file of its motion, its reference. (Of a series of files no copy is kept: what
     /// it names would not be with it.)
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {

@@ -49,6 +49,7 @@ pub(super) fn fabric(
             None => no_membrane(fabric)?,
         },
         surface: wall_surface::of_fabric(fabric, units)?,
+        surface_parts: wall_surface::of_parts_of_fabric(fabric, index, parts, units)?,
         parts: parts.of_fabric(index),
         external_pressure: fabric
             .external_pressure

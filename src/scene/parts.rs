@@ -1,4 +1,4 @@
-//! Named parts of walls, the key `face`: faces of primitives, and what mesh files name.
+//! Named parts of walls and fabrics, the key `face`: faces of primitives, and what mesh files name.
 //!
 //! What parts a mesh has is known once its file is read, which is not this layer's: here each name that the scene uses of
 //! it gets a number, in the order of the file.
@@ -37,13 +37,19 @@ impl<'a> Parts<'a> {
             raw.value.part.iter().for_each(|part| add(wall, &part.value.face));
         }
         let mut used_of_fabrics: Vec<Vec<String>> = vec![Vec::new(); raw.fabric.len()];
+        let mut add = |fabric: usize, face: &At<String>| {
+            if !used_of_fabrics[fabric].contains(&face.value) {
+                used_of_fabrics[fabric].push(face.value.clone());
+            }
+        };
         for vent in raw.vent.iter().map(|at| &at.value) {
             let index = vent.fabric.as_ref().and_then(|name| fabrics.find(name).ok());
-            if let (Some(own), Some(face)) = (index.map(|index| &mut used_of_fabrics[index]), &vent.face)
-                && !own.contains(&face.value)
-            {
-                own.push(face.value.clone());
+            if let (Some(index), Some(face)) = (index, &vent.face) {
+                add(index, face);
             }
+        }
+        for (fabric, raw) in raw.fabric.iter().enumerate() {
+            raw.value.part.iter().for_each(|part| add(fabric, &part.value.face));
         }
         Parts { walls: &raw.wall, used, used_of_fabrics }
     }

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::raw_fabric::RawFabric;
+use super::raw_part::RawPart;
 use super::raw_region::RawRegion;
 use super::raw_values::{At, NumberOr, Numbers, RawMixture};
 use super::types::Method;
@@ -152,24 +153,7 @@ pub struct RawWall {
     pub hole: Vec<At<RawHole>>,
     /// Parts whose surface differs from the rest of the wall.
     #[serde(default)]
-    pub part: Vec<At<RawWallPart>>,
-}
-
-/// A named part of a wall with a surface of its own; keys that are not given are those of the wall.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawWallPart {
-    /// The part: a face of a shape, a group of an OBJ file or a solid of an STL file; each at most once.
-    pub face: At<String>,
-    /// Temperature of the part, K.
-    pub temperature: Option<At<f64>>,
-    /// Share of the hits that leave diffusely with the part's temperature, 0 to 1.
-    pub accommodation: Option<At<f64>>,
-    /// Heat-transfer coefficient (SI: W/(m2 K)), instead of `accommodation`.
-    pub heat_transfer: Option<At<f64>>,
-    /// Share of the hits that leave in a random direction with the speed they had, 0 to 1, of those that do not take the
-    /// part's temperature.
-    pub friction: Option<At<f64>>,
+    pub part: Vec<At<RawPart>>,
 }
 
 /// The kind of a wall's surface.

@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
+use super::raw_part::RawPart;
 use super::raw_region::RawRegion;
 use super::raw_values::{At, NumberOr, Numbers};
 
@@ -52,6 +53,9 @@ pub struct RawFabric {
     pub friction: Option<At<f64>>,
     /// Of closed fabric: the uniform pressure outside, where no gas is then (SI: Pa).
     pub external_pressure: Option<At<f64>>,
+    /// Parts of the mesh whose surface differs from the rest of the fabric.
+    #[serde(default)]
+    pub part: Vec<At<RawPart>>,
 }
 
 /// A turn about an axis, counter-clockwise seen from where the axis points to.

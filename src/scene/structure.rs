@@ -36,7 +36,7 @@ pub(super) fn read(text: &str) -> Result<RawScene, Problem> {
 }
 
 /// The lists of tables of the format.
-const LISTS: [&str; 12] = [
+const LISTS: [&str; 13] = [
     "gas",
     "wall",
     "chamber",
@@ -49,6 +49,7 @@ const LISTS: [&str; 12] = [
     "fabric",
     "wall.hole",
     "wall.part",
+    "fabric.part",
 ];
 
 /// What was probably meant where the text stops being TOML.

@@ -1,4 +1,6 @@
-//! What walls do to the gas that hits them: each wall has a surface model, and named parts of it may have their own.
+//! What walls and fabric do to the gas that hits them: each has a surface model, and named parts of it may have their own.
+
+use super::face::Face;
 
 /// A surface that keeps its temperature and takes heat from the gas, or gives it (docs/explanation/method.md, "Walls").
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,11 +33,19 @@ impl SurfaceModel {
     }
 }
 
-/// What has one surface model: a wall's part, or what the parts leave of the wall; or a fabric.
+/// A named part of a wall or a fabric whose surface differs from the rest of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePart {
+    pub face: Face,
+    /// With the keys of the whole where the scene gives none.
+    pub surface: SurfaceModel,
+}
+
+/// What has one surface model: a part of a wall or a fabric, or what the parts leave of the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SurfaceId {
     /// Past the indices of all walls that of a fabric.
     pub wall: usize,
-    /// Index in the wall's `parts`.
+    /// Index in the wall's `parts`, or the fabric's `surface_parts`.
     pub part: Option<usize>,
 }

@@ -1,7 +1,7 @@
-//! The surfaces of a scene: of each wall its own, and those of its parts.
+//! The surfaces of a scene: of each wall and fabric its own, and those of its parts.
 
-use super::surface_model::{SurfaceId, SurfaceModel, WallHeat};
-use super::types::{Face, Scene, Wall};
+use super::surface_model::{SurfaceId, SurfaceModel, SurfacePart, WallHeat};
+use super::types::{Face, Scene};
 
 impl Scene {
     /// The fabric that an index past those of all walls stands for.
@@ -9,40 +9,41 @@ impl Scene {
         wall.checked_sub(self.walls.len()).filter(|&index| index < self.fabrics.len())
     }
 
-    /// All surfaces: each wall's own, then those of its parts; then the fabrics.
+    /// The surface model of a wall or a fabric, and those of its parts.
+    fn models_of(&self, wall: usize) -> (&SurfaceModel, &[SurfacePart]) {
+        match self.fabric_at(wall).map(|index| &self.fabrics[index]) {
+            Some(fabric) => (&fabric.surface, &fabric.surface_parts),
+            None => (&self.walls[wall].surface, &self.walls[wall].parts),
+        }
+    }
+
+    /// All surfaces: each wall's own, then those of its parts; then those of the fabrics in the same way.
     pub fn surface_ids(&self) -> impl Iterator<Item = SurfaceId> + '_ {
-        let of_wall = |(wall, own): (usize, &Wall)| {
-            let parts = (0..own.parts.len()).map(Some);
+        (0..self.walls.len() + self.fabrics.len()).flat_map(|wall| {
+            let parts = (0..self.models_of(wall).1.len()).map(Some);
             std::iter::once(None).chain(parts).map(move |part| SurfaceId { wall, part })
-        };
-        let of_fabric = |index: usize| SurfaceId { wall: self.walls.len() + index, part: None };
-        self.walls.iter().enumerate().flat_map(of_wall).chain((0..self.fabrics.len()).map(of_fabric))
+        })
     }
 
     pub fn surface_model(&self, id: SurfaceId) -> &SurfaceModel {
-        if let Some(index) = self.fabric_at(id.wall) {
-            return &self.fabrics[index].surface;
-        }
-        let wall = &self.walls[id.wall];
-        id.part.map_or(&wall.surface, |part| &wall.parts[part].surface)
+        let (whole, parts) = self.models_of(id.wall);
+        id.part.map_or(whole, |part| &parts[part].surface)
     }
 
-    /// What a triangle of a wall belongs to; `face` is the part of the wall that it is in.
+    /// What a triangle of a wall or a fabric belongs to; `face` is the part of it that the triangle is in.
     pub fn surface_of(&self, wall: usize, face: Option<Face>) -> SurfaceId {
-        let part = self.walls[wall].parts.iter().position(|part| face == Some(part.face));
+        let part = self.models_of(wall).1.iter().position(|part| face == Some(part.face));
         SurfaceId { wall, part }
     }
 
-    /// As reports and columns call it: the wall's name, of a part `wall/part`.
+    /// As reports and columns call it: the wall's or the fabric's name, of a part `wall/part`.
     pub fn surface_name(&self, id: SurfaceId) -> String {
-        if let Some(index) = self.fabric_at(id.wall) {
-            return self.fabrics[index].name.clone();
-        }
-        let wall = &self.walls[id.wall];
-        match id.part {
-            None => wall.name.clone(),
-            Some(part) => format!("{}/{}", wall.name, wall.parts[part].face.name(wall)),
-        }
+        let face = id.part.map(|part| self.models_of(id.wall).1[part].face);
+        let (whole, part) = match self.fabric_at(id.wall).map(|index| &self.fabrics[index]) {
+            Some(fabric) => (&fabric.name, face.map(|face| fabric.face_name(face))),
+            None => (&self.walls[id.wall].name, face.map(|face| self.walls[id.wall].face_name(face))),
+        };
+        part.map_or_else(|| whole.clone(), |part| format!("{whole}/{part}"))
     }
 
     /// As sentences begin that are about it.

@@ -1,6 +1,7 @@
 //! The scenes of the repository, the unit systems, defaults and the schema.
 
 mod any_scene;
+mod fabric_parts;
 mod membranes;
 mod wall_parts;
 

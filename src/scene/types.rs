@@ -5,12 +5,13 @@
 //! ordered in time, lengths, pressures, temperatures and masses are positive and finite.
 
 pub use super::course::{Course, Curve};
+pub use super::face::Face;
 use std::path::PathBuf;
 
 use super::fabric::Fabric;
 use super::lines::Lines;
 use super::region::Region;
-use super::surface_model::SurfaceModel;
+use super::surface_model::{SurfaceModel, SurfacePart};
 
 /// The universal gas constant, J/(mol K) (CODATA 2018, exact).
 pub const GAS_CONSTANT: f64 = 8.314462618;
@@ -90,14 +91,6 @@ impl Mixture {
     }
 }
 
-/// A named part of a wall whose surface differs from the rest of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WallPart {
-    pub face: Face,
-    /// With the wall's where the scene gives none.
-    pub surface: SurfaceModel,
-}
-
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
     pub name: String,
@@ -107,10 +100,18 @@ pub struct Wall {
     /// Of all that is in none of its `parts`.
     pub surface: SurfaceModel,
     /// Each face at most once.
-    pub parts: Vec<WallPart>,
+    pub parts: Vec<SurfacePart>,
 }
 
 impl Wall {
+    /// As scenes write a part of it.
+    pub fn face_name(&self, face: Face) -> String {
+        match &self.shape {
+            Shape::Mesh { parts, .. } => face.name(parts),
+            _ => face.name(&[]),
+        }
+    }
+
     /// Whether the wall is the surface of a convex space of gas: no line between two points of the gas
     /// crosses it.
     pub fn is_convex_cavity(&self) -> bool {
@@ -159,50 +160,6 @@ pub struct Hole {
     pub outline: Outline,
     /// A plan with a wish may model the hole as a vent and leave out what is outside of the box.
     pub flow_only: bool,
-}
-
-/// A named part of a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Face {
-    /// `axis` 0..3, and whether it is the face at the larger coordinate; of a hollow box that of its cavity.
-    Box {
-        axis: usize,
-        positive: bool,
-    },
-    /// What is around the shell of a hollow box.
-    Outside,
-    /// Where the holes of a plane are.
-    Plane,
-    /// The side of a plane that its normal points out of; the other one; what joins them, walls of holes included.
-    Front,
-    Back,
-    Rim,
-    /// The ends and the side of a cylinder.
-    Base,
-    Top,
-    Side,
-    /// A part of a mesh, by its place in the `parts` of the shape.
-    Part(u32),
-}
-
-impl Face {
-    /// As scenes write it; `wall` is the one that has it.
-    pub fn name(self, wall: &Wall) -> String {
-        match (self, &wall.shape) {
-            (Face::Box { axis, positive }, _) => {
-                format!("{}{}", if positive { '+' } else { '-' }, ["x", "y", "z"][axis])
-            }
-            (Face::Part(part), Shape::Mesh { parts, .. }) => parts.get(part as usize).cloned().unwrap_or_default(),
-            (Face::Outside, _) => "outside".into(),
-            (Face::Plane | Face::Part(_), _) => String::new(),
-            (Face::Front, _) => "front".into(),
-            (Face::Back, _) => "back".into(),
-            (Face::Rim, _) => "rim".into(),
-            (Face::Base, _) => "base".into(),
-            (Face::Top, _) => "top".into(),
-            (Face::Side, _) => "side".into(),
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

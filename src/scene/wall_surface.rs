@@ -1,15 +1,17 @@
-//! The keys of a wall's surface, those of parts that have their own, and those of fabric.
+//! The keys of the surfaces of walls and fabrics, and of parts that have their own.
 
 use super::errors::{Problem, quote};
 use super::numbers::{bounded, not_negative, positive};
 use super::parts::Parts;
-use super::raw::{RawWall, RawWallPart};
+use super::raw::RawWall;
 use super::raw_fabric::RawFabric;
+use super::raw_part::RawPart;
 use super::raw_values::At;
-use super::surface_model::{HeatTransfer, SurfaceModel, WallHeat};
-use super::types::{UnitSystem, WallPart};
+use super::surface_model::{HeatTransfer, SurfaceModel, SurfacePart, WallHeat};
+use super::types::{Face, UnitSystem};
 use super::units::Quantity;
 
+#[derive(Clone, Copy)]
 struct Keys<'a> {
     /// Whose they are, in words.
     owner: &'static str,
@@ -30,9 +32,9 @@ impl<'a> Keys<'a> {
         }
     }
 
-    fn of_part(raw: &'a RawWallPart) -> Keys<'a> {
+    fn of_part(raw: &'a RawPart, owner: &'static str) -> Keys<'a> {
         Keys {
-            owner: "part of a wall",
+            owner,
             temperature: raw.temperature.as_ref(),
             accommodation: raw.accommodation.as_ref(),
             heat_transfer: raw.heat_transfer.as_ref(),
@@ -54,16 +56,16 @@ impl<'a> Keys<'a> {
         [self.temperature, self.accommodation, self.heat_transfer, self.friction].iter().all(Option::is_none)
     }
 
-    /// What is not given is the wall's; `accommodation` and `heat_transfer` are two ways to say one thing.
-    fn or(self, wall: Keys<'a>) -> Keys<'a> {
+    /// What is not given is that of the whole; `accommodation` and `heat_transfer` are two ways to say one thing.
+    fn or(self, whole: Keys<'a>) -> Keys<'a> {
         let own_transfer = self.accommodation.is_some() || self.heat_transfer.is_some();
-        let transfer = if own_transfer { &self } else { &wall };
+        let transfer = if own_transfer { &self } else { &whole };
         Keys {
             owner: self.owner,
-            temperature: self.temperature.or(wall.temperature),
+            temperature: self.temperature.or(whole.temperature),
             accommodation: transfer.accommodation,
             heat_transfer: transfer.heat_transfer,
-            friction: self.friction.or(wall.friction),
+            friction: self.friction.or(whole.friction),
         }
     }
 
@@ -103,35 +105,63 @@ fn share(at: &At<f64>, units: UnitSystem) -> Result<f64, Problem> {
     bounded(at, Quantity::Pure, units, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
 }
 
-/// Of both sides of a fabric.
+/// The surface model of both sides of a fabric, but those of its parts.
 pub(super) fn of_fabric(raw: &RawFabric, units: UnitSystem) -> Result<SurfaceModel, Problem> {
     Keys::of_fabric(raw).model(units)
 }
 
-/// Of all that is in none of the wall's parts.
+/// The surface model of all that is in none of the wall's parts.
 pub(super) fn of_wall(raw: &RawWall, units: UnitSystem) -> Result<SurfaceModel, Problem> {
     Keys::of_wall(raw).model(units)
 }
 
 /// The parts of the wall of this index in the scene.
-pub(super) fn of_parts(raw: &RawWall, wall: usize, names: &Parts, units: UnitSystem) -> Result<Vec<WallPart>, Problem> {
+pub(super) fn of_parts_of_wall(
+    raw: &RawWall,
+    wall: usize,
+    names: &Parts,
+    units: UnitSystem,
+) -> Result<Vec<SurfacePart>, Problem> {
     const WHOLE: &str = "the keys of a whole wall stand in its [[wall]], without a [[wall.part]]";
-    let mut parts: Vec<WallPart> = Vec::new();
-    for at in &raw.part {
+    let face = |name: &At<String>| names.find_or(name, wall, WHOLE);
+    of_parts(&raw.part, Keys::of_wall(raw), "part of a wall", face, units)
+}
+
+/// The parts of the fabric of this index in the scene.
+pub(super) fn of_parts_of_fabric(
+    raw: &RawFabric,
+    fabric: usize,
+    names: &Parts,
+    units: UnitSystem,
+) -> Result<Vec<SurfacePart>, Problem> {
+    const WHOLE: &str = "the keys of a whole fabric stand in its [[fabric]], without a [[fabric.part]]";
+    let face = |name: &At<String>| names.find_of_fabric(name, fabric).map_err(|problem| problem.hint(WHOLE));
+    of_parts(&raw.part, Keys::of_fabric(raw), "part of a fabric", face, units)
+}
+
+/// Parts that the file calls `owner`; what they do not give is that of the `whole`.
+fn of_parts(
+    raw: &[At<RawPart>],
+    whole: Keys<'_>,
+    owner: &'static str,
+    face_of: impl Fn(&At<String>) -> Result<Face, Problem>,
+    units: UnitSystem,
+) -> Result<Vec<SurfacePart>, Problem> {
+    let mut parts: Vec<SurfacePart> = Vec::new();
+    for at in raw {
         let name = &at.value.face;
-        let face = names.find_or(name, wall, WHOLE)?;
+        let face = face_of(name)?;
         if let Some(first) = parts.iter().position(|part| part.face == face) {
             let found = format!("{} for the second time", quote(&name.value));
-            return Err(
-                Problem::value(&name.span, found, "each part of a wall once").clash(&raw.part[first].value.face.span)
-            );
+            let problem = Problem::value(&name.span, found, format!("each {owner} once"));
+            return Err(problem.clash(&raw[first].value.face.span));
         }
-        let own = Keys::of_part(&at.value);
+        let own = Keys::of_part(&at.value, owner);
         if own.are_none() {
             let keys = "at least one of `temperature`, `accommodation`, `heat_transfer`, `friction`";
             return Err(Problem::value(&at.span, "a part without a key of its surface", keys));
         }
-        parts.push(WallPart { face, surface: own.or(Keys::of_wall(raw)).model(units)? });
+        parts.push(SurfacePart { face, surface: own.or(whole).model(units)? });
     }
     Ok(parts)
 }

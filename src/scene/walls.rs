@@ -41,7 +41,7 @@ pub(super) fn wall(
         shape,
         gas,
         surface: wall_surface::of_wall(&raw.value, units)?,
-        parts: wall_surface::of_parts(&raw.value, index, parts, units)?,
+        parts: wall_surface::of_parts_of_wall(&raw.value, index, parts, units)?,
     })
 }
 

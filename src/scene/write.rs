@@ -4,7 +4,7 @@
 use super::toml_lines::{TomlLines, quoted, region_table, shown};
 use super::types::*;
 use super::write_fabric::write_fabric;
-use super::write_surface::{write_heat, write_surface};
+use super::write_surface::{write_part, write_surface};
 
 /// The scene as a TOML text.
 pub fn to_toml(scene: &Scene) -> String {
@@ -142,10 +142,7 @@ fn write_wall(out: &mut TomlLines, wall: &Wall) {
     write_surface(out, &wall.surface);
     for part in &wall.parts {
         out.header("[[wall.part]]");
-        write_face(out, Some(part.face), wall);
-        write_heat(out, &part.surface);
-        // What is not given is the wall's.
-        out.number("friction", part.surface.friction);
+        write_part(out, &wall.face_name(part.face), &part.surface);
     }
     for hole in holes {
         out.header("[[wall.hole]]");
@@ -171,8 +168,8 @@ fn write_vent(out: &mut TomlLines, vent: &Vent, scene: &Scene) {
     match scene.fabric_at(vent.wall).map(|index| &scene.fabrics[index]) {
         Some(fabric) => {
             out.text("fabric", &fabric.name);
-            if let Some(Face::Part(part)) = vent.face {
-                out.text("face", &fabric.parts[part as usize]);
+            if let Some(face) = vent.face {
+                out.text("face", &fabric.face_name(face));
             }
         }
         None => {
@@ -213,7 +210,7 @@ fn write_motion(out: &mut TomlLines, motion: &Motion, scene: &Scene) {
 
 fn write_face(out: &mut TomlLines, face: Option<Face>, wall: &Wall) {
     if let Some(face) = face {
-        out.text("face", &face.name(wall));
+        out.text("face", &wall.face_name(face));
     }
 }
 

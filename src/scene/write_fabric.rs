@@ -3,7 +3,7 @@
 use super::fabric::{Elasticity, Fabric, Fixed, Membrane, Turn};
 use super::toml_lines::{TomlLines, region_table};
 use super::types::Course;
-use super::write_surface::write_surface;
+use super::write_surface::{write_part, write_surface};
 
 pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
     out.header("[[fabric]]");
@@ -22,6 +22,10 @@ pub(super) fn write_fabric(out: &mut TomlLines, fabric: &Fabric) {
     }
     if let Some(turn) = &fabric.turn {
         write_turn(out, turn);
+    }
+    for part in &fabric.surface_parts {
+        out.header("[[fabric.part]]");
+        write_part(out, &fabric.face_name(part.face), &part.surface);
     }
 }
 

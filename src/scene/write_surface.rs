@@ -10,7 +10,15 @@ pub(super) fn write_surface(out: &mut TomlLines, surface: &SurfaceModel) {
     }
 }
 
-pub(super) fn write_heat(out: &mut TomlLines, surface: &SurfaceModel) {
+/// The keys of a part of a wall or a fabric.
+pub(super) fn write_part(out: &mut TomlLines, face: &str, surface: &SurfaceModel) {
+    out.text("face", face);
+    write_heat(out, surface);
+    // What is not given is that of the whole.
+    out.number("friction", surface.friction);
+}
+
+fn write_heat(out: &mut TomlLines, surface: &SurfaceModel) {
     let Some(heat) = &surface.heat else { return };
     out.number("temperature", heat.temperature);
     match heat.transfer {

@@ -61,6 +61,7 @@ mod tests {
                 wall_friction: 0.0,
             }),
             surface: SurfaceModel::default(),
+            surface_parts: Vec::new(),
             parts: Vec::new(),
             external_pressure: None,
         });

@@ -111,10 +111,10 @@ fn of_wall(scene: &Scene, wall: &Wall) -> Option<String> {
 
 fn of_surface(scene: &Scene, id: SurfaceId) -> Vec<Option<String>> {
     let Some(heat) = scene.surface_model(id).heat else { return Vec::new() };
-    let own = id.part.and_then(|_| scene.walls[id.wall].surface.heat);
+    let own = id.part.and_then(|_| scene.surface_model(SurfaceId { part: None, ..id }).heat);
     let subject = scene.surface_title(id);
     let named = |key| Named { subject: subject.clone(), key, units: scene.units };
-    // What a part has from its wall is told of the wall.
+    // What a part has from its wall or fabric is told of that.
     let differs = |own: Option<f64>, value: f64| own != Some(value);
     let coefficient = |heat: WallHeat| match heat.transfer {
         HeatTransfer::Coefficient(coefficient) => Some(coefficient),
