@@ -73,8 +73,8 @@ pub struct Audit {
     pub caught_flights: Option<CaughtFlights>,
     /// Of each vent its name, and the hits whose probability of passing was clipped to one, over those that passed.
     pub clipped_vents: Vec<(String, f64)>,
-    /// Walls whose heat-transfer coefficient asked for more than all hits, and how many times as much at most.
-    pub clipped_walls: Vec<(String, f64)>,
+    /// Surfaces ("wall `x`", "fabric `x`") whose heat-transfer coefficient asked for more than all hits, and how many times as much at most.
+    pub clipped_surfaces: Vec<(String, f64)>,
     /// Names of the buffers or tallies that overflowed.
     pub overflows: Vec<String>,
 }
@@ -269,9 +269,9 @@ impl Audit {
                 ));
             }
         }
-        for (wall, times) in &self.clipped_walls {
+        for (surface, times) in &self.clipped_surfaces {
             warnings.push(format!(
-                "wall `{wall}`: its heat-transfer coefficient was up to {times:.2} times what all hits on it can carry"
+                "{surface}: its heat-transfer coefficient was up to {times:.2} times what all hits on it can carry"
             ));
         }
         warnings

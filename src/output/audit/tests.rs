@@ -24,7 +24,7 @@ fn clean() -> Audit {
         work_by_walls: None,
         fabric: None,
         clipped_vents: Vec::new(),
-        clipped_walls: Vec::new(),
+        clipped_surfaces: Vec::new(),
         energy_end: 70_000.5,
         lost_collision_fraction: Some(0.012),
         collision_cells: None,

@@ -390,7 +390,7 @@ impl Account {
             clipped_vents: clipped
                 .map(|(vent, [left, clipped])| (vent.name.clone(), *clipped as f64 / (*left).max(1) as f64))
                 .collect(),
-            clipped_walls: surface_states.beyond(),
+            clipped_surfaces: surface_states.beyond(),
             energy_end: end.energy,
             collision_cells: (plan.method == Method::HalfTurn).then(|| CollisionCells {
                 free_flights: self.counted.free_flights as f64 / self.counted.particle_steps.max(1) as f64,

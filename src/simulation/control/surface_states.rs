@@ -360,15 +360,15 @@ impl<'a> SurfaceStates<'a> {
         (wanted, beta * raised.clamp(0.0, MOST_RAISED))
     }
 
-    /// The walls whose coefficient asked for more than all hits can give, with how many times as much.
+    /// The titles of the surfaces whose coefficient asked for more than all hits can give, with how many times as much.
     pub fn beyond(&self) -> Vec<(String, f64)> {
         let mut beyond: Vec<(String, f64)> = Vec::new();
         for (placed, &asked) in self.model.surface_models.placed.iter().zip(&self.state.most_asked) {
             if asked > 1.0 {
-                let name = self.model.scene.surface_name(placed.surface);
-                match beyond.iter_mut().find(|(known, _)| *known == name) {
+                let title = self.model.scene.surface_title(placed.surface);
+                match beyond.iter_mut().find(|(known, _)| *known == title) {
                     Some((_, most)) => *most = most.max(asked),
-                    None => beyond.push((name, asked)),
+                    None => beyond.push((title, asked)),
                 }
             }
         }
