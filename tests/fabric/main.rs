@@ -12,6 +12,7 @@ mod flat;
 mod neighbours;
 mod open_sheets;
 mod paddle;
+mod parts;
 mod refused;
 mod scenes;
 mod sheets;

@@ -198,6 +198,11 @@ fn what_vents_on_fabric_cannot_be_is_told() {
         (open, format!("external_pressure = 1e5\n{INSIDE}"), "an open sheet has no outside"),
         (sphere(), with(ALIKE, ""), "none is `inside` of this fabric"),
         (sphere(), with(INSIDE, "face = \"lid\"\n"), "the parts of its mesh are: \"sphere\""),
+        (
+            sphere(),
+            format!("[[fabric.part]]\nface = \"lid\"\nfriction = 0.5\n{ALIKE}"),
+            "fabric \"bag/lid\": its mesh has no such part, and the parts of its mesh are: \"sphere\"",
+        ),
         (sphere(), with(INSIDE, "position = [0.0, 0.0, 0.0]\ndiameter = 0.01\n"), "has no triangle"),
         (sphere(), with(INSIDE, "external_pressure = 1e5\n"), "`external_pressure` of a vent on fabric"),
         (sphere(), format!("external_pressure = 1e5\n{INSIDE}{ORIFICE}"), "orifice \"inlet\" lies outside"),

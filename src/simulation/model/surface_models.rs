@@ -3,7 +3,7 @@
 
 use super::error::ModelError;
 use super::fabric::Surfaces;
-use super::fabric_surfaces::OnFabric;
+use super::fabric_surfaces::{OnFabric, check_parts};
 use super::fronts::Front;
 use super::placed_model::PlacedModel;
 use super::vent_places::{Beyond, VentPlace, area, corners, on_face, places};
@@ -28,8 +28,9 @@ pub struct SurfaceModels {
 
 impl SurfaceModels {
     /// # Errors
-    /// If a vent has no place, or none can say which chamber it empties.
+    /// If a vent has no place, or none can say which chamber it empties; if a mesh of fabric has not the parts that the scene names.
     pub fn new(scene: &Scene, vessel: &Vessel, fabric: &Surfaces) -> Result<SurfaceModels, ModelError> {
+        check_parts(scene, fabric)?;
         if scene.has_mirrors_only() && scene.vents.is_empty() {
             return Ok(SurfaceModels::default());
         }
