@@ -219,6 +219,7 @@ impl CliError {
                 SimulationError::Lost { .. }
                 | SimulationError::LostNodes { .. }
                 | SimulationError::OverPlane { .. }
+                | SimulationError::InsideOut { .. }
                 | SimulationError::Ladder { .. }
                 | SimulationError::Guard { .. },
             ) => AUDIT_FAILED,

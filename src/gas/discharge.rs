@@ -84,7 +84,7 @@ const ORIFICE: [(f64, f64); 9] = [
 const MEASURED_GAMMA: f64 = 1.4;
 /// 1 - Q below which the isentropic flow, ~ sqrt(1 - Q), is replaced by its chord, so that two chambers
 /// come to rest instead of ringing about equal pressure also where no particles make the flow creep.
-const CHORD: f64 = 1e-4;
+pub(super) const CHORD: f64 = 1e-4;
 
 /// The prototype's figure for this Knudsen number, if it is one of its four.
 pub fn specified(knudsen: f64) -> Option<f64> {

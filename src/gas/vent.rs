@@ -5,7 +5,7 @@
 
 use super::Species;
 use super::curve::value_held;
-use super::discharge::isentropic;
+use super::discharge::{CHORD, isentropic};
 use crate::scene::{GAS_CONSTANT, Vent, VentFlow};
 
 /// Beyond this share of p / sqrt(R T / M) a flux can no longer be modelled by a probability in proportion to the
@@ -69,7 +69,10 @@ pub fn flux(vent: &Vent, gas: &LocalGas, time: f64) -> f64 {
     match &vent.flow {
         VentFlow::Discharge(curve) => value_held(curve, time) * gas.isentropic_flux(outside),
         VentFlow::DischargeByPressure(curve) => value_held(curve, excess) * gas.isentropic_flux(outside),
-        VentFlow::LeakVelocity(curve) => value_held(curve, excess) * gas.density(),
+        // Towards no excess linear, as the others are: pressures would chatter about balance where a curve begins above 0.
+        VentFlow::LeakVelocity(curve) => {
+            value_held(curve, excess) * gas.density() * (excess / (CHORD * gas.pressure)).min(1.0)
+        }
     }
 }
 
@@ -124,6 +127,12 @@ mod tests {
         assert!((by_pressure / (0.3 * air.isentropic_flux(5e4)) - 1.0).abs() < 1e-12);
         assert_eq!(flux(&vent(VentFlow::Discharge(curve.clone())), &air, 0.0), 0.0);
         let leak = flux(&vent(VentFlow::LeakVelocity(curve)), &air, 0.0);
+        // A curve that begins above 0 falls to it within 1e-4 of the pressure.
+        let open = |excess: f64| {
+            let flow = VentFlow::LeakVelocity(Curve { points: vec![[0.0, 0.3]] });
+            flux(&Vent { external_pressure: 2e5 - excess, ..vent(flow) }, &air, 0.0) / (0.3 * air.density())
+        };
+        assert!((open(1e3) - 1.0).abs() < 1e-9 && (open(5.0) - 0.25).abs() < 1e-9 && open(-5.0) == 0.0);
         assert!((leak / (0.3 * 2e5 * 0.029 / (GAS_CONSTANT * 400.0)) - 1.0).abs() < 1e-12);
     }
 

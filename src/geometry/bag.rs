@@ -42,6 +42,11 @@ impl Bag {
         self.surface.contains(point)
     }
 
+    /// Whether a node of it is within another.
+    pub fn has_node_in(&self, other: &Bag) -> bool {
+        self.triangles.iter().flatten().any(|&node| other.contains(self.nodes[node as usize]))
+    }
+
     /// What of the line along x through (y, z) it encloses, from and to, m.
     pub(super) fn within(&self, y: f64, z: f64) -> Vec<(f64, f64)> {
         self.surface.within(y, z)

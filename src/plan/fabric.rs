@@ -56,7 +56,7 @@ impl Noise {
         measured.inflated.filter(|_| scene.vents.is_empty())?;
         let outside = scene.fabrics.iter().filter_map(|fabric| fabric.external_pressure).fold(0.0, f64::max);
         let gauge = number_density * self.thermal_energy - outside;
-        self.ripples_times_pressure(measured).filter(|_| gauge > 0.0).map(|product| product / gauge)
+        self.ripples_times_pressure(measured).filter(|_| gauge > 0.0).map(|product| (product / gauge).min(1.0))
     }
 }
 

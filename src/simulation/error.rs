@@ -39,6 +39,9 @@ pub enum SimulationError {
         "closed fabrics are told apart by planes between them at the start: put them farther apart, or hold them there"
     ))]
     OverPlane { fabric: String, time: f64 },
+    #[error("fabric \"{fabric}\" has no inside left, by {time:e} s: its sheets have passed through each other")]
+    #[diagnostic(help("sheets do not stop each other: more gas in it, or less pressure on it, hold them apart"))]
+    InsideOut { fabric: String, time: f64 },
     #[error(transparent)]
     Partition(#[from] PartitionError),
     #[error(transparent)]

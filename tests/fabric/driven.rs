@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::scenes::{ALIKE, Scene, inside_and_outside, on_the_wrong_side};
 use crate::sheets::sheet;
-use crate::whole_run::{Run, model_in, run};
+use crate::whole_run::{Run, device, model_in, run};
 
 const THICKNESS: f64 = 6e-4;
 /// By which a frame turns.
@@ -247,9 +247,65 @@ fn a_body_in_a_bag_takes_room_of_its_gas() {
     assert_eq!(run.outcome.audit.passed.map(|passed| passed.particles), Some(0));
     let grown = model.moving.volumes(&[1.0, 1.0], 1e-3);
     assert!(grown.iter().all(|volume| (volume - 1.0).abs() < 1e-8), "{grown:?}");
+    assert!(refused(&scene(body(0.01, motion))).contains("wall \"body\" moves and is on both of its sides"));
+}
+
+fn refused(scene: &Scene) -> String {
     let folder = TempDir::new().expect("a folder");
-    let text = scene(body(0.01, motion)).text(&folder);
-    let scene = corpuscle::scene::parse(&text, "test.toml", folder.path()).expect("a scene");
-    let told = corpuscle::simulation::Model::new(scene).err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(told.contains("wall \"body\" moves and is on both of its sides"), "{told}");
+    let scene = corpuscle::scene::parse(&scene.text(&folder), "test.toml", folder.path()).expect("a scene");
+    corpuscle::simulation::Model::new(scene).err().map(|error| error.to_string()).unwrap_or_default()
+}
+
+/// Whatever corners are where: a face through the middle of a bag, a rod through it, and what comes into a bag that does not give way.
+#[test]
+fn walls_stay_on_their_side_of_closed_fabric() {
+    let mesh: TriangleMesh = MeshShape::Sphere { radius: 0.02, subdivisions: 3 }.mesh([0.05; 3]).expect("a sphere");
+    let told = |low: [f64; 3], high: [f64; 3], elastic: String| {
+        let body = format!(
+            "[[wall]]\nname = \"body\"\nshape = \"box\"\nmin = {low:?}\nmax = {high:?}\ngas = \"outside\"\n\
+             [[motion]]\nwall = \"body\"\ndirection = [1, 0, 0]\nvelocity = 10.0\n"
+        );
+        refused(&Scene {
+            chambers: body + &inside_and_outside(2e5, 1e5),
+            elastic,
+            ..Scene::new(Method::HalfTurn, mesh.clone(), None)
+        })
+    };
+    let both = "wall \"body\" moves and is on both of its sides";
+    let (piston, rod) = ([-0.02, -0.01, -0.01], [-0.03, 0.045, 0.045]);
+    for elastic in [String::new(), material()] {
+        let face = told(piston, [0.05, 0.11, 0.11], elastic.clone());
+        assert!(face.contains(both) && face.contains("0e0 s"), "{face}");
+        let rod = told(rod, [0.08, 0.055, 0.055], elastic.clone());
+        assert!(rod.contains(both) && rod.contains("0e0 s"), "{rod}");
+        // 25 mm before the bag, 10 on its way.
+        assert_eq!(told(piston, [0.005, 0.11, 0.11], elastic.clone()), "");
+        // 5 mm before it: elastic fabric gives way.
+        let comes = told(piston, [0.025, 0.11, 0.11], elastic.clone());
+        assert!(if elastic.is_empty() { comes.contains(both) && !comes.contains("0e0 s") } else { comes.is_empty() });
+    }
+    let nowhere = "fixed = [{ sphere = { center = [0.0, 0.0, 0.0], radius = 0.01 } }]\n";
+    for fixed in [nowhere, "fixed = \"edge\"\n"] {
+        let told = told(piston, [0.005, 0.11, 0.11], format!("{fixed}{}", material()));
+        assert!(told.contains("its `fixed` holds none of its nodes"), "{told}");
+    }
+}
+
+/// A bag that what is around it presses together, until its sheets pass through each other.
+#[test]
+fn a_bag_without_an_inside_ends_the_run() {
+    let mesh = MeshShape::Sphere { radius: 0.03, subdivisions: 2 }.mesh([0.05; 3]).expect("a sphere");
+    let scene = Scene {
+        particles: 200,
+        end: 5e-3,
+        step: Some(4e-6),
+        chambers: "[[chamber]]\nname = \"in\"\ninside = \"bag\"\npressure = 1e3\ntemperature = 300.0\ngas = \"air\"\n\
+                   [[vent]]\nname = \"vent\"\nfabric = \"bag\"\ndischarge = 1.0\n"
+            .into(),
+        elastic: format!("external_pressure = 1e4\n{}", material()),
+        ..Scene::new(Method::None, mesh, None)
+    };
+    let told = corpuscle::study::verify::run(&device(), &scene.model(), Options::default()).err();
+    let told = told.map(|error| error.to_string()).unwrap_or_default();
+    assert!(told.contains("fabric \"bag\" has no inside left"), "{told}");
 }

@@ -92,6 +92,11 @@ impl Membranes {
         let shortest = membrane.reference_scale.min(1.0);
         self.longest_step = self.longest_step.min(CAREFUL * shortest * longest_step(&own, &self.materials));
         let holds = holds(&membrane.fixed, mesh, held(fabric));
+        if membrane.fixed != Fixed::Nothing && holds.iter().all(|hold| *hold == Hold::Free) {
+            return Err(refused(
+                "its `fixed` holds none of its nodes: no region has one, or it has no open edge".into(),
+            ));
+        }
         if !holds.contains(&Hold::Free) {
             return Err(refused(
                 "all of its nodes are `fixed`, so that the gas moves none: leave out its `material`".into(),

@@ -28,6 +28,7 @@ pub(super) mod places;
 pub(super) mod plane;
 mod pockets;
 mod separate;
+mod sides_of_walls;
 mod strokes;
 pub(super) mod surface_models;
 pub(super) mod turning;

@@ -9,8 +9,9 @@
 
 use super::error::ModelError;
 use super::fabric::Surfaces;
+use super::sides_of_walls::{home, is_in, on_both_sides};
 use crate::gas::{Swept, bends, displacement, turns, velocity};
-use crate::geometry::{Grid, Vessel, region_bounds};
+use crate::geometry::{Bag, Grid, Vessel, region_bounds};
 use crate::plan::MeasuredMotion;
 use crate::scene::{Chamber, Course, Curve, Face, MOST_MOTIONS, Motion, Region, Scene};
 use crate::subdomain::{GpuMotion, Walls};
@@ -20,6 +21,8 @@ const LEAST_SHARE: f64 = 1e-3;
 /// Volumes are taken as linear in the displacement where their middle is so near to it, over the volume of all gas.
 const LINEAR: f64 = 1e-4;
 const MOST_HALVINGS: u32 = 5;
+/// Times of a run at which it is looked on which sides of closed fabric walls are.
+const LOOKS: u32 = 32;
 
 #[derive(Debug, Clone, Default)]
 pub struct Moving {
@@ -30,6 +33,8 @@ pub struct Moving {
     pub carried: Vec<u32>,
     /// Of surfaces that deform: the times at which they were measured, s, and their fastest node, m/s.
     deformed: (Vec<f64>, f64),
+    /// Elastic fabric does: how its chambers share the room is not known before the run.
+    gives_way: bool,
     /// The corners of all that the walls sweep, m.
     bounds: Option<([f64; 3], [f64; 3])>,
     end_time: f64,
@@ -89,6 +94,7 @@ impl Moving {
             bodies,
             swept: Vec::new(),
             deformed: (Vec::new(), 0.0),
+            gives_way: false,
             bounds: Some(bounds),
             end_time: scene.end_time,
         };
@@ -98,8 +104,36 @@ impl Moving {
             let swept = moving.measure(scene, vessel, index, &initial)?;
             moving.swept.push(swept);
         }
-        moving.refuse_squeezed(scene, &initial)?;
+        // (What fabric leaves of chambers is not known yet.)
+        if scene.fabrics.is_empty() {
+            moving.refuse_squeezed(scene, &initial)?;
+        }
         Ok(moving)
+    }
+
+    /// Walls stay on their sides of closed fabric; elastic fabric gives way to them.
+    fn refuse_crossed(&self, scene: &Scene, vessel: &Vessel, fabric: &Surfaces) -> Result<(), ModelError> {
+        let rigid: Vec<usize> =
+            (0..fabric.all.len()).filter(|&index| fabric.all[index].closed && !fabric.all[index].elastic).collect();
+        if self.is_empty() || rigid.is_empty() {
+            return Ok(());
+        }
+        let sides = |time: f64| -> Result<Vec<Option<bool>>, ModelError> {
+            let (there, bags) = (self.vessel_at(vessel, time), fabric.bags(time)?);
+            let bags: Vec<&Bag> = rigid.iter().filter_map(|&index| bags[index].as_ref()).collect();
+            let of_body = |body: &Body| bags.iter().map(|bag| is_in(&there, body.motion.wall, bag)).collect::<Vec<_>>();
+            Ok(self.bodies.iter().flat_map(of_body).collect())
+        };
+        let start = sides(0.0)?;
+        let even = (1..=LOOKS).map(|k| scene.end_time * f64::from(k) / f64::from(LOOKS));
+        for time in even.chain(self.moments()) {
+            let now = sides(time)?;
+            if let Some(place) = now.iter().zip(&start).position(|(now, start)| now.is_none() || now != start) {
+                let (body, fabric) = (&self.bodies[place / rigid.len()], rigid[place % rigid.len()]);
+                return Err(on_both_sides(scene, body.motion.wall, fabric, time));
+            }
+        }
+        Ok(())
     }
 
     /// Takes in what surfaces that deform leave of the volumes of chambers, linear between the moments at which they are measured.
@@ -112,14 +146,22 @@ impl Moving {
         }
         self.bounds = Some(fabric.bounds(self.bounds(vessel)));
         self.end_time = scene.end_time;
+        self.refuse_crossed(scene, vessel, fabric)?;
         // (What elastic fabric encloses, a run measures.)
         if fabric.is_elastic() {
             self.deformed.1 = fabric.fastest();
+            self.gives_way = true;
             return Ok(());
         }
-        if fabric.moments.len() < 2 {
-            return Ok(());
+        if fabric.moments.len() > 1 {
+            self.follow(scene, fabric);
         }
+        let volumes = vessel.chamber_volumes(&scene.chambers);
+        let probes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
+        self.refuse_squeezed(scene, &volumes.into_iter().chain(probes).collect::<Vec<_>>())
+    }
+
+    fn follow(&mut self, scene: &Scene, fabric: &Surfaces) {
         let initial = fabric.measures(0.0);
         let change = |time: f64| -> Vec<f64> {
             let now = fabric.measures(time);
@@ -133,9 +175,6 @@ impl Moving {
             change: fabric.moments.iter().map(|&time| change(time)).collect(),
         });
         self.deformed = (fabric.moments.clone(), fabric.fastest());
-        let volumes = vessel.chamber_volumes(&scene.chambers);
-        let probes = scene.probes.iter().map(|probe| vessel.gas_volume_in(&probe.region));
-        self.refuse_squeezed(scene, &volumes.into_iter().chain(probes).collect::<Vec<_>>())
     }
 
     /// Whether the volumes of chambers change.
@@ -327,6 +366,9 @@ impl Moving {
         }
         let all = |time: f64| self.volumes(initial, time).iter().sum::<f64>();
         let share = |time: f64| {
+            if self.gives_way {
+                return (all(time) / initial.iter().sum::<f64>()).max(LEAST_SHARE);
+            }
             let now = self.volumes(initial, time);
             now.iter().zip(initial).map(|(now, initial)| now / initial).fold(1.0, f64::min)
         };
@@ -418,27 +460,6 @@ fn body(scene: &Scene, vessel: &Vessel, motion: &Motion) -> Result<Body, ModelEr
     let places = inside.chain([0.0, scene.end_time]).map(|time| displacement(&motion.course, time));
     let range = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     Ok(Body { motion: motion.clone(), home: home(scene, vessel, motion.wall)?, name, low, high, range })
-}
-
-/// The chamber that a wall is in at the start, of a scene with closed fabric.
-fn home(scene: &Scene, vessel: &Vessel, wall: usize) -> Result<Option<usize>, ModelError> {
-    let own = || vessel.triangles.iter().filter(|triangle| triangle.wall as usize == wall).flat_map(|t| t.vertices);
-    let chamber_inside = |bag: usize| scene.chambers.iter().position(|chamber| chamber.inside == Some(bag));
-    let rest = scene.chambers.iter().position(|chamber| chamber.inside.is_none());
-    for (index, bag) in vessel.bags.iter().enumerate().filter_map(|(index, bag)| Some((index, bag.as_ref()?))) {
-        let inside = own().filter(|&corner| bag.contains(vessel.vertices[corner as usize])).count();
-        if inside == own().count() {
-            return Ok(chamber_inside(index).or(rest));
-        }
-        if inside > 0 {
-            let problem = format!(
-                "wall \"{}\" moves and is on both of its sides at the start: what room it takes from the gas of which is not known",
-                scene.walls[wall].name
-            );
-            return Err(ModelError::Fabric { fabric: scene.fabrics[index].name.clone(), problem });
-        }
-    }
-    Ok(rest)
 }
 
 /// The corners of some triangles, m.

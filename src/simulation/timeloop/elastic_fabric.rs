@@ -202,6 +202,10 @@ impl<'a> ElasticFabric<'a> {
                 moment.iter().map(|&[x, y, z, _]| self.model.plan.grid.to_metres([x, y, z])).collect();
             self.refuse_over_a_plane(&places)?;
             let measures = surfaces.measures_of(&places);
+            let flat = surfaces.all.iter().zip(&measures).find(|(own, [volume, _])| own.closed && *volume <= 0.0);
+            if let Some((surface, _)) = flat {
+                return Err(SimulationError::InsideOut { fabric: surface.name.clone(), time: self.time });
+            }
             for ((grown, initial), [volume, _]) in grown.iter_mut().zip(&self.initial_volumes).zip(&measures) {
                 *grown += (volume - initial) / tallies as f64;
             }
