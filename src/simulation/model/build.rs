@@ -134,7 +134,8 @@ impl Model {
 
     /// What is no warning, of the walls and of the scene.
     pub fn notes(&self) -> Vec<String> {
-        [self.vessel.notes(self.scene.units), self.fabric.notes.clone(), self.plan.inventory.notes.clone()].concat()
+        let of_vessel = self.vessel.notes(self.scene.units);
+        [of_vessel, self.moving.notes(), self.fabric.notes.clone(), self.plan.inventory.notes.clone()].concat()
     }
 
     /// The walls as they are at a time, s.

@@ -186,6 +186,19 @@ impl Moving {
         self.bodies.is_empty()
     }
 
+    /// What is doubtful of them: the room that each takes is measured with the others where they are at the start.
+    pub fn notes(&self) -> Vec<String> {
+        let swept: Vec<_> = self.bodies.iter().map(|body| (body, body.sweep(body.range))).collect();
+        let pairs = swept.iter().enumerate().flat_map(|(k, one)| swept[k + 1..].iter().map(move |other| (one, other)));
+        let told = |((one, _), (other, _)): (&(&Body, _), &(&Body, _))| {
+            format!(
+                "what the walls `{}` and `{}` sweep may overlap: where it does, volumes are too small and pressures too large",
+                one.name, other.name
+            )
+        };
+        pairs.filter(|((_, one), (_, other))| overlap(one, other)).map(|(one, other)| told((one, other))).collect()
+    }
+
     pub fn count(&self) -> usize {
         self.bodies.len()
     }

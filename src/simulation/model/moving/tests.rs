@@ -84,6 +84,18 @@ fn what_cannot_move_is_refused() {
     told("velocity = 20.0", &place("-y", [0.1, 0.0, 0.05]), "sweeps over vent \"out\"");
 }
 
+/// Each wall is measured alone: that two may be where each other goes is told.
+#[test]
+fn walls_that_may_overlap_on_their_ways_are_told() {
+    let told = |plate: f64| {
+        let side = "[[wall]]\nname = \"side\"\nshape = \"box\"\nmin = [0.05, 0.02, -0.03]\nmax = [0.08, 0.08, 0.001]\n\
+                    gas = \"outside\"\n[[motion]]\nwall = \"side\"\ndirection = [0.0, 0.0, 1.0]\nvelocity = 20.0\n";
+        model(&format!("velocity = {plate:?}"), side).unwrap().notes()
+    };
+    let of_both = |notes: &[String]| notes.iter().any(|note| note.contains("`plate` and `side` sweep may overlap"));
+    assert!(of_both(&told(20.0)) && !of_both(&told(-20.0)));
+}
+
 /// As a control volume: each chamber keeps p V^gamma, and the work of the plate is the gain of energy.
 #[test]
 fn uniform_chambers_are_compressed_isentropically() {
