@@ -28,6 +28,11 @@ pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
     let Some(motion) = &measured.motion else { return };
     let walls = scene.motions.iter().map(|motion| &scene.walls[motion.wall].name);
     let led = scene.fabrics.iter().filter(|fabric| fabric.motion.is_some() || fabric.turn.is_some());
+    let quantity = match (scene.motions.is_empty(), led.clone().next().is_none()) {
+        (true, _) => "fabric",
+        (false, true) => "moving walls",
+        (false, false) => "moving walls and fabric",
+    };
     let names: Vec<String> = walls.chain(led.map(|fabric| &fabric.name)).map(|name| format!("`{name}`")).collect();
     let volumes = if scene.fabrics.iter().any(|fabric| fabric.membrane.is_some()) {
         "the volume beside elastic fabric a run finds".into()
@@ -39,7 +44,7 @@ pub fn reasons(scene: &Scene, measured: &Measured, reasons: &mut Vec<Reason>) {
         )
     };
     reasons.push(Reason {
-        quantity: if scene.motions.is_empty() { "fabric" } else { "moving walls" }.into(),
+        quantity: quantity.into(),
         value: names.join(", "),
         why: format!("up to {} m/s; {volumes}", significant(motion.fastest)),
     });

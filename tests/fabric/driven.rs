@@ -116,7 +116,7 @@ fn fabric_of_a_given_motion_stands_beside_elastic_fabric() {
     let (model, beside) = shrinking(true);
     for (one, other) in alone.rows.iter().zip(&beside.rows) {
         let [one, other] = [one, other].map(|row| row.fabrics[0]);
-        // (Means over somewhat other moments of a time in which it shrinks by a twentieth.)
+        // (Means over other moments: in a step of 4 us it shrinks by 1.2e-3.)
         assert!((other.volume / one.volume - 1.0).abs() < 1e-3, "{} and {} m3", one.volume, other.volume);
     }
     let places = [&alone, &beside].map(|run| &run.outcome.fabric.nodes);
@@ -271,18 +271,19 @@ fn walls_stay_on_their_side_of_closed_fabric() {
             ..Scene::new(Method::HalfTurn, mesh.clone(), None)
         })
     };
-    let both = "wall \"body\" moves and is on both of its sides";
+    let both = "wall \"body\" moves and is on both of its sides at the start";
     let (piston, rod) = ([-0.02, -0.01, -0.01], [-0.03, 0.045, 0.045]);
     for elastic in [String::new(), material()] {
         let face = told(piston, [0.05, 0.11, 0.11], elastic.clone());
-        assert!(face.contains(both) && face.contains("0e0 s"), "{face}");
+        assert!(face.contains(both), "{face}");
         let rod = told(rod, [0.08, 0.055, 0.055], elastic.clone());
-        assert!(rod.contains(both) && rod.contains("0e0 s"), "{rod}");
+        assert!(rod.contains(both), "{rod}");
         // 25 mm before the bag, 10 on its way.
         assert_eq!(told(piston, [0.005, 0.11, 0.11], elastic.clone()), "");
         // 5 mm before it: elastic fabric gives way.
         let comes = told(piston, [0.025, 0.11, 0.11], elastic.clone());
-        assert!(if elastic.is_empty() { comes.contains(both) && !comes.contains("0e0 s") } else { comes.is_empty() });
+        assert_eq!(comes.contains("wall \"body\" moves and comes through it by"), elastic.is_empty(), "{comes}");
+        assert!(elastic.is_empty() || comes.is_empty(), "{comes}");
     }
     let nowhere = "fixed = [{ sphere = { center = [0.0, 0.0, 0.0], radius = 0.01 } }]\n";
     for fixed in [nowhere, "fixed = \"edge\"\n"] {

@@ -55,11 +55,7 @@ impl FabricAccount {
     pub fn error(&self) -> f64 {
         let amounts =
             [self.from_gas, self.from_pressure, self.kinetic[0], self.kinetic[1], self.strain[0], self.strain[1]];
-        let largest = amounts
-            .into_iter()
-            .chain([self.damped, self.from_gravity, self.from_supports])
-            .map(f64::abs)
-            .fold(0.0, f64::max);
+        let largest = amounts.into_iter().chain([self.damped, self.from_gravity]).map(f64::abs).fold(0.0, f64::max);
         if largest > 0.0 { self.missing() / largest } else { 0.0 }
     }
 

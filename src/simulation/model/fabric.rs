@@ -279,13 +279,13 @@ impl Surfaces {
         fabric
     }
 
-    /// Of the nodes of elastic fabric that follow a course, in each of the steps of an interval, m/s; without such, nothing.
+    /// The velocities of nodes beside or in elastic fabric that follow a course, in each of the steps of an interval, m/s; nothing without such nodes.
     pub fn led_velocities(&self, start: f64, dt: f64, steps: u32) -> Vec<[f64; 3]> {
         if !self.membranes.as_ref().is_some_and(Membranes::is_led) {
             return Vec::new();
         }
-        let mut all = Vec::with_capacity(steps as usize * self.triangles.len());
         let mut before = self.places(start);
+        let mut all = Vec::with_capacity(steps as usize * before.len());
         for k in 1..=steps {
             let after = self.places(start + f64::from(k) * dt);
             let velocity =

@@ -130,7 +130,7 @@ impl Moving {
             let now = sides(time)?;
             if let Some(place) = now.iter().zip(&start).position(|(now, start)| now.is_none() || now != start) {
                 let (body, fabric) = (&self.bodies[place / rigid.len()], rigid[place % rigid.len()]);
-                return Err(on_both_sides(scene, body.motion.wall, fabric, time));
+                return Err(on_both_sides(scene, body.motion.wall, fabric, Some(time)));
             }
         }
         Ok(())
@@ -258,7 +258,7 @@ impl Moving {
         chambers
     }
 
-    /// Of the chambers, then the probes, with one body displaced, m3.
+    /// The volumes of the chambers, then of the probes, with one body displaced, m3.
     fn volumes_at(&self, scene: &Scene, vessel: &Vessel, (body, place): (usize, f64)) -> Result<Vec<f64>, ModelError> {
         let mut moved = vec![0.0; self.bodies.len()];
         moved[body] = place;

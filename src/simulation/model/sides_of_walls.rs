@@ -22,16 +22,18 @@ pub fn home(scene: &Scene, vessel: &Vessel, wall: usize) -> Result<Option<usize>
                 let inside = scene.chambers.iter().position(|chamber| chamber.inside == Some(index));
                 return Ok(inside.or(rest));
             }
-            None => return Err(on_both_sides(scene, wall, index, 0.0)),
+            None => return Err(on_both_sides(scene, wall, index, None)),
         }
     }
     Ok(rest)
 }
 
-/// `time` in s.
-pub fn on_both_sides(scene: &Scene, wall: usize, fabric: usize, time: f64) -> ModelError {
+/// A wall does not stay on one side of a fabric: at the start, or by a time, s.
+pub fn on_both_sides(scene: &Scene, wall: usize, fabric: usize, time: Option<f64>) -> ModelError {
+    let how =
+        time.map_or("is on both of its sides at the start".into(), |time| format!("comes through it by {time:e} s"));
     let problem = format!(
-        "wall \"{}\" moves and is on both of its sides or on the other one at {time:e} s: what room it takes from the gas of which is not known",
+        "wall \"{}\" moves and {how}: the room that it takes from the gas on each side is not known",
         scene.walls[wall].name
     );
     ModelError::Fabric { fabric: scene.fabrics[fabric].name.clone(), problem }
@@ -42,6 +44,12 @@ pub fn is_in(vessel: &Vessel, wall: usize, bag: &Bag) -> Option<bool> {
     let triangles: Vec<[u32; 3]> =
         vessel.triangles.iter().filter(|triangle| triangle.wall as usize == wall).map(|t| t.vertices).collect();
     let corner = |vertex: u32| DVec3::from(vessel.vertices[vertex as usize]);
+    let corners = || triangles.iter().flatten().map(|&vertex| corner(vertex));
+    let low = corners().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if low.cmpgt(bag.bounds.1.into()).any() || high.cmplt(bag.bounds.0.into()).any() {
+        return Some(false);
+    }
     let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut places = edges.flat_map(|[a, b]| {
         (0..PLACES).map(move |k| corner(a).lerp(corner(b), f64::from(k) / f64::from(PLACES)).to_array())

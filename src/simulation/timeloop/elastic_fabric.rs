@@ -21,10 +21,13 @@ use crate::simulation::control::interval::Interval;
 use crate::simulation::control::state_error::RunStateError;
 use crate::simulation::error::SimulationError;
 use crate::simulation::model::build::Model;
+use crate::simulation::model::fabric::Surface;
 use crate::simulation::model::membranes::Membranes;
 use crate::simulation::run_state::FabricState;
 use crate::subdomain::{Scales, Subdomain};
 
+/// The volume of a flat bag over its area to the power of 3/2, by rounding, at most.
+const FLAT: f64 = 1e-6;
 /// Bytes of a place on the lattice.
 const PLACE: u64 = size_of::<[u32; 4]>() as u64;
 
@@ -202,8 +205,10 @@ impl<'a> ElasticFabric<'a> {
                 moment.iter().map(|&[x, y, z, _]| self.model.plan.grid.to_metres([x, y, z])).collect();
             self.refuse_over_a_plane(&places)?;
             let measures = surfaces.measures_of(&places);
-            let flat = surfaces.all.iter().zip(&measures).find(|(own, [volume, _])| own.closed && *volume <= 0.0);
-            if let Some((surface, _)) = flat {
+            let is_inside_out = |(own, [volume, area]): &(&Surface, &[f64; 2])| {
+                own.closed && own.elastic && *volume < -FLAT * area.powf(1.5)
+            };
+            if let Some((surface, _)) = surfaces.all.iter().zip(&measures).find(is_inside_out) {
                 return Err(SimulationError::InsideOut { fabric: surface.name.clone(), time: self.time });
             }
             for ((grown, initial), [volume, _]) in grown.iter_mut().zip(&self.initial_volumes).zip(&measures) {
@@ -248,7 +253,7 @@ impl<'a> ElasticFabric<'a> {
         (0..self.initial_volumes.len()).map(of).collect()
     }
 
-    /// Of nodes and triangles, at the end of the last interval read; those of no membrane have no strain.
+    /// The fields of nodes and triangles at the end of the last interval read; triangles of no membrane have no strain.
     pub fn fields(&self) -> MembraneFields {
         let membrane = &*host_model(self.membranes, &self.membrane, self.time);
         let places = self.state.iter().map(|node| place(node, membrane)).collect::<Vec<_>>();
